@@ -1,0 +1,24 @@
+# Warnings, sanitizers and the one way to declare a module.
+
+add_library(brisance_options INTERFACE)
+target_compile_options(brisance_options INTERFACE -Wall -Wextra -Wpedantic -Wno-psabi)
+if(BRISANCE_WERROR)
+    target_compile_options(brisance_options INTERFACE -Werror)
+endif()
+# Without math-errno square roots and the like vectorise; no other floating-point rule is relaxed: NaN stays NaN.
+target_compile_options(brisance_options INTERFACE -fno-math-errno)
+target_compile_definitions(brisance_options INTERFACE GLM_FORCE_XYZW_ONLY)
+if(BRISANCE_SANITIZE)
+    target_compile_options(brisance_options INTERFACE -fsanitize=${BRISANCE_SANITIZE} -fno-omit-frame-pointer)
+    target_link_options(brisance_options INTERFACE -fsanitize=${BRISANCE_SANITIZE})
+endif()
+
+# brisance_module(name SOURCES ... USES modules... WALLS libraries...)
+# WALLS are libraries that must not leak out of the module; include directions are checked by tools/check_includes.py.
+function(brisance_module name)
+    cmake_parse_arguments(arg "" "" "SOURCES;USES;WALLS" ${ARGN})
+    add_library(brisance_${name} STATIC ${arg_SOURCES})
+    target_include_directories(brisance_${name} PUBLIC ${PROJECT_SOURCE_DIR}/src)
+    list(TRANSFORM arg_USES PREPEND brisance_)
+    target_link_libraries(brisance_${name} PUBLIC ${arg_USES} glm::glm PRIVATE brisance_options ${arg_WALLS})
+endfunction()

@@ -1,0 +1,32 @@
+// Errors that reach the user: one line that says what is wrong, where, and what would fix it.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace brisance {
+
+// Process exit codes, after sysexits. They are part of the command line's contract (README).
+enum class ExitCode : int {
+    Success = 0,
+    RenderFailed = 1,
+    Usage = 2,         // command line, shot file: unknown key, wrong type
+    BadData = 65,      // a file that exists but cannot be used
+    MissingInput = 66, // a file or frame that is not there
+    CannotCreate = 73, // output folder or file cannot be made
+    OutputFailed = 74, // writing failed half way: the disk is full
+    Temporary = 75,    // out of memory: worth a retry elsewhere
+    Interrupted = 130
+};
+
+// Thrown by loading, checking and writing. Never by inner loops; library code never exits.
+class Error : public std::runtime_error {
+public:
+    Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+    ExitCode code() const { return code_; }
+
+private:
+    ExitCode code_;
+};
+
+}  // namespace brisance

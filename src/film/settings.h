@@ -1,0 +1,20 @@
+// What is written for one frame.
+#pragma once
+
+#include <string>
+
+namespace brisance {
+
+enum class ViewTransform { Filmic, Srgb };
+
+struct OutputSettings {
+    std::string path;             // EXR; frame tokens as in VolumeSettings::file
+    bool png = true;              // beside the EXR, same stem
+    bool statistics = true;       // JSON beside the EXR, same stem
+    bool cell_layers = true;      // one layer per ledger cell
+    bool bounce_layers = false;   // one layer per scattering order
+    float exposure_stops = 0.0f;  // of the PNG only
+    ViewTransform view = ViewTransform::Filmic;  // of the PNG only
+};
+
+}  // namespace brisance

@@ -1,0 +1,26 @@
+// One frame, from the file to the picture.
+#pragma once
+
+#include <filesystem>
+
+#include "core/progress.h"
+#include "film/image.h"
+#include "render/statistics.h"
+#include "shot/shot.h"
+
+namespace brisance {
+
+struct RenderedFrame {
+    Image image;
+    ImageMetadata metadata;
+    Statistics statistics;
+};
+
+// `volume` is the resolved .vdb file of this frame. Throws Error. The shot may leave camera and exposure to be framed on
+// the volume (camera_given). Same shot, same bits, whatever the number of threads.
+RenderedFrame render_frame(const Shot& shot, const std::filesystem::path& volume, int frame, Progress& progress);
+
+// The plan without the pixels: which cells run, what is left out and why. Reads the volume.
+Statistics plan_frame(const Shot& shot, const std::filesystem::path& volume, Progress& progress);
+
+}  // namespace brisance

@@ -1,0 +1,28 @@
+// Every parameter of one image, each with its default.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "film/settings.h"
+#include "gathering/settings.h"
+#include "medium/settings.h"
+#include "render/camera_settings.h"
+#include "volume/settings.h"
+
+namespace brisance {
+
+struct Shot {
+    std::string name;
+    std::filesystem::path folder;  // relative files of the shot are relative to this folder
+    VolumeSettings volume;
+    MediumSettings medium;
+    CameraSettings camera;
+    bool camera_given = false;    // false: framed on the volume
+    bool exposure_given = false;  // false: chosen from the picture
+    LightingSettings lighting;
+    ScatteringSettings scattering;
+    OutputSettings output;
+};
+
+}  // namespace brisance

@@ -1,0 +1,67 @@
+// One .vdb file as plain data. No OpenVDB type crosses this header: read_vdb.cpp is the wall.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/vec.h"
+
+namespace brisance {
+
+// Counts over a grid's active voxels (tiles counted as the voxels they stand for).
+struct GridCensus {
+    std::uint64_t active_voxels = 0;
+    std::uint64_t active_tiles = 0;
+    std::uint64_t nan_voxels = 0;       // NaN or infinite
+    std::uint64_t negative_voxels = 0;  // below zero in any channel
+    double minimum = 0.0;               // over finite active values; of the length for vectors
+    double maximum = 0.0;
+    double mean = 0.0;
+    std::vector<std::uint64_t> histogram;  // equal bins over [minimum, maximum]; filled by inspection only
+};
+
+// What a file says of one grid, readable without its voxels.
+struct GridInfo {
+    std::string name;          // may be empty
+    int index = 0;             // among the grids of this name, in file order
+    std::string value_type;    // "float", "half", "vec3s", "points", ...
+    std::string grid_class;    // "fog volume", "level set", "staggered", "unknown"
+    bool usable = false;       // numbers we can render: float, double, half, int, vec3 of a fog or unknown class
+    std::string why_unusable;  // one line that ends with what would fix it
+    dmat4 world_from_index{1.0};
+    bool affine = true;  // false: frustum
+    ivec3 active_min{0};
+    ivec3 active_max{-1};  // inclusive; active_max < active_min: no active voxel
+    std::string creator;   // file-level metadata where present
+    double voxel_volume() const;
+};
+
+// A grid's voxels as 8^3 blocks aligned to multiples of 8, sorted by (x, y, z) of the block origin.
+// Inside a block x is the slowest and z the fastest index, channels interleaved innermost. Inactive voxels hold 0.
+// Active tiles are expanded. Non-finite values have become 0 and are counted in `census`.
+struct BlockGrid {
+    static constexpr int kBlock = 8;
+    GridInfo info;
+    GridCensus census;
+    int channels = 1;  // 1 or 3
+    std::vector<ivec3> block_origin;
+    std::vector<float> values;  // block_origin.size() * 512 * channels
+    bool empty() const { return block_origin.empty(); }
+};
+
+// The grids of one file, without voxels.
+// Throws Error: MissingInput (no such file), BadData (not a VDB, truncated, a Git LFS pointer, no grid at all...).
+std::vector<GridInfo> list_grids(const std::filesystem::path& file);
+
+// Reads one grid by name and index. Throws Error BadData when it is absent (naming those that are there), unusable,
+// has a singular or frustum transform, an absurd bounding box, or would need more than `memory_limit_bytes`.
+BlockGrid read_grid(const std::filesystem::path& file, const std::string& name, int index,
+                    std::uint64_t memory_limit_bytes);
+
+// A census with a histogram for `inspect`, made without expanding tiles.
+GridCensus census_of_grid(const std::filesystem::path& file, const std::string& name, int index, int bins);
+
+}  // namespace brisance
