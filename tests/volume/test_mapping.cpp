@@ -1,0 +1,137 @@
+// Grids find their roles by name, preset or request, and every choice can be explained.
+#include <gtest/gtest.h>
+
+#include "temp_folder.h"
+#include "volume/mapping.h"
+
+namespace brisance {
+namespace {
+
+GridInfo grid(const std::string& name, const std::string& type = "float", int index = 0) {
+    GridInfo info;
+    info.name = name;
+    info.index = index;
+    info.value_type = type;
+    info.usable = true;
+    return info;
+}
+
+GridInfo level_set(const std::string& name) {
+    GridInfo info = grid(name);
+    info.usable = false;
+    info.why_unusable = "is a level set; convert it";
+    return info;
+}
+
+std::string all_notes(const GridMapping& mapping) {
+    std::string text;
+    for (const std::string& note : mapping.notes)
+        text += note + "\n";
+    return text;
+}
+
+GridMapping map(const std::vector<GridInfo>& grids, const VolumeSettings& settings = {}) {
+    return map_grids(grids, settings, "file.vdb");
+}
+
+TEST(Mapping, KnownNamesMapThemselvesWhateverTheirCase) {
+    const GridMapping mapping = map({grid("Density"), grid("FLAMES"), grid("Temp"), grid("Cd", "vec3s")});
+    EXPECT_EQ(mapping.density->name, "Density");
+    EXPECT_EQ(mapping.flame->name, "FLAMES");
+    EXPECT_EQ(mapping.temperature->name, "Temp");
+    EXPECT_EQ(mapping.colour->name, "Cd");
+    EXPECT_EQ(mapping.describe(),
+              "density <- \"Density\", temperature <- \"Temp\", flame <- \"FLAMES\", colour <- \"Cd\"");
+}
+
+TEST(Mapping, TheFirstNameInTheTableWinsNotTheFirstGrid) {
+    const GridMapping mapping = map({grid("fuel"), grid("smoke"), grid("flame"), grid("density")});
+    EXPECT_EQ(mapping.density->name, "density");
+    EXPECT_EQ(mapping.flame->name, "flame");
+    EXPECT_TRUE(contains(all_notes(mapping), "unused grids: \"fuel\", \"smoke\""));
+}
+
+TEST(Mapping, HeatIsOnlyMappedUnderAPreset) {
+    const std::vector<GridInfo> grids = {grid("density"), grid("heat")};
+    const GridMapping automatic = map(grids);
+    EXPECT_FALSE(automatic.flame || automatic.temperature);
+    EXPECT_TRUE(contains(all_notes(automatic), "heat is burn intensity in Houdini"));
+    VolumeSettings settings;
+    settings.preset = MappingPreset::Houdini;
+    EXPECT_EQ(map(grids, settings).flame->name, "heat");
+    settings.preset = MappingPreset::Mantaflow;
+    EXPECT_EQ(map(grids, settings).temperature->name, "heat");
+    EXPECT_TRUE(contains(map(grids, settings).temperature->reason, "preset mantaflow"));
+    EXPECT_EQ(failure_of([&] { map({grid("heat")}); }).code, ExitCode::BadData) << "nor as the only grid";
+}
+
+TEST(Mapping, TheShotsWordIsFinal) {
+    const std::vector<GridInfo> grids = {grid("density"), grid("bob"), grid("flame")};
+    VolumeSettings settings;
+    settings.grids.density = "bob";
+    settings.grids.flame = "";
+    const GridMapping mapping = map(grids, settings);
+    EXPECT_EQ(mapping.density->name, "bob");
+    EXPECT_EQ(mapping.density->reason, "named by the shot");
+    EXPECT_FALSE(mapping.flame) << "an empty name asks for no grid";
+}
+
+TEST(Mapping, AnAbsentGridIsAnErrorThatNamesThoseThatAreThere) {
+    VolumeSettings settings;
+    settings.grids.density = "Density";
+    const Failure failure = failure_of([&] { map({grid("density"), grid("flame"), grid("")}, settings); });
+    EXPECT_EQ(failure.code, ExitCode::BadData);
+    EXPECT_TRUE(contains(failure.message, "\"density\", \"flame\", \"[0]\" (unnamed)")) << failure.message;
+}
+
+TEST(Mapping, AnUnusableGridIsAnErrorThatSaysWhy) {
+    VolumeSettings settings;
+    settings.grids.density = "sdf";
+    const Failure failure = failure_of([&] { map({level_set("sdf"), grid("density")}, settings); });
+    EXPECT_TRUE(contains(failure.message, "level set; convert it")) << failure.message;
+}
+
+TEST(Mapping, GridsOfOneNameAreChosenByIndexAndMentioned) {
+    const std::vector<GridInfo> grids = {grid("density", "float", 0), grid("density", "float", 1)};
+    const GridMapping automatic = map(grids);
+    EXPECT_EQ(automatic.density->index, 0);
+    EXPECT_TRUE(contains(all_notes(automatic), "name \"density[1]\" in the shot to pick another"));
+    VolumeSettings settings;
+    settings.grids.density = "density[1]";
+    EXPECT_EQ(map(grids, settings).density->index, 1);
+    EXPECT_TRUE(contains(map(grids, settings).describe(), "density <- \"density[1]\""));
+}
+
+TEST(Mapping, BracketsMayBelongToTheName) {
+    VolumeSettings settings;
+    settings.grids.density = "smoke[7]";
+    EXPECT_EQ(map({grid("smoke[7]"), grid("x")}, settings).density->name, "smoke[7]");
+}
+
+TEST(Mapping, AVectorIsNoDensityAndAScalarNoColour) {
+    const GridMapping mapping = map({grid("density", "vec3s"), grid("flame"), grid("color")});
+    EXPECT_FALSE(mapping.density || mapping.colour);
+    EXPECT_TRUE(contains(all_notes(mapping), "three values per voxel"));
+    EXPECT_TRUE(contains(all_notes(mapping), "a colour needs three"));
+}
+
+TEST(Mapping, TheOnlyScalarGridIsDensityWhateverItsName) {
+    EXPECT_EQ(map({grid("bob"), grid("v", "vec3s"), level_set("surface")}).density->name, "bob");
+    const GridMapping unnamed = map({grid("")});
+    EXPECT_EQ(unnamed.density->name, "");
+    EXPECT_TRUE(contains(all_notes(unnamed), "\"[0]\" (unnamed), the only usable scalar grid"));
+    VolumeSettings settings;
+    settings.grids.density = "[0]";
+    EXPECT_EQ(map({grid("")}, settings).density->name, "");
+}
+
+TEST(Mapping, NothingToRenderListsEveryGridAndWhyNot) {
+    const Failure failure = failure_of([&] { map({level_set("sdf"), grid("vel", "vec3s"), grid("a"), grid("b")}); });
+    EXPECT_EQ(failure.code, ExitCode::BadData);
+    for (const char* words :
+         {"\"sdf\" is a level set", "\"vel\" holds three values", "\"a\" has no known name", "\"b\""})
+        EXPECT_TRUE(contains(failure.message, words)) << failure.message;
+}
+
+}  // namespace
+}  // namespace brisance

@@ -1,0 +1,45 @@
+// `brisance inspect`: what a .vdb file holds, what would be made of it, and a shot to begin with.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "volume/mapping.h"
+#include "volume/suggest.h"
+#include "volume/vdb_file.h"
+
+namespace brisance {
+
+struct InspectedGrid {
+    GridInfo info;
+    GridCensus census;    // with a histogram
+    std::string problem;  // why its voxels cannot be read; empty when they can
+};
+
+struct Inspection {
+    std::filesystem::path file;  // absolute
+    std::uint64_t file_bytes = 0;
+    std::vector<InspectedGrid> grids;
+    std::optional<GridMapping> mapping;
+    std::string why_no_mapping;  // set when there is none
+    SuggestedLook look;
+    std::string pattern;      // of the sequence the file belongs to; empty when it stands alone
+    std::vector<int> frames;  // of that sequence, on disk
+};
+
+// Throws Error MissingInput or BadData when the file as a whole cannot be read.
+Inspection inspect_file(const std::filesystem::path& file);
+
+std::string inspection_text(const Inspection& inspection);
+std::string inspection_json(const Inspection& inspection);
+
+// A shot in JSON made of the suggestions; empty when nothing in the file can be rendered.
+std::string suggested_shot(const Inspection& inspection);
+
+// Prints to standard output. Returns the exit code: 0, or that of BadData when nothing in the file can be rendered.
+// Throws as inspect_file.
+int run_inspect(const std::filesystem::path& file, bool as_json);
+
+}  // namespace brisance
