@@ -1,0 +1,34 @@
+// Random numbers named by who draws them, never by what was drawn before: no thread or order can change them.
+#pragma once
+
+#include <cstdint>
+
+namespace brisance {
+
+// One name per independent source of randomness. Append only: the value seeds the stream.
+enum class Stream : std::uint32_t { ShadowRayStart, EscapeRay };
+
+// SplitMix64 (Steele, Lea, Flood 2014), keyed by identity.
+class Rng {
+public:
+    Rng(Stream stream, std::uint64_t a, std::uint64_t b = 0) {
+        for (std::uint64_t word : {static_cast<std::uint64_t>(stream), a, b})
+            state_ = mix(state_ + kGolden + word);
+    }
+
+    // Uniform in [0, 1).
+    float next() { return static_cast<float>(mix(state_ += kGolden) >> 40) * 0x1p-24f; }
+
+private:
+    static constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15;
+
+    static constexpr std::uint64_t mix(std::uint64_t z) {
+        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
+        z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
+        return z ^ (z >> 31);
+    }
+
+    std::uint64_t state_ = 0;
+};
+
+}  // namespace brisance

@@ -1,0 +1,249 @@
+#include "gathering/far_kernels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "gathering/far_kernels.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#include "gathering/sh.h"
+#include "medium/extinction_sampler-inl.h"
+#include "medium/phase.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace brisance {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<float, 16>;
+using V = hn::Vec<D>;
+
+// The blend of [1] for a light of this level at distance d: rises over [r/2, r], falls over [r, 2r].
+HWY_INLINE V blend(D d, const FarLights& l, V distance) {
+    const V t = hn::Mul(distance, hn::Set(d, 1.0f / l.radius));
+    V b = l.bottom ? hn::Set(d, 1.0f) : hn::Sub(hn::Add(t, t), hn::Set(d, 1.0f));
+    if (!l.top)
+        b = hn::Min(b, hn::Sub(hn::Set(d, 2.0f), t));
+    return hn::Min(hn::Max(b, hn::Zero(d)), hn::Set(d, 1.0f));
+}
+
+// Transmittance from a light's map toward unit direction w (light to receiver) at `distance`.
+HWY_INLINE V map_transmittance(D d, const ShadowMapLayout& layout, const std::uint16_t* map, V wx, V wy, V wz,
+                               V distance) {
+    const hn::RebindToSigned<D> di;
+    const hn::RebindToUnsigned<D> du;
+    const V one = hn::Set(d, 1.0f), zero = hn::Zero(d);
+    // A receiver on the light itself has no direction; its blend weight is zero, any texel will do.
+    const V sum = hn::Max(hn::Add(hn::Add(hn::Abs(wx), hn::Abs(wy)), hn::Abs(wz)), hn::Set(d, 1e-3f));
+    const V inv = hn::Div(one, sum);
+    const V px = hn::Mul(wx, inv), py = hn::Mul(wy, inv);
+    const auto lower = hn::Lt(wz, zero);
+    const V u = hn::IfThenElse(lower, hn::CopySign(hn::Sub(one, hn::Abs(py)), wx), px);
+    const V v = hn::IfThenElse(lower, hn::CopySign(hn::Sub(one, hn::Abs(px)), wy), py);
+    // Texel centres are at half-integers of the interior; the border shifts them by one.
+    const V half = hn::Set(d, 0.5f * layout.resolution), middle = hn::Set(d, 0.5f * layout.resolution + 0.5f);
+    const V s = hn::MulAdd(u, half, middle), t = hn::MulAdd(v, half, middle);
+    const V fs = hn::Floor(s), ft = hn::Floor(t);
+    const V last = hn::Set(d, static_cast<float>(layout.distances - 1));
+    const float samples_per_metre =
+        layout.distances > 1 ? (layout.distances - 1) / (layout.far_distance - layout.near_distance) : 0.0f;
+    const V k = hn::Min(hn::Max(hn::Mul(hn::Sub(distance, hn::Set(d, layout.near_distance)),
+                                        hn::Set(d, samples_per_metre)), zero), last);
+    const V fk = hn::Floor(k);
+    const V as = hn::Sub(s, fs), at = hn::Sub(t, ft), ak = hn::Sub(k, fk);
+
+    const auto texel = hn::Add(hn::Mul(hn::ConvertTo(di, fs), hn::Set(di, layout.side())), hn::ConvertTo(di, ft));
+    const auto word = hn::Add(hn::Mul(texel, hn::Set(di, layout.distances)), hn::ConvertTo(di, fk));
+    const auto at_texel = [&](int ds, int dt) {
+        const auto offset = hn::Add(word, hn::Set(di, (ds * layout.side() + dt) * layout.distances));
+        const auto pair = hn::GatherOffset(du, reinterpret_cast<const std::uint32_t*>(map), hn::ShiftLeft<1>(offset));
+        const V near = hn::ConvertTo(d, hn::BitCast(di, hn::And(pair, hn::Set(du, 0xffffu))));
+        const V far = hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<16>(pair)));
+        return hn::MulAdd(ak, hn::Sub(far, near), near);
+    };
+    const V t00 = at_texel(0, 0), t01 = at_texel(0, 1), t10 = at_texel(1, 0), t11 = at_texel(1, 1);
+    const V t0 = hn::MulAdd(at, hn::Sub(t01, t00), t00);
+    const V t1 = hn::MulAdd(at, hn::Sub(t11, t10), t10);
+    return hn::Mul(hn::MulAdd(as, hn::Sub(t1, t0), t0), hn::Set(d, 1.0f / 65535.0f));
+}
+
+// Numerical transmittance between the light and the receivers; `way` points from receiver to light [m].
+V exact_transmittance(D d, const FarLights& l, const vec3& light, const V way[3], V distance) {
+    const vec3 origin = l.index_from_local * light;
+    V nodes[3];
+    V square = hn::Zero(d);
+    for (int a = 0; a < 3; ++a) {
+        nodes[a] = hn::Zero(d);
+        for (int b = 0; b < 3; ++b)
+            nodes[a] = hn::NegMulAdd(hn::Set(d, l.index_from_local[b][a]), way[b], nodes[a]);
+        square = hn::MulAdd(nodes[a], nodes[a], square);
+    }
+    const float longest = hn::GetLane(hn::MaxOfLanes(d, hn::Sqrt(square)));
+    const int steps = 1 + static_cast<int>(longest / l.step_nodes);
+    V sum = hn::Zero(d);
+    for (int s = 0; s < steps; ++s) {
+        const V t = hn::Set(d, (s + 0.5f) / steps);
+        sum = hn::Add(sum, sample_extinction(d, *l.extinction, hn::MulAdd(t, nodes[0], hn::Set(d, origin.x)),
+                                             hn::MulAdd(t, nodes[1], hn::Set(d, origin.y)),
+                                             hn::MulAdd(t, nodes[2], hn::Set(d, origin.z))));
+    }
+    return hn::Exp(d, hn::Neg(hn::Mul(sum, hn::Mul(distance, hn::Set(d, 1.0f / steps)))));
+}
+
+HWY_INLINE V henyey_greenstein_lanes(D d, float g, V cosine) {
+    const float h = std::abs(g);
+    const V c = g < 0.0f ? hn::Neg(cosine) : cosine;
+    const V denominator = hn::MulAdd(hn::Set(d, 2.0f * h), hn::Sub(hn::Set(d, 1.0f), c),
+                                     hn::Set(d, (1.0f - h) * (1.0f - h)));
+    return hn::Div(hn::Set(d, (1.0f - g * g) / (4.0f * kPi)), hn::Mul(denominator, hn::Sqrt(denominator)));
+}
+
+// Mean of 1 / r^2 over a ball of radius a seen from distance x of its centre: 3/(4 a^3) (2a + (a^2 - x^2)/x ln|(a+x)/(a-x)|).
+V ball_kernel(D d, float a, V distance) {
+    const V one = hn::Set(d, 1.0f);
+    // Away from 0 and a, where the formula is 0/0 and the function smooth.
+    V t = hn::Max(hn::Mul(distance, hn::Set(d, 1.0f / a)), hn::Set(d, 1e-2f));
+    t = hn::IfThenElse(hn::Lt(hn::Abs(hn::Sub(t, one)), hn::Set(d, 1e-4f)), hn::Set(d, 1.0f + 1e-4f), t);
+    const V log = hn::Log(d, hn::Abs(hn::Div(hn::Add(one, t), hn::Sub(one, t))));
+    const V near = hn::Mul(hn::MulAdd(hn::Div(hn::NegMulAdd(t, t, one), t), log, hn::Set(d, 2.0f)),
+                           hn::Set(d, 0.75f / (a * a)));
+    const V inverse = hn::Div(one, hn::Max(distance, hn::Set(d, a)));
+    const V far = hn::Mul(hn::Mul(inverse, inverse), hn::MulAdd(hn::Mul(inverse, inverse), hn::Set(d, 0.2f * a * a), one));
+    return hn::IfThenElse(hn::Lt(distance, hn::Set(d, 4.0f * a)), near, far);
+}
+
+// Transmittance from a ball: inside it, between the mean over the ball seen from its centre and that of its radius.
+V ball_transmittance(D d, float a, V distance, V transmittance, V depth_of_radius) {
+    const V edge = hn::Exp(d, hn::Neg(depth_of_radius));
+    const V mean = hn::Div(hn::Sub(hn::Set(d, 1.0f), edge), hn::Max(depth_of_radius, hn::Set(d, 1e-6f)));
+    const V centre = hn::IfThenElse(hn::Lt(depth_of_radius, hn::Set(d, 1e-3f)),
+                                    hn::NegMulAdd(hn::Set(d, 0.5f), depth_of_radius, hn::Set(d, 1.0f)), mean);
+    const V inside = hn::MulAdd(hn::Mul(distance, hn::Set(d, 1.0f / a)), hn::Sub(edge, centre), centre);
+    return hn::IfThenElse(hn::Lt(distance, hn::Set(d, a)), inside, transmittance);
+}
+
+struct Basis {
+    V y[kShMoments];
+};
+
+HWY_INLINE Basis basis_lanes(D d, V x, V y, V z) {
+    const auto c = [&](float v) { return hn::Set(d, v); };
+    return {{hn::Mul(c(kSh1), y), hn::Mul(c(kSh1), z), hn::Mul(c(kSh1), x), hn::Mul(c(kSh2a), hn::Mul(x, y)),
+             hn::Mul(c(kSh2a), hn::Mul(y, z)),
+             hn::MulAdd(c(3.0f * kSh2b), hn::Mul(z, z), c(-kSh2b)), hn::Mul(c(kSh2a), hn::Mul(x, z)),
+             hn::Mul(c(kSh2c), hn::Sub(hn::Mul(x, x), hn::Mul(y, y)))}};
+}
+
+HWY_INLINE void accumulate(D d, float* to, V value) { hn::StoreU(hn::Add(hn::LoadU(d, to), value), d, to); }
+
+// Optical depth of a voxel ball's radius in the extinction at the receivers.
+V radius_depth(D d, const FarLights& l, const Receivers& r, std::size_t at) {
+    const V p[3] = {hn::LoadU(d, &r.x[at]), hn::LoadU(d, &r.y[at]), hn::LoadU(d, &r.z[at])};
+    V n[3];
+    for (int a = 0; a < 3; ++a)
+        n[a] = hn::MulAdd(hn::Set(d, l.index_from_local[0][a]), p[0],
+                          hn::MulAdd(hn::Set(d, l.index_from_local[1][a]), p[1],
+                                     hn::Mul(hn::Set(d, l.index_from_local[2][a]), p[2])));
+    return hn::Mul(sample_extinction(d, *l.extinction, n[0], n[1], n[2]), hn::Set(d, l.ball));
+}
+
+// One light, one group of receivers.
+HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Receivers& r, std::size_t at,
+                            const FarOutput& out) {
+    const vec3 p = l.position[i];
+    const V way[3] = {hn::Sub(hn::Set(d, p.x), hn::LoadU(d, &r.x[at])), hn::Sub(hn::Set(d, p.y), hn::LoadU(d, &r.y[at])),
+                      hn::Sub(hn::Set(d, p.z), hn::LoadU(d, &r.z[at]))};
+    const V square = hn::MulAdd(way[0], way[0], hn::MulAdd(way[1], way[1], hn::Mul(way[2], way[2])));
+    const V safe = hn::Max(square, hn::Set(d, 1e-30f));
+    const V distance = hn::Sqrt(safe);
+    const V b = blend(d, l, distance);
+    const V inverse = hn::Div(hn::Set(d, 1.0f), distance);
+    V w = hn::Mul(b, l.bottom ? ball_kernel(d, l.ball, distance) : hn::Mul(inverse, inverse));
+    const V minus = hn::Neg(inverse);
+    const V wx = hn::Mul(way[0], minus), wy = hn::Mul(way[1], minus), wz = hn::Mul(way[2], minus);
+    if (l.shadow == FarLights::Shadow::Maps)
+        w = hn::Mul(w, map_transmittance(d, l.layout, l.maps + (i - l.list_base) * l.layout.stride(), wx, wy, wz,
+                                         distance));
+    else if (l.shadow == FarLights::Shadow::Exact) {
+        V t = exact_transmittance(d, l, p, way, distance);
+        if (l.bottom)
+            t = ball_transmittance(d, l.ball, distance, t, radius_depth(d, l, r, at));
+        w = hn::Mul(w, t);
+    }
+
+    const bool moments = out.moments || l.directional;
+    const Basis basis = moments ? basis_lanes(d, wx, wy, wz) : Basis{};
+    V phase = hn::Zero(d);
+    if (out.scattered) {
+        const V cosine = hn::MulAdd(wx, hn::LoadU(d, &r.out_x[at]),
+                                    hn::MulAdd(wy, hn::LoadU(d, &r.out_y[at]), hn::Mul(wz, hn::LoadU(d, &r.out_z[at]))));
+        phase = henyey_greenstein_lanes(d, out.mean_cosine, cosine);
+    }
+    for (int c = 0; c < 3; ++c) {
+        V intensity = hn::Set(d, l.intensity[i][c]);
+        if (l.directional)
+            for (int m = 0; m < kShMoments; ++m)
+                intensity = hn::MulAdd(hn::Set(d, l.directional[i * 24 + 3 * m + c]), basis.y[m], intensity);
+        const V arriving = hn::Mul(intensity, w);
+        accumulate(d, out.fluence + c * out.plane + at, arriving);
+        if (out.scattered)
+            accumulate(d, out.scattered + c * out.plane + at, hn::Mul(arriving, phase));
+        if (out.moments)
+            for (int m = 0; m < kShMoments; ++m)
+                accumulate(d, out.moments + (3 * m + c) * out.plane + at, hn::Mul(arriving, basis.y[m]));
+    }
+}
+
+// Squares of the least and greatest distance from a point to a box.
+HWY_INLINE void distances_to(const Box& box, const vec3& p, float& least, float& greatest) {
+    const vec3 nearest = glm::max(glm::max(box.low - p, p - box.high), vec3(0.0f));
+    const vec3 farthest = glm::max(glm::abs(box.low - p), glm::abs(box.high - p));
+    least = glm::dot(nearest, nearest);
+    greatest = glm::dot(farthest, farthest);
+}
+
+std::uint64_t gather(const FarLights& l, const Receivers& r, const ReceiverBlock& block, const FarOutput& out) {
+    const D d;
+    const std::size_t lanes = hn::Lanes(d);
+    const float inner = l.bottom ? -1.0f : 0.25f * l.radius * l.radius;
+    const float outer = l.top ? 1e38f : 4.0f * l.radius * l.radius;
+    std::uint64_t evaluations = 0;
+    for (const std::uint32_t i : l.list) {
+        for (std::size_t g = block.first_group; g < block.first_group + block.group_count; ++g) {
+            float least, greatest;
+            distances_to(r.group_bounds[g], l.position[i], least, greatest);
+            if (least >= outer || greatest <= inner)
+                continue;
+            for (std::size_t k = 0; k < Receivers::kGroup; k += lanes)
+                light_group(d, l, i, r, g * Receivers::kGroup + k, out);
+            evaluations += Receivers::kGroup;
+        }
+    }
+    return evaluations;
+}
+
+const char* instruction_set() { return hwy::TargetName(HWY_TARGET); }
+
+}  // namespace HWY_NAMESPACE
+}  // namespace brisance
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace brisance {
+
+HWY_EXPORT(gather);
+HWY_EXPORT(instruction_set);
+
+std::uint64_t gather_far(const FarLights& lights, const Receivers& receivers, const ReceiverBlock& block,
+                         const FarOutput& output) {
+    return HWY_DYNAMIC_DISPATCH(gather)(lights, receivers, block, output);
+}
+
+const char* gather_instruction_set() { return HWY_DYNAMIC_DISPATCH(instruction_set)(); }
+
+}  // namespace brisance
+#endif

@@ -1,0 +1,51 @@
+// The inner loop of gathering: one light of the hierarchy, many receivers that share the interaction list.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "gathering/receivers.h"
+#include "medium/extinction_pyramid.h"
+#include "shadows/shadow_maps.h"
+
+namespace brisance {
+
+// Lights of one level that a block listens to, and how.
+struct FarLights {
+    std::span<const std::uint32_t> list;  // into the arrays below
+    const vec3* position;
+    const Rgb* intensity;
+    // Coefficients of degrees 1 and 2 of a directional intensity: 24 per light, [3 * m + c]; null: isotropic.
+    const float* directional;
+
+    float radius;  // r_l = alpha h_l [m]
+    bool bottom;   // level 0: does not fade in; lights are balls of their voxel's volume
+    bool top;      // the top level does not fade out
+    float ball;    // radius of that ball [m]
+
+    enum class Shadow { Maps, Exact, None } shadow;
+    const std::uint16_t* maps;  // of light list_base and the following ones
+    std::uint32_t list_base;
+    ShadowMapLayout layout;
+    const PackedExtinction* extinction;  // level 0, for exact shadows
+    mat3 index_from_local;
+    float step_nodes;  // of exact shadows
+};
+
+struct FarOutput {
+    std::size_t plane;  // values per channel
+    float* fluence;
+    float* scattered;  // null: not asked for
+    float* moments;    // null: not asked for
+    float mean_cosine;
+};
+
+// Adds the lights' contributions to the receivers of one block. Returns the number of light evaluations (lanes that the
+// blend weight did not exclude for a whole group).
+std::uint64_t gather_far(const FarLights& lights, const Receivers& receivers, const ReceiverBlock& block,
+                         const FarOutput& output);
+
+// Name of the instruction set in use, for reports.
+const char* gather_instruction_set();
+
+}  // namespace brisance

@@ -1,0 +1,60 @@
+// Gathering: what arrives at points of the medium from all levels of a lighting grid hierarchy.
+//
+//   L(x) = sum_l sum_i I_{l,i} T(p_{l,i}, x) B_l(d) / d^2,   d = |x - p_{l,i}|                     [1] (lighting_grid.h)
+// with r_l = alpha h_l and blends B_l that sum to one over levels at every distance: level 0 fades out over [r_0, 2 r_0],
+// level l in over [r_l / 2, r_l] and out over [r_l, 2 r_l], the top level never out.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "gathering/near_field.h"
+#include "gathering/receivers.h"
+#include "gathering/settings.h"
+#include "lights/lighting_grid.h"
+#include "medium/extinction_pyramid.h"
+
+namespace brisance {
+
+// What one level cost.
+struct LevelCost {
+    int level = 0;
+    std::size_t lights = 0;
+    int resolution = 0;            // of its shadow maps; 0: no maps
+    int distances = 0;
+    std::uint64_t map_bytes = 0;   // of all its maps; fewer are held at once
+    std::uint64_t held_bytes = 0;  // at once
+    double map_seconds = 0.0;
+    double gather_seconds = 0.0;
+    std::uint64_t evaluations = 0;  // light and receiver pairs
+};
+
+// Lights of all levels in one medium.
+struct LightField {
+    const ExtinctionPyramid* pyramid;        // of the medium whose nodes carry the lights
+    const std::vector<Rgb>* intensity;       // level 0, per node [W/sr]
+    const std::vector<float>* directional;   // level 0, 24 per node, or null
+    const LightingGrid* grid;                // levels above
+    float alpha;
+    LightingSettings settings;
+};
+
+// Which nodes ask, and for what.
+struct LatticeRequest {
+    const std::vector<std::uint8_t>* needed;     // per node
+    const std::vector<vec3>* toward_camera;      // per node, unit, or null
+    bool moments = false;
+    float mean_cosine = 0.0f;
+};
+
+// At the nodes of the lights' own lattice: the near field exactly, the levels above with precomputed shadows. Planar over
+// nodes; nodes that did not ask hold part of the sum and must not be used.
+Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
+                         Progress& progress);
+
+// At any points (local [m]) given as receivers; level 0 by marched shadows and the ball kernel. Planar over receivers.
+Gathered gather_at_points(const LightField& field, const Receivers& receivers, float mean_cosine,
+                          std::vector<LevelCost>& costs, Progress& progress);
+
+}  // namespace brisance

@@ -1,0 +1,189 @@
+#include "gathering/near_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "core/parallel.h"
+#include "gathering/near_kernels.h"
+#include "gathering/sh.h"
+#include "medium/phase.h"
+
+namespace brisance {
+
+namespace {
+
+constexpr int kMaxMargin = 24;  // nodes; beyond, a lattice of needles would want an endless stencil
+constexpr int kSelfEntries = 129;
+
+struct NodeOrder {
+    bool operator()(const ivec3& a, const ivec3& b) const {
+        return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+    }
+};
+
+void add_trilinear(std::map<ivec3, double, NodeOrder>& taps, const dvec3& p, double weight) {
+    const dvec3 base = glm::floor(p);
+    const dvec3 f = p - base;
+    for (int k = 0; k < 8; ++k) {
+        const ivec3 d(k >> 2, k >> 1 & 1, k & 1);
+        const double w = (d.x ? f.x : 1 - f.x) * (d.y ? f.y : 1 - f.y) * (d.z ? f.z : 1 - f.z);
+        if (w > 1e-12)
+            taps[ivec3(base) + d] += w * weight;
+    }
+}
+
+// The line integral from node 0 to node o, as coefficients of the nodes' values.
+std::vector<NearField::Tap> line_taps(const ivec3& o, double metres) {
+    std::vector<double> cuts{0.0, 1.0};
+    for (int a = 0; a < 3; ++a)
+        for (int k = 1; k < std::abs(o[a]); ++k)
+            cuts.push_back(double(k) / std::abs(o[a]));
+    std::sort(cuts.begin(), cuts.end());
+    std::map<ivec3, double, NodeOrder> taps;
+    const double gauss = 0.5 / std::sqrt(3.0);
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+        const double length = cuts[i + 1] - cuts[i];
+        if (length < 1e-12)
+            continue;
+        const double middle = 0.5 * (cuts[i] + cuts[i + 1]);
+        for (double t : {middle - gauss * length, middle + gauss * length})
+            add_trilinear(taps, dvec3(o) * t, 0.5 * length * metres);
+    }
+    std::vector<NearField::Tap> list;
+    for (const auto& [node, weight] : taps)
+        list.push_back({node, static_cast<float>(weight)});
+    return list;
+}
+
+// Gauss-free integral of exp(-s r) exp(-r^2 / w^2) over r >= 0, by Simpson's rule on the scale that decays first.
+double windowed_integral(double s, double w) {
+    const double reach = std::min(6.0 * w, s > 0.0 ? 40.0 / s : 1e300);
+    constexpr int n = 400;
+    const double step = reach / n;
+    double sum = 0.0;
+    for (int i = 0; i <= n; ++i) {
+        const double r = i * step;
+        const double weight = i == 0 || i == n ? 1.0 : (i % 2 ? 4.0 : 2.0);
+        sum += weight * std::exp(-s * r - r * r / (w * w));
+    }
+    return sum * step / 3.0;
+}
+
+// kappa of a voxel far from cubic: the mean over the ball of the voxel's volume, seen from its centre (methods: the
+// exact lattice correction would need a window over the longest edge).
+double ball_self_kernel(double s, double volume) {
+    const double a = std::cbrt(3.0 * volume / (4.0 * kPi));
+    const double tau = s * a;
+    return 4.0 * kPi / volume * a * (tau > 1e-8 ? -std::expm1(-tau) / tau : 1.0);
+}
+
+}  // namespace
+
+NearField::NearField(const mat3& local_from_index, float radius, bool shadows)
+    : local_from_index_(local_from_index),
+      spacing_(std::cbrt(std::abs(glm::determinant(local_from_index)))),
+      shadows_(shadows) {
+    const mat3 inverse = glm::transpose(glm::inverse(local_from_index));
+    ivec3 reach;
+    for (int a = 0; a < 3; ++a)
+        reach[a] = std::min(kMaxMargin, static_cast<int>(2.0f * radius * glm::length(inverse[a])));
+    for (int x = -reach.x; x <= reach.x; ++x)
+        for (int y = -reach.y; y <= reach.y; ++y)
+            for (int z = -reach.z; z <= reach.z; ++z) {
+                const ivec3 o(x, y, z);
+                const vec3 way = local_from_index * vec3(o);
+                const float d = glm::length(way);
+                if (o == ivec3(0) || d >= 2.0f * radius)
+                    continue;
+                const float blend = std::min(1.0f, 2.0f - d / radius);
+                stencil_.push_back({o, blend / (d * d), -way / d, shadows ? line_taps(o, d) : std::vector<Tap>{}});
+                margin_ = std::max({margin_, std::abs(x), std::abs(y), std::abs(z)});
+            }
+    tabulate_self_kernel();
+}
+
+void NearField::tabulate_self_kernel() {
+    const double h = spacing_;
+    double longest = 0.0;
+    for (int a = 0; a < 3; ++a)
+        longest = std::max(longest, double(glm::length(local_from_index_[a])));
+    const double window = 2.5 * longest;
+    const bool nearly_cubic = longest < 3.0 * h;
+    std::vector<double> distances;
+    if (nearly_cubic) {
+        const mat3 inverse = glm::transpose(glm::inverse(local_from_index_));
+        ivec3 reach;
+        for (int a = 0; a < 3; ++a)
+            reach[a] = static_cast<int>(5.0 * window * glm::length(inverse[a]));
+        for (int x = -reach.x; x <= reach.x; ++x)
+            for (int y = -reach.y; y <= reach.y; ++y)
+                for (int z = -reach.z; z <= reach.z; ++z) {
+                    const double d = glm::length(local_from_index_ * vec3(x, y, z));
+                    if (d > 0.0 && d < 5.0 * window)
+                        distances.push_back(d);
+                }
+    }
+    self_.resize(kSelfEntries);
+    parallel_for(kSelfEntries, [&](std::size_t i) {
+        const double u = std::min(double(i) / (kSelfEntries - 1), 0.9999);
+        const double s = u / (1.0 - u) / h;
+        double kappa = ball_self_kernel(s, h * h * h);
+        if (nearly_cubic) {
+            kappa = 4.0 * kPi * windowed_integral(s, window) / (h * h * h);
+            for (double d : distances)
+                kappa -= std::exp(-s * d - d * d / (window * window)) / (d * d);
+        }
+        self_[i] = static_cast<float>(kappa * h * h * (1.0 + s * h));
+    });
+}
+
+float NearField::self_kernel(float s) const {
+    const float x = shadows_ ? s * spacing_ : 0.0f;
+    const float u = x / (1.0f + x) * (kSelfEntries - 1);
+    const int i = std::min(static_cast<int>(u), kSelfEntries - 2);
+    const float value = self_[i] + (u - i) * (self_[i + 1] - self_[i]);
+    return value / (spacing_ * spacing_ * (1.0f + x));
+}
+
+void NearField::gather(const Input& in, Gathered& out) const {
+    const BrickLattice& lattice = *in.lattice;
+    const int wide = BrickLattice::kSize + 2 * margin_;
+    const std::size_t plane = std::size_t(wide) * wide * wide;
+    const std::size_t nodes = lattice.node_count();
+    const auto flat = [](const std::vector<Rgb>& v) {
+        return std::span<const float>(reinterpret_cast<const float*>(v.data()), v.size() * 3);
+    };
+    const FlatStencil stencil = flatten(*this, wide);
+    parallel_for(lattice.brick_count(), [&](std::size_t b) {
+        thread_local std::vector<float> extinction, intensity, directional;
+        const ivec3 low = lattice.first_node(b) - margin_;
+        intensity.resize(plane * 3);
+        copy_box(lattice, flat(*in.intensity), 3, low, ivec3(wide), intensity);
+        if (std::all_of(intensity.begin(), intensity.end(), [](float v) { return v == 0.0f; }))
+            return;
+        extinction.resize(plane);
+        copy_box(lattice, *in.extinction, 1, low, ivec3(wide), extinction);
+        if (in.directional) {
+            directional.resize(plane * 24);
+            copy_box(lattice, *in.directional, 24, low, ivec3(wide), directional);
+        }
+        NearBrick brick{};
+        brick.wide = wide;
+        brick.margin = margin_;
+        brick.plane = plane;
+        brick.extinction = extinction.data();
+        brick.intensity = intensity.data();
+        brick.directional = in.directional ? directional.data() : nullptr;
+        brick.toward_camera = in.toward_camera ? &(*in.toward_camera)[b * BrickLattice::kNodes] : nullptr;
+        brick.mean_cosine = in.mean_cosine;
+        brick.out_plane = nodes;
+        brick.fluence = out.fluence.data() + b * BrickLattice::kNodes;
+        brick.scattered = out.scattered.empty() ? nullptr : out.scattered.data() + b * BrickLattice::kNodes;
+        brick.moments = out.moments.empty() ? nullptr : out.moments.data() + b * BrickLattice::kNodes;
+        gather_near(*this, stencil, brick);
+    });
+}
+
+}  // namespace brisance

@@ -1,0 +1,69 @@
+// Level 0 of the hierarchy on the lattice itself: every node lit by the nodes within 2 alpha h_0, with exact shadows.
+//
+// Receivers and lights are nodes of one lattice, so their separation takes a few hundred values and everything but the
+// extinction is known in advance. For each separation o:
+//  - The optical depth between node x and node x + o is a fixed linear combination of the extinction at nearby nodes: the
+//    line integral of the trilinear interpolant, exact (it is piecewise cubic along the line, and a 2-point Gauss rule per
+//    piece integrates that without error).
+//  - The kernel is the singular 1/d^2 itself. What it leaves out, the node's own light, is the self term
+//      kappa(s) = (1/V) integral exp(-s r) / r^2 dV - sum over o != 0 of exp(-s |o|) / |o|^2,
+//    the correction that makes the punctured lattice sum exact for smooth light in a homogeneous medium (and makes such
+//    a medium absorb exactly what it emits, from sigma h = 0 to infinity). Nothing is clamped.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gathering/receivers.h"
+#include "medium/brick_lattice.h"
+
+namespace brisance {
+
+class NearField {
+public:
+    // `local_from_index` spans the lattice [m per node]; lights fade out over [radius, 2 radius] [m].
+    NearField(const mat3& local_from_index, float radius, bool shadows);
+
+    struct Input {
+        const BrickLattice* lattice;
+        const std::vector<float>* extinction;   // per node [1/m]
+        const std::vector<Rgb>* intensity;      // per node [W/sr]
+        const std::vector<float>* directional;  // 24 coefficients per node (far_kernels.h), or null
+        const std::vector<vec3>* toward_camera; // per node, or null: no `scattered`
+        float mean_cosine = 0.0f;
+    };
+
+    // Adds to `out`, whose arrays are planar over the lattice's nodes.
+    void gather(const Input& input, Gathered& out) const;
+
+    // kappa at extinction s [1/m]; in 1/m^2.
+    float self_kernel(float s) const;
+    std::size_t separations() const { return stencil_.size(); }
+
+    struct Tap {
+        ivec3 node;
+        float length;  // coefficient of the extinction there [m]
+    };
+    struct Separation {
+        ivec3 node;
+        float kernel;    // blend / distance^2 [1/m^2]
+        vec3 direction;  // from the light to the receiver, unit
+        std::vector<Tap> taps;
+    };
+    const std::vector<Separation>& stencil() const { return stencil_; }
+    int margin() const { return margin_; }
+    bool shadows() const { return shadows_; }
+
+private:
+    void tabulate_self_kernel();
+
+    mat3 local_from_index_;
+    float spacing_;
+    bool shadows_;
+    int margin_ = 1;
+    std::vector<Separation> stencil_;
+    std::vector<float> self_;  // kappa h^2 (1 + s h) over u = s h / (1 + s h)
+};
+
+}  // namespace brisance

@@ -1,0 +1,154 @@
+#include "gathering/near_kernels.h"
+
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "gathering/near_kernels.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#include "gathering/sh.h"
+#include "medium/phase.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace brisance {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<float, 8>;  // a brick's row is eight nodes
+using V = hn::Vec<D>;
+
+struct Sums {
+    V fluence[3], scattered[3];
+};
+
+HWY_INLINE V phase_lanes(D d, float g, V cosine) {
+    const float h = std::abs(g);
+    const V c = g < 0.0f ? hn::Neg(cosine) : cosine;
+    const V q = hn::MulAdd(hn::Set(d, 2.0f * h), hn::Sub(hn::Set(d, 1.0f), c), hn::Set(d, (1.0f - h) * (1.0f - h)));
+    return hn::Div(hn::Set(d, (1.0f - g * g) / (4.0f * kPi)), hn::Mul(q, hn::Sqrt(q)));
+}
+
+HWY_INLINE bool row_is_dark(D d, const NearBrick& b, const float* light) {
+    const V sum = hn::Add(hn::LoadU(d, light), hn::Add(hn::LoadU(d, light + b.plane), hn::LoadU(d, light + 2 * b.plane)));
+    return hn::AllTrue(d, hn::Eq(sum, hn::Zero(d)));
+}
+
+// One separation's contribution to one row of receivers starting at box index `at`.
+HWY_INLINE void add_separation(D d, const FlatStencil& stencil, const FlatSeparation& s, const NearBrick& b, int at,
+                               const V camera[3], Sums& sums, float* moments) {
+    const float* light = b.intensity + at + s.offset;
+    if (row_is_dark(d, b, light))
+        return;
+    V w = hn::Set(d, s.kernel);
+    if (s.first_tap != s.last_tap) {
+        V depth = hn::Zero(d);
+        for (int t = s.first_tap; t < s.last_tap; ++t)
+            depth = hn::MulAdd(hn::Set(d, stencil.taps[t].length),
+                               hn::LoadU(d, b.extinction + at + stencil.taps[t].offset), depth);
+        w = hn::Mul(w, hn::Exp(d, hn::Neg(hn::Min(depth, hn::Set(d, 80.0f)))));
+    }
+    V phase = hn::Zero(d);
+    if (b.scattered)
+        phase = phase_lanes(d, b.mean_cosine,
+                            hn::MulAdd(hn::Set(d, s.direction.x), camera[0],
+                                       hn::MulAdd(hn::Set(d, s.direction.y), camera[1],
+                                                  hn::Mul(hn::Set(d, s.direction.z), camera[2]))));
+    for (int c = 0; c < 3; ++c) {
+        V intensity = hn::LoadU(d, light + c * b.plane);
+        if (b.directional)
+            for (int m = 0; m < kShMoments; ++m)
+                intensity = hn::MulAdd(hn::Set(d, s.basis[m]),
+                                       hn::LoadU(d, b.directional + (3 * m + c) * b.plane + at + s.offset), intensity);
+        const V arriving = hn::Mul(intensity, w);
+        sums.fluence[c] = hn::Add(sums.fluence[c], arriving);
+        if (b.scattered)
+            sums.scattered[c] = hn::MulAdd(arriving, phase, sums.scattered[c]);
+        if (b.moments)
+            for (int m = 0; m < kShMoments; ++m) {
+                float* to = moments + (3 * m + c) * b.out_plane;
+                hn::StoreU(hn::MulAdd(arriving, hn::Set(d, s.basis[m]), hn::LoadU(d, to)), d, to);
+            }
+    }
+}
+
+// The node's own light: isotropic, attenuated by the extinction around it (averaged with the mass matrix's weights).
+void add_self(const NearField& field, const NearBrick& b, int at, int node) {
+    float sigma = 0.0f;
+    constexpr float weight[3] = {1.0f / 6.0f, 2.0f / 3.0f, 1.0f / 6.0f};
+    for (int k = 0; k < 27; ++k)
+        sigma += weight[k / 9] * weight[k / 3 % 3] * weight[k % 3] *
+                 b.extinction[at + ((k / 9 - 1) * b.wide + k / 3 % 3 - 1) * b.wide + k % 3 - 1];
+    const float kappa = field.self_kernel(sigma);
+    for (int c = 0; c < 3; ++c) {
+        const float arriving = b.intensity[c * b.plane + at] * kappa;
+        b.fluence[c * b.out_plane + node] += arriving;
+        if (b.scattered)
+            b.scattered[c * b.out_plane + node] += arriving / (4.0f * kPi);
+    }
+}
+
+void near_brick(const NearField& field, const FlatStencil& stencil, const NearBrick& b) {
+    const D d;
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    for (int x = 0; x < 8; ++x)
+        for (int y = 0; y < 8; ++y) {
+            const int row = ((x + b.margin) * b.wide + y + b.margin) * b.wide + b.margin;
+            for (int z = 0; z < 8; z += lanes) {
+                const int node = x * 64 + y * 8 + z;
+                HWY_ALIGN float direction[3][8] = {};
+                for (int i = 0; b.toward_camera && i < lanes; ++i)
+                    for (int a = 0; a < 3; ++a)
+                        direction[a][i] = b.toward_camera[node + i][a];
+                const V camera[3] = {hn::Load(d, direction[0]), hn::Load(d, direction[1]), hn::Load(d, direction[2])};
+                Sums sums;
+                for (int c = 0; c < 3; ++c)
+                    sums.fluence[c] = sums.scattered[c] = hn::Zero(d);
+                for (const FlatSeparation& s : stencil.separations)
+                    add_separation(d, stencil, s, b, row + z, camera, sums, b.moments ? b.moments + node : nullptr);
+                for (int c = 0; c < 3; ++c) {
+                    float* to = b.fluence + c * b.out_plane + node;
+                    hn::StoreU(hn::Add(hn::LoadU(d, to), sums.fluence[c]), d, to);
+                    if (!b.scattered)
+                        continue;
+                    to = b.scattered + c * b.out_plane + node;
+                    hn::StoreU(hn::Add(hn::LoadU(d, to), sums.scattered[c]), d, to);
+                }
+            }
+            for (int z = 0; z < 8; ++z)
+                add_self(field, b, row + z, x * 64 + y * 8 + z);
+        }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace brisance
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace brisance {
+
+HWY_EXPORT(near_brick);
+
+FlatStencil flatten(const NearField& field, int wide) {
+    const auto flat = [&](const ivec3& o) { return (o.x * wide + o.y) * wide + o.z; };
+    FlatStencil stencil;
+    for (const NearField::Separation& s : field.stencil()) {
+        FlatSeparation f{flat(s.node), s.kernel, s.direction, {}, static_cast<int>(stencil.taps.size()), 0};
+        const auto basis = sh_basis(s.direction);
+        std::copy(basis.begin(), basis.end(), f.basis);
+        for (const NearField::Tap& t : s.taps)
+            stencil.taps.push_back({flat(t.node), t.length});
+        f.last_tap = static_cast<int>(stencil.taps.size());
+        stencil.separations.push_back(f);
+    }
+    return stencil;
+}
+
+void gather_near(const NearField& field, const FlatStencil& stencil, const NearBrick& brick) {
+    HWY_DYNAMIC_DISPATCH(near_brick)(field, stencil, brick);
+}
+
+}  // namespace brisance
+#endif

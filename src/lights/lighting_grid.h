@@ -1,0 +1,64 @@
+// Lighting grid hierarchy: lights splatted to the vertices of ever coarser lattices.
+// [1] C. Yuksel and C. Yuksel, Lighting Grid Hierarchy for Self-illuminating Explosions, SIGGRAPH 2017.
+//
+// Level 0 is the medium's own nodes (voxel_lights.h). Level l >= 1 has vertices at every 2^l-th node, fixed in the world
+// for as long as the volume's transform is: a frame's bounds play no part. Every level is made from level 0:
+//   I_{l,i} = sum_j w_{l,i}(x_j) I_j                    [1] eq. 1, w the trilinear hat of vertex i
+//   p_{l,i} = sum_j v_j x_j / sum_j v_j,  v_j = w Y_j   [1] eq. 2, Y luminance (or another positive weight)
+// so each level carries the same total intensity and first moment. Trilinear splats nest: a level is made exactly from
+// the moments about the vertices of the level below, which is what the construction does.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "medium/medium.h"
+
+namespace brisance {
+
+struct GridLevel {
+    int level = 0;
+    float spacing = 0.0f;          // h_l [m]
+    std::vector<ivec3> vertex;     // in vertices of this level, sorted by (x, y, z)
+    std::vector<vec3> position;    // illumination centre, local [m]
+    std::vector<mat3> extent;      // square root of the covariance: extent * (unit-variance offset) [m]
+    std::vector<Rgb> intensity;    // [W/sr]
+
+    // Degrees 1 and 2 of a directional intensity, 24 per light ([3 * m + colour], sh.h); empty: isotropic.
+    std::vector<float> directional;
+
+    BrickLattice lattice;                // of this level's vertices
+    std::vector<std::uint32_t> node;     // of each light, in fields on `lattice`
+
+    // Vertices with x, y fixed lie together: row (x, y) holds [row_begin[r], row_begin[r + 1]).
+    ivec3 min_vertex{0};
+    ivec3 vertex_extent{0};
+    std::vector<std::uint32_t> row_begin;
+
+    std::size_t size() const { return vertex.size(); }
+    void index_rows();  // from `vertex`
+    std::uint64_t bytes() const;
+    // Appends the lights whose vertex lies in [low, high], in order.
+    void find_in_box(const ivec3& low, const ivec3& high, std::vector<std::uint32_t>& found) const;
+};
+
+struct LightingGrid {
+    std::vector<GridLevel> levels;  // levels[k].level = first_level + k
+    std::uint64_t bytes() const;
+};
+
+// Levels 1 .. `levels` of the lights in `intensity` (per node of `lattice`). `weight` (per node, >= 0) takes the place of
+// luminance in the centres where given: positions then do not depend on the intensities, as the scattering operator needs.
+LightingGrid build_lighting_grid(const Medium& medium, const std::vector<Rgb>& intensity,
+                                 const std::vector<float>* weight, int levels);
+
+// Replaces the intensities of all levels by those of other level-0 lights; positions and extents stay. Exact when every
+// node lit now was among the lights the grid was built from.
+// `directional` (24 per node, or null) goes the same way.
+void set_intensity(LightingGrid& grid, const BrickLattice& lattice, const std::vector<Rgb>& intensity,
+                   const std::vector<float>* directional);
+
+// As many levels as leave a top level of at most about five vertices along the longest side of the medium.
+int automatic_levels(const Medium& medium);
+
+}  // namespace brisance

@@ -1,0 +1,25 @@
+// Fire to point lights: one light per node of the medium's lattice, carrying the energy of the field the camera sees.
+//
+// With hat_i the trilinear hat function of node i,
+//   I_i = integral of hat_i(x) j(x) dV,   j = extinction * source + emission,
+// each factor interpolated on its own. Hats sum to one and reproduce linear functions, so the sum of all I_i is the exact
+// integral of j and their first moment is exact too. The integrand is of degree three per axis in each cell: a 2-point
+// Gauss rule per axis integrates it without error.
+#pragma once
+
+#include <vector>
+
+#include "medium/medium.h"
+
+namespace brisance {
+
+// Radiant intensity [W/sr] of every node of the medium's lattice; empty when nothing emits.
+std::vector<Rgb> voxel_lights(const Medium& medium);
+
+// The same projection of extinction * factor, for a factor given at the nodes: scattered light, collisions.
+std::vector<Rgb> project_extinction_times(const Medium& medium, const std::vector<Rgb>& factor);
+
+// Sum over all nodes in node order, accumulated in double: independent of the number of threads.
+dvec3 total(const std::vector<Rgb>& values);
+
+}  // namespace brisance

@@ -1,0 +1,77 @@
+#include "render/camera.h"
+
+#include <cmath>
+
+#include "core/error.h"
+
+namespace brisance {
+
+namespace {
+
+constexpr double kDegree = 3.14159265358979323846 / 180.0;
+
+dmat4 look_at(const CameraSettings& s) {
+    const dvec3 view = s.target - s.eye;
+    const dvec3 side = glm::cross(view, s.up);
+    if (!(glm::length(view) > 0.0))
+        throw Error(ExitCode::Usage, "camera: eye and target coincide; move one of them");
+    if (!(glm::length(side) > 1e-9 * glm::length(view) * glm::length(s.up)))
+        throw Error(ExitCode::Usage, "camera: up is parallel to the view or zero; choose another up");
+    const dvec3 right = glm::normalize(side);
+    const dvec3 back = -glm::normalize(view);
+    dmat4 m(1.0);
+    m[0] = glm::dvec4(right, 0.0);
+    m[1] = glm::dvec4(glm::cross(back, right), 0.0);
+    m[2] = glm::dvec4(back, 0.0);
+    m[3] = glm::dvec4(s.eye, 1.0);
+    return m;
+}
+
+}  // namespace
+
+Camera::Camera(const CameraSettings& settings, const Medium& medium) : settings_(settings) {
+    world_from_camera_ = settings.world_from_camera ? *settings.world_from_camera : look_at(settings);
+    if (!(std::abs(glm::determinant(dmat3(world_from_camera_))) > 1e-12))
+        throw Error(ExitCode::Usage, "camera: world_from_camera is singular");
+    right_ = glm::normalize(dvec3(world_from_camera_[0]));
+    up_ = glm::normalize(dvec3(world_from_camera_[1]));
+    forward_ = -glm::normalize(dvec3(world_from_camera_[2]));
+    const dvec3 reference(medium.world_from_index * glm::dvec4(dvec3(medium.reference_node), 1.0));
+    eye_ = dvec3(world_from_camera_[3]) - reference;
+    tan_half_ = std::tan(0.5 * settings.vertical_fov_degrees * kDegree);
+}
+
+Ray Camera::ray(double x, double y) const {
+    const double u = (2.0 * x - settings_.width) / settings_.height * tan_half_;
+    const double v = (settings_.height - 2.0 * y) / settings_.height * tan_half_;
+    return {eye_, glm::normalize(forward_ + u * right_ + v * up_)};
+}
+
+dmat4 Camera::camera_from_world() const { return glm::inverse(world_from_camera_); }
+
+CameraSettings framed_camera(const Medium& medium, const CameraSettings& like) {
+    CameraSettings s = like;
+    dvec3 low(1e300), high(-1e300);
+    for (std::size_t b = 0; b < medium.lattice.brick_count(); ++b) {
+        const std::size_t base = b * BrickLattice::kNodes;
+        for (int n = 0; n < BrickLattice::kNodes; ++n) {
+            if (medium.extinction[base + n] <= 0.0f && (medium.emission.empty() || medium.emission[base + n] == Rgb(0.0f)))
+                continue;
+            const dvec3 p = medium.world_of_local(
+                medium.local_of_node(medium.lattice.first_node(b) + BrickLattice::node_in_brick(n)));
+            low = glm::min(low, p);
+            high = glm::max(high, p);
+        }
+    }
+    if (!(low.x <= high.x))
+        low = dvec3(-1.0), high = dvec3(1.0);
+    const double radius = std::max(0.5 * glm::length(high - low), 1e-9);
+    const double half = 0.5 * s.vertical_fov_degrees * kDegree * std::min(1.0, double(s.width) / s.height);
+    s.world_from_camera.reset();
+    s.target = 0.5 * (low + high);
+    s.up = dvec3(0.0, 0.0, 1.0);
+    s.eye = s.target + glm::normalize(dvec3(0.25, -1.0, 0.22)) * (0.92 * radius / std::sin(half));
+    return s;
+}
+
+}  // namespace brisance

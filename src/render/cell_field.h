@@ -1,0 +1,44 @@
+// The medium as the camera samples it: extinction and the source functions of each ledger cell, together.
+//
+// Cells lie in bricks of 8^3 with 9^3 node records, so that a trilinear sample touches one brick; bricks without
+// extinction or emission are absent, and a ray steps over them without a sample.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "medium/medium.h"
+
+namespace brisance {
+
+// Per node: extinction [1/m]; for each ledger cell the source function, so that cell c adds extinction * source_c (or, for
+// direct emission, source_V itself as an emission coefficient) per metre.
+struct CellRecord {
+    enum Slot { Extinction = 0, V = 1, MV = 4, MM = 7, Albedo = 10, Size = 12 };
+    float value[Size];
+};
+
+class CellField {
+public:
+    // Source functions per node of the medium's lattice; an empty one is left out.
+    CellField(const Medium& medium, const std::vector<Rgb>& single, const std::vector<Rgb>& multiple);
+
+    const Medium& medium() const { return *medium_; }
+    const BrickLattice& bricks() const { return bricks_; }  // of cells
+    bool direct_emission() const { return direct_; }
+    float minimum(std::size_t brick) const { return minimum_[brick]; }  // of extinction over the brick's cells
+    float majorant(std::size_t brick) const { return majorant_[brick]; }
+    std::uint64_t bytes() const { return records_.size() * sizeof(CellRecord) + bricks_.bytes(); }
+
+    // Trilinear sample at p, in nodes from the brick's first node, each coordinate in [0, 8].
+    CellRecord sample(std::size_t brick, const vec3& p) const;
+
+private:
+    const Medium* medium_;
+    bool direct_;
+    BrickLattice bricks_;
+    std::vector<CellRecord> records_;
+    std::vector<float> minimum_, majorant_;
+};
+
+}  // namespace brisance

@@ -1,0 +1,237 @@
+#include "render/integrate.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "core/parallel.h"
+
+namespace brisance {
+
+namespace {
+
+// Where on a segment the parts are sampled: Gauss points for two, so that a cubic extinction's integral is exact; the
+// middles otherwise.
+float sample_place(int part, int parts) {
+    if (parts == 2)
+        return part == 0 ? 0.21132487f : 0.78867513f;
+    return (part + 0.5f) / parts;
+}
+
+Rgb slot(const CellRecord& r, int at) { return {r.value[at], r.value[at + 1], r.value[at + 2]}; }
+
+vec3 sample_position(const CellSegment& s, double t) {
+    return glm::clamp(vec3(s.origin + s.direction * t), vec3(0.0f), vec3(float(BrickLattice::kSize)));
+}
+
+// Adds one part of constant coefficients, `length` metres long at `distance`.
+void add_part(RaySum& sum, const CellRecord& r, bool direct, float length, float distance) {
+    const float sigma = r.value[CellRecord::Extinction];
+    const float tau = sigma * length;
+    const float path = sum.transmittance * length * phi1(tau);  // integral of T along the part [m]
+    const float opacity = path * sigma;
+    sum.v += slot(r, CellRecord::V) * (direct ? path : opacity);
+    sum.mv += slot(r, CellRecord::MV) * opacity;
+    sum.mm += slot(r, CellRecord::MM) * opacity;
+    sum.albedo_sum += opacity * r.value[CellRecord::Albedo];
+    sum.distance_weight += opacity;
+    sum.distance_sum += opacity * distance;
+    sum.transmittance *= std::exp(-tau);
+}
+
+// Visits every part of every cell: visit(record, length, distance, direction) until it returns false.
+template <class Visit>
+void walk_parts(const CellField& field, const Ray& ray, int parts, const Visit& visit) {
+    walk_cells(field, ray, [&](const CellSegment& s) {
+        const double length = s.end - s.begin;
+        for (int k = 0; k < parts; ++k) {
+            const double t = s.begin + length * sample_place(k, parts);
+            const CellRecord r = field.sample(s.brick, sample_position(s, t));
+            if (!visit(r, static_cast<float>(length / parts), t))
+                return false;
+        }
+        return true;
+    });
+}
+
+struct PixelSample {
+    double x, y;  // offset from the pixel's centre
+    float weight;
+};
+
+std::vector<PixelSample> pixel_samples(const CameraSettings& camera, int per_axis) {
+    const int n = std::max(1, static_cast<int>(std::ceil(per_axis * camera.filter_width_pixels)));
+    std::vector<PixelSample> samples;
+    float total = 0.0f;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            const double x = ((i + 0.5) / n - 0.5) * camera.filter_width_pixels;
+            const double y = ((j + 0.5) / n - 0.5) * camera.filter_width_pixels;
+            const double sigma = 0.25 * camera.filter_width_pixels;
+            const double w =
+                camera.filter == PixelFilter::Box ? 1.0 : std::exp(-(x * x + y * y) / (2.0 * sigma * sigma));
+            samples.push_back({x, y, static_cast<float>(w)});
+            total += samples.back().weight;
+        }
+    for (PixelSample& s : samples)
+        s.weight /= total;
+    return samples;
+}
+
+// Writes finished pixels into the layers.
+class PictureWriter {
+public:
+    PictureWriter(const Camera& camera, const PictureSettings& settings) : camera_(camera) {
+        image_.width = camera.settings().width;
+        image_.height = camera.settings().height;
+        const std::size_t pixels = std::size_t(image_.width) * image_.height;
+        const auto add = [&](const char* name, std::vector<std::string> channels, bool full) {
+            Layer layer{name, std::move(channels), full, {}};
+            layer.pixels.assign(pixels * layer.channels.size(), 0.0f);
+            image_.layers.push_back(std::move(layer));
+            return static_cast<int>(image_.layers.size()) - 1;
+        };
+        beauty_ = add("", {"R", "G", "B", "A"}, false);
+        if (settings.cells) {
+            v_ = add("V", {"R", "G", "B"}, false);
+            if (settings.has_single)
+                mv_ = add("MV", {"R", "G", "B"}, false);
+            if (settings.has_multiple)
+                mm_ = add("MM", {"R", "G", "B"}, false);
+        }
+        z_ = add("Z", {"Z"}, true);
+        albedo_ = add("albedo", {"R", "G", "B"}, false);
+    }
+
+    void pixel(int x, int y, const RaySum& s) {
+        const std::size_t i = std::size_t(y) * image_.width + x;
+        const Rgb beauty = s.v + s.mv + s.mm;
+        float* b = &image_.layers[beauty_].pixels[4 * i];
+        b[0] = beauty.x, b[1] = beauty.y, b[2] = beauty.z, b[3] = 1.0f - s.transmittance;
+        put(v_, i, s.v);
+        put(mv_, i, s.mv);
+        put(mm_, i, s.mm);
+        put(albedo_, i, Rgb(s.albedo_sum));
+        // Distances are along the ray; Z is along the view axis.
+        const double cosine = glm::dot(camera_.ray(x + 0.5, y + 0.5).direction, camera_.forward());
+        image_.layers[z_].pixels[i] =
+            s.distance_weight > 0.0f ? static_cast<float>(s.distance_sum / s.distance_weight * cosine) : 1e10f;
+    }
+
+    Image take() { return std::move(image_); }
+
+private:
+    void put(int layer, std::size_t pixel, const Rgb& c) {
+        if (layer < 0)
+            return;
+        float* p = &image_.layers[layer].pixels[3 * pixel];
+        p[0] = c.x, p[1] = c.y, p[2] = c.z;
+    }
+
+    const Camera& camera_;
+    Image image_;
+    int beauty_ = -1, v_ = -1, mv_ = -1, mm_ = -1, z_ = -1, albedo_ = -1;
+};
+
+void add_weighted(RaySum& sum, const RaySum& s, float w) {
+    sum.v += w * s.v;
+    sum.mv += w * s.mv;
+    sum.mm += w * s.mm;
+    sum.transmittance += w * s.transmittance;
+    sum.distance_weight += w * s.distance_weight;
+    sum.distance_sum += w * s.distance_sum;
+    sum.albedo_sum += w * s.albedo_sum;
+}
+
+RaySum empty_pixel() {
+    RaySum sum;
+    sum.transmittance = 0.0f;
+    return sum;
+}
+
+// One row of pixels with lighting asked for at the march's own points: collect, light, integrate.
+void marched_row(const CellField& field, const Camera& camera, int y, const std::vector<PixelSample>& samples, int parts,
+                 const LightPoints& light_points, PictureWriter& writer) {
+    std::vector<MarchPoint> points;
+    const auto for_rays = [&](const auto& body) {
+        for (int x = 0; x < camera.settings().width; ++x)
+            for (const PixelSample& s : samples)
+                body(x, s, camera.ray(x + 0.5 + s.x, y + 0.5 + s.y));
+    };
+    for_rays([&](int, const PixelSample&, const Ray& ray) {
+        float transmittance = 1.0f;
+        walk_parts(field, ray, parts, [&](const CellRecord& r, float length, double t) {
+            points.push_back({vec3(ray.origin + ray.direction * t), -vec3(ray.direction)});
+            transmittance *= std::exp(-r.value[CellRecord::Extinction] * length);
+            return transmittance > kOpaqueTransmittance;
+        });
+    });
+    std::vector<PointLighting> lighting(points.size());
+    light_points(points, lighting);
+    std::size_t next = 0;
+    std::vector<RaySum> row(camera.settings().width, empty_pixel());
+    for_rays([&](int x, const PixelSample& s, const Ray& ray) {
+        RaySum sum;
+        walk_parts(field, ray, parts, [&](CellRecord r, float length, double t) {
+            const PointLighting& l = lighting[next++];
+            for (int c = 0; c < 3; ++c) {
+                r.value[CellRecord::MV + c] = l.single[c];
+                r.value[CellRecord::MM + c] = l.multiple[c];
+            }
+            add_part(sum, r, field.direct_emission(), length, static_cast<float>(t));
+            return sum.transmittance > kOpaqueTransmittance;
+        });
+        add_weighted(row[x], sum, s.weight);
+    });
+    for (int x = 0; x < camera.settings().width; ++x)
+        writer.pixel(x, y, row[x]);
+}
+
+}  // namespace
+
+RaySum integrate(const CellField& field, const Ray& ray, int parts) {
+    RaySum sum;
+    walk_parts(field, ray, parts, [&](const CellRecord& r, float length, double t) {
+        add_part(sum, r, field.direct_emission(), length, static_cast<float>(t));
+        return sum.transmittance > kOpaqueTransmittance;
+    });
+    return sum;
+}
+
+int automatic_samples(const Camera& camera, const CellField& field) {
+    const Medium& medium = field.medium();
+    double nearest = 1e300;
+    for (std::size_t b = 0; b < field.bricks().brick_count(); ++b) {
+        const dvec3 centre(medium.local_of_node(field.bricks().first_node(b) + BrickLattice::kSize / 2));
+        nearest = std::min(nearest, std::max(0.0, glm::dot(centre - camera.eye_local(), camera.forward())));
+    }
+    const double footprint = camera.pixel_angle() * nearest / medium.spacing;  // voxels per pixel
+    return std::clamp(static_cast<int>(std::ceil(3.0 * std::min(footprint, 1e3))), 1, 8);
+}
+
+Image render_picture(const CellField& field, const Camera& camera, const PictureSettings& settings,
+                     const LightPoints& light_points, Progress& progress) {
+    PictureWriter writer(camera, settings);
+    const std::vector<PixelSample> samples = pixel_samples(camera.settings(), settings.samples_per_axis);
+    const int width = camera.settings().width, height = camera.settings().height;
+    if (light_points) {
+        for (int y = 0; y < height; ++y) {
+            marched_row(field, camera, y, samples, settings.parts, light_points, writer);
+            progress.fraction(double(y + 1) / height);
+        }
+        return writer.take();
+    }
+    std::atomic<int> done = 0;
+    parallel_for(height, [&](std::size_t y) {
+        for (int x = 0; x < width; ++x) {
+            RaySum sum = empty_pixel();
+            for (const PixelSample& s : samples)
+                add_weighted(sum, integrate(field, camera.ray(x + 0.5 + s.x, y + 0.5 + s.y), settings.parts), s.weight);
+            writer.pixel(x, static_cast<int>(y), sum);
+        }
+        progress.fraction(double(++done) / height);
+    });
+    return writer.take();
+}
+
+}  // namespace brisance

@@ -1,0 +1,42 @@
+// Walking a ray through the cells of a medium and integrating what it sees, segment by segment, exactly.
+#pragma once
+
+#include <cmath>
+
+#include "render/camera.h"
+#include "render/cell_field.h"
+
+namespace brisance {
+
+// phi1(tau) = (1 - exp(-tau)) / tau, right to rounding for every tau >= 0: by expm1, and its series near zero.
+inline float phi1(float tau) { return tau < 1e-3f ? 1.0f - tau * (0.5f - tau * (1.0f / 6.0f)) : -std::expm1(-tau) / tau; }
+
+// Part of a ray inside one cell of a brick.
+struct CellSegment {
+    std::size_t brick;
+    double begin, end;  // distances along the ray [m]
+    dvec3 origin;       // the ray's origin in nodes from the brick's first node
+    dvec3 direction;    // nodes per metre
+};
+
+// Calls visit(segment) for every cell with extinction or emission that the ray crosses in front of its origin, in order,
+// until visit returns false. Empty bricks cost one step.
+template <class Visit>
+void walk_cells(const CellField& field, const Ray& ray, const Visit& visit);
+
+// What one ray sees. Radiance per ledger cell [W/(m^2 sr)].
+struct RaySum {
+    Rgb v{0.0f}, mv{0.0f}, mm{0.0f};
+    float transmittance = 1.0f;
+    float distance_weight = 0.0f;  // opacity gathered, ...
+    float distance_sum = 0.0f;     // ... times the distance along the ray [m]
+    float albedo_sum = 0.0f;       // ... times albedo (luminance)
+};
+
+// Below this transmittance a ray ends: what lies behind changes a pixel by less than half a float's rounding step would
+// in a picture; alpha is then 1 to four digits.
+constexpr float kOpaqueTransmittance = 1e-5f;
+
+}  // namespace brisance
+
+#include "render/march_inl.h"

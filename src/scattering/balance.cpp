@@ -1,0 +1,169 @@
+#include "scattering/balance.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "core/rng.h"
+#include "lights/voxel_lights.h"
+#include "medium/phase.h"
+#include "shadows/shadow_kernels.h"
+
+namespace brisance {
+
+namespace {
+
+constexpr double kGoldenRatio = 0.61803398874989484820;
+
+vec3 sphere_direction(double u, double v) {
+    const double z = 1.0 - 2.0 * u;
+    const double s = std::sqrt(std::max(0.0, 1.0 - z * z));
+    const double angle = 2.0 * kPi * v;
+    return vec3(s * std::cos(angle), s * std::sin(angle), z);
+}
+
+// The medium's bounding box in nodes from the reference, one node wider.
+struct NodeBox {
+    vec3 low, high;
+};
+
+NodeBox bounding_box(const Medium& medium) {
+    const ivec3 low = medium.lattice.min_brick() * BrickLattice::kSize - medium.reference_node;
+    return {vec3(low - 1), vec3(low + medium.lattice.brick_extent() * BrickLattice::kSize)};
+}
+
+// Distance [m] from p along `direction` [nodes per metre] to the box's wall.
+float exit_distance(const NodeBox& box, const vec3& p, const vec3& direction) {
+    float t = 1e30f;
+    for (int a = 0; a < 3; ++a)
+        if (direction[a] != 0.0f)
+            t = std::min(t, ((direction[a] > 0.0f ? box.high[a] : box.low[a]) - p[a]) / direction[a]);
+    return std::max(t, 0.0f);
+}
+
+// Rays to the edge of the medium, packed for the marching kernel.
+class ExitRays {
+public:
+    ExitRays(const ExtinctionPyramid& pyramid, std::size_t count)
+        : pyramid_(pyramid), box_(bounding_box(pyramid.medium())), padded_((count + 15) / 16 * 16) {
+        for (auto* a : {&begin_, &end_})
+            for (auto& v : *a)
+                v.assign(padded_, 0.0f);
+        metres_.assign(padded_, 0.0f);
+    }
+
+    void set(std::size_t i, const vec3& from_nodes, const vec3& direction_local) {
+        const vec3 nodes = pyramid_.medium().index_from_local * direction_local;
+        metres_[i] = exit_distance(box_, from_nodes, nodes);
+        for (int a = 0; a < 3; ++a) {
+            begin_[a][i] = from_nodes[a];
+            end_[a][i] = from_nodes[a] + nodes[a] * metres_[i];
+        }
+    }
+
+    // Transmittances, in place of optical depths.
+    std::vector<float> march(float step_nodes) const {
+        std::vector<float> depth(padded_);
+        const PackedExtinction view = pyramid_.view(0);
+        parallel_blocks(padded_, 1024, [&](std::size_t first, std::size_t last) {
+            const float* begin[3] = {&begin_[0][first], &begin_[1][first], &begin_[2][first]};
+            const float* end[3] = {&end_[0][first], &end_[1][first], &end_[2][first]};
+            segment_optical_depths(view, begin, end, &metres_[first], step_nodes, last - first, &depth[first]);
+            for (std::size_t i = first; i < last; ++i)
+                depth[i] = std::exp(-depth[i]);
+        });
+        return depth;
+    }
+
+private:
+    const ExtinctionPyramid& pyramid_;
+    NodeBox box_;
+    std::size_t padded_;
+    std::vector<float> begin_[3], end_[3], metres_;
+};
+
+// One draw of the hat function's density on [-1, 1].
+float hat_sample(Rng& rng) { return rng.next() + rng.next() - 1.0f; }
+
+// Node index of each of `rays` systematic picks in proportion to luminance.
+std::vector<std::size_t> pick_nodes(const std::vector<Rgb>& intensity, std::size_t rays) {
+    double sum = 0.0;
+    for (const Rgb& i : intensity)
+        sum += std::max(0.0f, luminance(i));
+    std::vector<std::size_t> picks;
+    double passed = 0.0;
+    for (std::size_t i = 0; i < intensity.size(); ++i) {
+        passed += std::max(0.0f, luminance(intensity[i]));
+        while (picks.size() < rays && passed > (picks.size() + 0.5) / rays * sum)
+            picks.push_back(i);
+    }
+    return picks;
+}
+
+}  // namespace
+
+EscapeEstimate estimate_escape(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& intensity, std::size_t rays) {
+    EscapeEstimate estimate;
+    const Medium& medium = pyramid.medium();
+    const std::vector<std::size_t> picks = pick_nodes(intensity, rays);
+    if (picks.empty())
+        return estimate;
+    ExitRays exits(pyramid, picks.size());
+    parallel_for(picks.size(), [&](std::size_t r) {
+        Rng rng(Stream::EscapeRay, r);
+        const std::size_t i = picks[r];
+        const ivec3 node = medium.lattice.first_node(i / BrickLattice::kNodes) +
+                           BrickLattice::node_in_brick(static_cast<int>(i % BrickLattice::kNodes));
+        const vec3 jitter(hat_sample(rng), hat_sample(rng), hat_sample(rng));
+        // Golden-ratio rotation of consecutive rays: well spread for any run of them.
+        const double u = std::fmod(0.5 + r * 0.7548776662466927, 1.0), v = std::fmod(0.5 + r * 0.5698402909980532, 1.0);
+        exits.set(r, vec3(node - medium.reference_node) + jitter, sphere_direction(u, v));
+    }, 1024);
+    const std::vector<float> transmittance = exits.march(1.0f);
+    dvec3 escaped[2] = {dvec3(0.0), dvec3(0.0)}, emitted[2] = {dvec3(0.0), dvec3(0.0)};
+    for (std::size_t r = 0; r < picks.size(); ++r) {
+        const dvec3 colour = dvec3(intensity[picks[r]]) / double(luminance(intensity[picks[r]]));
+        escaped[r & 1] += colour * double(transmittance[r]);
+        emitted[r & 1] += colour;
+    }
+    for (int c = 0; c < 3; ++c)
+        if (emitted[0][c] + emitted[1][c] > 0.0)
+            estimate.fraction[c] = (escaped[0][c] + escaped[1][c]) / (emitted[0][c] + emitted[1][c]);
+    const auto half = [&](int k) { return luminance(Rgb(escaped[k])) / luminance(Rgb(emitted[k])); };
+    estimate.standard_error = picks.size() > 1 ? 0.5 * std::abs(half(0) - half(1)) : 1.0;
+    estimate.rays = picks.size();
+    return estimate;
+}
+
+dvec3 collided(const Medium& medium, const std::vector<Rgb>& fluence) {
+    return total(project_extinction_times(medium, fluence)) / (4.0 * double(kPi));
+}
+
+std::vector<float> escape_probabilities(const ExtinctionPyramid& pyramid, const std::vector<vec3>& points,
+                                        int directions) {
+    const Medium& medium = pyramid.medium();
+    std::vector<float> probability(points.size());
+    const std::size_t batch = std::max<std::size_t>(1, (std::size_t{1} << 20) / directions);
+    for (std::size_t first = 0; first < points.size(); first += batch) {
+        const std::size_t count = std::min(batch, points.size() - first);
+        ExitRays exits(pyramid, count * directions);
+        parallel_for(count, [&](std::size_t k) {
+            Rng rng(Stream::EscapeRay, first + k, 1);
+            const double turn_u = rng.next(), turn_v = rng.next();
+            for (int d = 0; d < directions; ++d)
+                exits.set(k * directions + d, medium.index_from_local * points[first + k],
+                          sphere_direction(std::fmod((d + turn_u) / directions, 1.0),
+                                           std::fmod(turn_v + d * kGoldenRatio, 1.0)));
+        }, 256);
+        const std::vector<float> transmittance = exits.march(1.0f);
+        for (std::size_t k = 0; k < count; ++k) {
+            float sum = 0.0f;
+            for (int d = 0; d < directions; ++d)
+                sum += transmittance[k * directions + d];
+            probability[first + k] = sum / directions;
+        }
+    }
+    return probability;
+}
+
+}  // namespace brisance

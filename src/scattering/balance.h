@@ -1,0 +1,28 @@
+// The energy balance of a bounce: what is emitted either collides or escapes.
+#pragma once
+
+#include <vector>
+
+#include "medium/extinction_pyramid.h"
+
+namespace brisance {
+
+struct EscapeEstimate {
+    dvec3 fraction{0.0};  // of the emitted power that leaves the medium without a collision, per colour
+    double standard_error = 0.0;  // of the luminance's
+    std::size_t rays = 0;
+};
+
+// Unbiased but for the march's step: `rays` rays start at lights in proportion to luminance, systematically over the
+// nodes' order, spread over the light's hat, and leave in stratified directions; each carries its marched transmittance
+// to the edge of the medium. Two halves give the standard error.
+EscapeEstimate estimate_escape(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& intensity, std::size_t rays);
+
+// Power absorbed and scattered, over 4 pi: the exact integral of extinction * fluence of the two interpolated fields.
+dvec3 collided(const Medium& medium, const std::vector<Rgb>& fluence);
+
+// Escape probability averaged over all directions, from each of the given nodes [m, local]; `directions` per node.
+std::vector<float> escape_probabilities(const ExtinctionPyramid& pyramid, const std::vector<vec3>& points,
+                                        int directions);
+
+}  // namespace brisance

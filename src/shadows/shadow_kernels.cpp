@@ -1,0 +1,131 @@
+#include "shadows/shadow_kernels.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "shadows/shadow_kernels.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#include "medium/extinction_sampler-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace brisance {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<float, 16>;
+using V = hn::Vec<D>;
+
+// Extinction times length of one step at origin + distance * direction + offset.
+HWY_INLINE V step_depth(D d, const PackedExtinction* mips, const ShadowStep& s, const V origin[3], const V direction[3],
+                        const V offset[3], float spread) {
+    const V shrink = hn::Set(d, 1.0f / float(1 << s.mip));
+    V p[3];
+    for (int a = 0; a < 3; ++a) {
+        p[a] = hn::MulAdd(hn::Set(d, s.distance), direction[a], origin[a]);
+        p[a] = hn::Mul(hn::MulAdd(hn::Set(d, spread), offset[a], p[a]), shrink);
+    }
+    return hn::Mul(sample_extinction(d, mips[s.mip], p[0], p[1], p[2]), hn::Set(d, s.length));
+}
+
+// Mean transmittance to the first stored distance over starts spread in the light's extent.
+HWY_INLINE V near_transmittance(D d, const PackedExtinction* mips, std::span<const ShadowStep> steps, const V origin[3],
+                                const V direction[3], const ShadowRays& rays, std::size_t ray) {
+    const float reach = steps.back().distance + 0.5f * steps.back().length;
+    V sum = hn::Zero(d);
+    for (int k = 0; k < kNearRays; ++k) {
+        const std::size_t at = (rays.first_start + k * rays.count + ray) % (rays.starts[0].size() - 16);
+        V offset[3];
+        for (int a = 0; a < 3; ++a) {
+            offset[a] = hn::Zero(d);
+            for (int b = 0; b < 3; ++b)
+                offset[a] = hn::MulAdd(hn::Set(d, rays.extent[b][a]), hn::LoadU(d, &rays.starts[b][at]), offset[a]);
+        }
+        V depth = hn::Zero(d);
+        for (const ShadowStep& s : steps)
+            depth = hn::Add(depth, step_depth(d, mips, s, origin, direction, offset, 1.0f - s.distance / reach));
+        sum = hn::Add(sum, hn::Exp(d, hn::Neg(depth)));
+    }
+    return hn::Mul(sum, hn::Set(d, 1.0f / kNearRays));
+}
+
+void march(const PackedExtinction* mips, std::span<const ShadowStep> near_steps, std::span<const ShadowStep> steps,
+           const vec3& origin, const ShadowRays& rays, int distances, std::uint16_t* out) {
+    const D d;
+    const hn::RebindToSigned<D> di;
+    const std::size_t lanes = hn::Lanes(d);
+    const V start[3] = {hn::Set(d, origin.x), hn::Set(d, origin.y), hn::Set(d, origin.z)};
+    const V centre[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    HWY_ALIGN std::int32_t quantised[16];
+    for (std::size_t r = 0; r < rays.count; r += lanes) {
+        V direction[3];
+        for (int a = 0; a < 3; ++a)
+            direction[a] = hn::LoadU(d, rays.direction[a] + r);
+        const V near = near_transmittance(d, mips, near_steps, start, direction, rays, r);
+        V depth = hn::Zero(d);
+        bool opaque = false;
+        const auto store = [&](int k) {
+            const V t = hn::Mul(near, hn::Exp(d, hn::Neg(depth)));
+            hn::Store(hn::NearestInt(hn::Mul(t, hn::Set(d, 65535.0f))), di, quantised);
+            for (std::size_t i = 0; i < lanes; ++i)
+                out[(r + i) * distances + k] = static_cast<std::uint16_t>(quantised[i]);
+            opaque = hn::AllTrue(d, hn::Lt(t, hn::Set(d, 1e-5f)));
+        };
+        store(0);
+        for (const ShadowStep& s : steps) {
+            if (!opaque)
+                depth = hn::Add(depth, step_depth(d, mips, s, start, direction, centre, 0.0f));
+            if (s.store >= 0)
+                store(s.store);
+        }
+    }
+}
+
+void segments(const PackedExtinction& level, const float* const begin[3], const float* const end[3],
+              const float* metres, float step_nodes, std::size_t count, float* depths) {
+    const D d;
+    const std::size_t lanes = hn::Lanes(d);
+    for (std::size_t r = 0; r < count; r += lanes) {
+        V from[3], way[3];
+        V square = hn::Zero(d);
+        for (int a = 0; a < 3; ++a) {
+            from[a] = hn::LoadU(d, begin[a] + r);
+            way[a] = hn::Sub(hn::LoadU(d, end[a] + r), from[a]);
+            square = hn::MulAdd(way[a], way[a], square);
+        }
+        const float longest = hn::GetLane(hn::MaxOfLanes(d, hn::Sqrt(square)));
+        const int steps = 1 + static_cast<int>(longest / step_nodes);
+        V sum = hn::Zero(d);
+        for (int s = 0; s < steps; ++s) {
+            const V t = hn::Set(d, (s + 0.5f) / steps);
+            sum = hn::Add(sum, sample_extinction(d, level, hn::MulAdd(t, way[0], from[0]),
+                                                 hn::MulAdd(t, way[1], from[1]), hn::MulAdd(t, way[2], from[2])));
+        }
+        hn::StoreU(hn::Mul(sum, hn::Mul(hn::LoadU(d, metres + r), hn::Set(d, 1.0f / steps))), d, depths + r);
+    }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace brisance
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace brisance {
+
+HWY_EXPORT(march);
+HWY_EXPORT(segments);
+
+void march_shadow_rays(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
+                       std::span<const ShadowStep> steps, const vec3& origin, const ShadowRays& rays, int distances,
+                       std::uint16_t* out) {
+    HWY_DYNAMIC_DISPATCH(march)(mips, near_steps, steps, origin, rays, distances, out);
+}
+
+void segment_optical_depths(const PackedExtinction& level, const float* const begin[3], const float* const end[3],
+                            const float* metres, float step_nodes, std::size_t count, float* depths) {
+    HWY_DYNAMIC_DISPATCH(segments)(level, begin, end, metres, step_nodes, count, depths);
+}
+
+}  // namespace brisance
+#endif

@@ -1,0 +1,41 @@
+// Kernels compiled for several instruction sets and chosen at run time.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "medium/extinction_pyramid.h"
+
+namespace brisance {
+
+// One step of a shadow ray's march, the same for all texels of all lights of a level.
+struct ShadowStep {
+    float distance;  // of its middle from the light [m]
+    float length;    // [m]
+    int mip;         // pyramid level sampled
+    int store;       // distance sample to store after this step, or -1
+};
+
+// Rays of one light: planar arrays padded to a multiple of 16.
+struct ShadowRays {
+    const float* direction[3];    // nodes per metre
+    std::span<const float> starts[3];  // starting offsets [nodes], used cyclically from `first_start`
+    std::size_t first_start;
+    mat3 extent;                  // nodes of offset per unit of start
+    std::size_t count;            // padded
+};
+
+// Marches all rays from `origin` [nodes, relative to the reference]; transmittance of ray r at stored distance k goes to
+// out[r * distances + k], times 65535. Up to the first stored distance, where `near_steps` lead, the transmittance is the
+// mean over kNearRays rays from different places of the light's extent, all converging there.
+constexpr int kNearRays = 4;
+void march_shadow_rays(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
+                       std::span<const ShadowStep> steps, const vec3& origin, const ShadowRays& rays, int distances,
+                       std::uint16_t* out);
+
+// Optical depths of `count` segments from planar begins to planar ends, in nodes of level 0 relative to the reference;
+// `metres` is each one's length. Midpoint rule, steps of at most `step_nodes` nodes. Arrays are padded to 16.
+void segment_optical_depths(const PackedExtinction& level, const float* const begin[3], const float* const end[3],
+                            const float* metres, float step_nodes, std::size_t count, float* depths);
+
+}  // namespace brisance

@@ -1,0 +1,144 @@
+#include "shadows/shadow_maps.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "core/rng.h"
+#include "shadows/octahedral.h"
+#include "shadows/shadow_kernels.h"
+
+namespace brisance {
+
+namespace {
+
+// The smallest step worth taking [m]: half a node along the lattice's shortest edge, but no more than 64 times finer than
+// the mean spacing, so that a lattice of needles does not make marches endless.
+float finest_step(const Medium& medium) {
+    float edge = medium.spacing;
+    for (int a = 0; a < 3; ++a)
+        edge = std::min(edge, glm::length(medium.local_from_index[a]));
+    return std::max(edge, medium.spacing / 16.0f);
+}
+
+// Steps one averaged voxel long over [begin, end], the averages being half as wide as the light's spacing near it and
+// shrinking to single voxels at the far end of the range.
+void add_steps(const ExtinctionPyramid& pyramid, const GridLevel& level, float far, float begin, float end, int store,
+               std::vector<ShadowStep>& steps) {
+    const float voxel = finest_step(pyramid.medium());
+    const int coarsest = std::max(0, std::min(level.level - 1, pyramid.level_count() - 1));
+    while (begin < end) {
+        const float width = std::max(voxel, 0.5f * level.spacing * (1.0f - begin / far));
+        const int mip = std::clamp(static_cast<int>(std::log2(width / voxel)), 0, coarsest);
+        const float wish = voxel * float(1 << mip);
+        const float rest = end - begin;
+        const float length = rest < 1.5f * wish ? rest : wish;
+        steps.push_back({begin + 0.5f * length, length, mip, -1});
+        begin = length == rest ? end : begin + length;
+    }
+    if (!steps.empty())
+        steps.back().store = store;
+}
+
+struct TexelTable {
+    std::size_t padded = 0;
+    std::vector<float> direction[3];  // nodes per metre
+};
+
+TexelTable texel_table(const Medium& medium, int resolution) {
+    TexelTable t;
+    const std::size_t count = std::size_t(resolution) * resolution;
+    t.padded = (count + 15) / 16 * 16;
+    for (auto& d : t.direction)
+        d.assign(t.padded, 0.0f);
+    for (std::size_t i = 0; i < count; ++i) {
+        const float u = (2.0f * (i / resolution) + 1.0f) / resolution - 1.0f;
+        const float v = (2.0f * (i % resolution) + 1.0f) / resolution - 1.0f;
+        const vec3 nodes = medium.index_from_local * octahedral_direction(u, v);
+        for (int a = 0; a < 3; ++a)
+            t.direction[a][i] = nodes[a];
+    }
+    return t;
+}
+
+constexpr std::size_t kStarts = 4096;
+
+// Points of unit variance per axis: uniform in a ball of radius sqrt(5). A light's texels read them from a place that its
+// vertex decides; the first 16 stand again at the end, so that vectors may be loaded anywhere.
+std::array<std::vector<float>, 3> starting_offsets() {
+    std::array<std::vector<float>, 3> offsets;
+    for (std::size_t i = 0; i < kStarts + 16; ++i) {
+        Rng rng(Stream::ShadowRayStart, i % kStarts);
+        const float radius = std::sqrt(5.0f) * std::cbrt(rng.next());
+        const float z = 2.0f * rng.next() - 1.0f;
+        const float angle = 6.2831853f * rng.next();
+        const float s = std::sqrt(std::max(0.0f, 1.0f - z * z));
+        const vec3 p = radius * vec3(s * std::cos(angle), s * std::sin(angle), z);
+        for (int a = 0; a < 3; ++a)
+            offsets[a].push_back(p[a]);
+    }
+    return offsets;
+}
+
+std::size_t first_offset(const ivec3& vertex, int level) {
+    const auto part = [](int c) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(c) & 0x1fffffu); };
+    Rng rng(Stream::ShadowRayStart, part(vertex.x) << 42 | part(vertex.y) << 21 | part(vertex.z), 1 + level);
+    return static_cast<std::size_t>(rng.next() * kStarts);
+}
+
+// Copies the interior of a map into place and wraps its border: crossing an edge of the square continues on the same edge
+// mirrored about its middle.
+void place_with_border(const std::uint16_t* interior, const ShadowMapLayout& layout, std::uint16_t* map) {
+    const int r = layout.resolution;
+    for (int i = -1; i <= r; ++i)
+        for (int j = -1; j <= r; ++j) {
+            int u = i, v = j;
+            if (u < 0 || u >= r) {
+                u = std::clamp(u, 0, r - 1);
+                v = r - 1 - v;
+            }
+            if (v < 0 || v >= r) {
+                v = std::clamp(v, 0, r - 1);
+                u = r - 1 - u;
+            }
+            std::copy_n(interior + (std::size_t(u) * r + v) * layout.distances, layout.distances,
+                        map + (std::size_t(i + 1) * layout.side() + (j + 1)) * layout.distances);
+        }
+}
+
+}  // namespace
+
+void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const ShadowMapLayout& layout,
+                       std::size_t first, std::size_t count, std::vector<std::uint16_t>& maps) {
+    const Medium& medium = pyramid.medium();
+    const float far = layout.far_distance;
+    std::vector<ShadowStep> near_steps, steps;
+    add_steps(pyramid, level, far, 0.0f, layout.near_distance, 0, near_steps);
+    for (int k = 1; k < layout.distances; ++k) {
+        const auto at = [&](int i) { return glm::mix(layout.near_distance, far, float(i) / (layout.distances - 1)); };
+        add_steps(pyramid, level, far, at(k - 1), at(k), k, steps);
+    }
+    const TexelTable texels = texel_table(medium, layout.resolution);
+    const std::array<std::vector<float>, 3> starts = starting_offsets();
+    std::vector<PackedExtinction> mips;
+    for (int l = 0; l < pyramid.level_count(); ++l)
+        mips.push_back(pyramid.view(l));
+    maps.resize(count * layout.stride());
+    parallel_blocks(count, 8, [&](std::size_t begin, std::size_t end) {
+        std::vector<std::uint16_t> interior(texels.padded * layout.distances);
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::size_t light = first + k;
+            const ShadowRays rays{{texels.direction[0].data(), texels.direction[1].data(), texels.direction[2].data()},
+                                  {starts[0], starts[1], starts[2]},
+                                  first_offset(level.vertex[light], level.level),
+                                  medium.index_from_local * level.extent[light],
+                                  texels.padded};
+            march_shadow_rays(mips.data(), near_steps, steps, medium.index_from_local * level.position[light], rays,
+                              layout.distances, interior.data());
+            place_with_border(interior.data(), layout, &maps[k * layout.stride()]);
+        }
+    });
+}
+
+}  // namespace brisance

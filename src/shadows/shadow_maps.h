@@ -1,0 +1,39 @@
+// Precomputed volumetric shadows: for every light of a hierarchy level a directional map of transmittance as a function
+// of distance. After [1] section on precomputed shadows (lighting_grid.h), with these choices of ours:
+//  - Octahedral maps with a wrapped border texel: bilinear in direction, linear in distance, continuous everywhere.
+//  - Range-limited: level l is only asked between alpha h_l / 2 and 2 alpha h_l (the top level: to the far end of the
+//    medium), so distances are sampled there alone.
+//  - What is stored and interpolated is transmittance, in 16 bits: a light stands for many, and the mean of their
+//    transmittances is what the receiver needs.
+//  - A light stands for a region, and near it the mean transmittance of that region is what counts, more than that of its
+//    centre (exp is convex): up to the nearest distance asked for, each texel averages several rays that start at
+//    different places of the light's extent and converge there. Starts belong to the vertex and texel: no flicker.
+//  - Rays see density averaged over at most half the light's spacing near the light, shrinking to single voxels at the
+//    far end.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lights/lighting_grid.h"
+#include "medium/extinction_pyramid.h"
+
+namespace brisance {
+
+struct ShadowMapLayout {
+    int resolution = 16;      // texels along one side, without border
+    int distances = 8;        // samples along a texel's ray
+    float near_distance = 0;  // of the first sample [m]
+    float far_distance = 0;   // of the last [m]
+
+    int side() const { return resolution + 2; }
+    // 16-bit values per light; one is spare, since samples are read in pairs.
+    std::size_t stride() const { return std::size_t(side()) * side() * distances + 2; }
+    std::size_t bytes_per_light() const { return stride() * 2; }
+};
+
+// The maps of the lights [first, first + count) of `level`, one after another in `maps` (transmittance times 65535).
+void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const ShadowMapLayout& layout,
+                       std::size_t first, std::size_t count, std::vector<std::uint16_t>& maps);
+
+}  // namespace brisance
