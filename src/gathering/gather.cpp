@@ -118,12 +118,17 @@ public:
             cost.map_bytes = layout.bytes_per_light() * level.size();
             cost.held_bytes = layout.bytes_per_light() * batch;
         }
-        std::vector<std::uint16_t> transmittance;
+        std::vector<std::uint16_t> own;
+        const bool keep = maps && field_.cache && batch == level.size();
+        if (keep)
+            field_.cache->levels.resize(std::max<std::size_t>(field_.cache->levels.size(), level.level + 1));
+        std::vector<std::uint16_t>& transmittance = keep ? field_.cache->levels[level.level] : own;
+        const bool made = keep && !transmittance.empty();
         for (std::size_t first = 0; first < level.size(); first += batch) {
             const std::size_t count = std::min(batch, level.size() - first);
             auto start = std::chrono::steady_clock::now();
-            if (maps)
-                build_shadow_maps(*field_.pyramid, level, layout, first, count, transmittance);
+            if (maps && !made)
+                build_shadow_maps(*field_.pyramid, level, *field_.weight, layout, first, count, transmittance);
             cost.map_seconds += seconds_since(start);
             start = std::chrono::steady_clock::now();
             cost.evaluations += gather_batch(level, top, layout, first, count, transmittance.data());

@@ -30,14 +30,21 @@ struct LevelCost {
     std::uint64_t evaluations = 0;  // light and receiver pairs
 };
 
+// Shadow maps kept for a second gather from the same grid: its positions and medium must not have changed.
+struct ShadowMapCache {
+    std::vector<std::vector<std::uint16_t>> levels;  // empty until made
+};
+
 // Lights of all levels in one medium.
 struct LightField {
     const ExtinctionPyramid* pyramid;        // of the medium whose nodes carry the lights
     const std::vector<Rgb>* intensity;       // level 0, per node [W/sr]
     const std::vector<float>* directional;   // level 0, 24 per node, or null
     const LightingGrid* grid;                // levels above
+    const std::vector<float>* weight;        // per node: what the grid's centres are weighted by
     float alpha;
     LightingSettings settings;
+    ShadowMapCache* cache = nullptr;  // used by levels that fit the memory limit as a whole
 };
 
 // Which nodes ask, and for what.

@@ -1,5 +1,6 @@
 #include "lights/voxel_lights.h"
 
+#include <algorithm>
 #include <array>
 #include <span>
 
@@ -110,7 +111,80 @@ std::vector<Rgb> project(const Medium& medium, const std::vector<Rgb>& factor, c
 std::vector<Rgb> voxel_lights(const Medium& medium) {
     if (!medium.emits())
         return {};
-    return project(medium, medium.source, medium.emission);
+    std::vector<Rgb> lights = project(medium, medium.source, medium.emission);
+    sharpen_lights(medium.lattice, lights);
+    return lights;
+}
+
+namespace {
+
+// A brick's values with `margin` nodes all round, and how to step between neighbours.
+struct Surrounded {
+    int wide;
+    std::vector<float> box;
+    Surrounded(const BrickLattice& lattice, std::span<const float> field, int channels, std::size_t brick, int margin)
+        : wide(BrickLattice::kSize + 2 * margin), box(std::size_t(wide) * wide * wide * channels) {
+        copy_box(lattice, field, channels, lattice.first_node(brick) - margin, ivec3(wide), box);
+    }
+    int stride(int axis) const { return axis == 0 ? wide * wide : (axis == 1 ? wide : 1); }
+    int index(const ivec3& p) const { return (p.x * wide + p.y) * wide + p.z; }
+};
+
+// The share of its wish to give that a node can afford.
+float affordable(const float* v, const Surrounded& s) {
+    float out = 0.0f;
+    for (int a = 0; a < 3; ++a)
+        for (int step : {-s.stride(a), s.stride(a)})
+            out += std::max(0.0f, v[step] - *v) / 12.0f;
+    return out > *v ? *v / out : 1.0f;
+}
+
+}  // namespace
+
+void sharpen_lights(const BrickLattice& lattice, std::vector<Rgb>& intensity) {
+    const std::vector<Rgb> before = intensity;
+    parallel_for(lattice.brick_count(), [&](std::size_t b) {
+        const Surrounded s(lattice, flat(before), 3, b, 2);
+        if (std::all_of(s.box.begin(), s.box.end(), [](float v) { return v == 0.0f; }))
+            return;
+        const std::size_t plane = std::size_t(s.wide) * s.wide * s.wide;
+        std::vector<float> share(plane, 1.0f);
+        for (int c = 0; c < 3; ++c) {
+            const float* values = &s.box[c * plane];
+            for (int x = 1; x < s.wide - 1; ++x)
+                for (int y = 1; y < s.wide - 1; ++y)
+                    for (int z = 1; z < s.wide - 1; ++z)
+                        share[s.index({x, y, z})] = affordable(values + s.index({x, y, z}), s);
+            for (int n = 0; n < BrickLattice::kNodes; ++n) {
+                const int i = s.index(BrickLattice::node_in_brick(n) + 2);
+                float sum = values[i];
+                for (int a = 0; a < 3; ++a)
+                    for (int k : {i - s.stride(a), i + s.stride(a)}) {
+                        const float flux = (values[k] - values[i]) / 12.0f;  // out of this node where positive
+                        sum -= flux * (flux > 0.0f ? share[i] : share[k]);
+                    }
+                intensity[b * BrickLattice::kNodes + n][c] = std::max(sum, 0.0f);
+            }
+        }
+    });
+}
+
+void sharpen_interpolant(const BrickLattice& lattice, const std::vector<std::uint8_t>& mask, std::span<float> values) {
+    const std::vector<float> before(values.begin(), values.end());
+    const std::vector<float> masked(mask.begin(), mask.end());
+    parallel_for(lattice.brick_count(), [&](std::size_t b) {
+        const Surrounded v(lattice, before, 1, b, 1), m(lattice, masked, 1, b, 1);
+        for (int n = 0; n < BrickLattice::kNodes; ++n) {
+            const int i = v.index(BrickLattice::node_in_brick(n) + 1);
+            if (m.box[i] == 0.0f)
+                continue;
+            float second = 0.0f;
+            for (int a = 0; a < 3; ++a)
+                if (m.box[i - v.stride(a)] != 0.0f && m.box[i + v.stride(a)] != 0.0f)
+                    second += v.box[i - v.stride(a)] + v.box[i + v.stride(a)] - 2.0f * v.box[i];
+            values[b * BrickLattice::kNodes + n] = v.box[i] - second / 12.0f;
+        }
+    });
 }
 
 std::vector<Rgb> project_extinction_times(const Medium& medium, const std::vector<Rgb>& factor) {

@@ -7,6 +7,8 @@
 // Gauss rule per axis integrates it without error.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "medium/medium.h"
@@ -15,6 +17,16 @@ namespace brisance {
 
 // Radiant intensity [W/sr] of every node of the medium's lattice; empty when nothing emits.
 std::vector<Rgb> voxel_lights(const Medium& medium);
+
+// Undoes the spread of h^2/6 per axis that the splat to nodes gives the light: a conservative flux of
+// (I_neighbour - I) / 12 from the darker of two neighbours to the brighter. What a node gives away is limited to what it
+// has, so that no light turns negative, and the result stays continuous in the data. Without this, light crosses a voxel
+// that absorbs e-fold about 8 % too easily.
+void sharpen_lights(const BrickLattice& lattice, std::vector<Rgb>& intensity);
+
+// Node values whose trilinear interpolant has the averages of the smooth field through `values` (planar, one channel of
+// the lattice's nodes): minus a twelfth of the second difference per axis. Nodes outside `mask` are left alone.
+void sharpen_interpolant(const BrickLattice& lattice, const std::vector<std::uint8_t>& mask, std::span<float> values);
 
 // The same projection of extinction * factor, for a factor given at the nodes: scattered light, collisions.
 std::vector<Rgb> project_extinction_times(const Medium& medium, const std::vector<Rgb>& factor);

@@ -35,13 +35,11 @@ HWY_INLINE V near_transmittance(D d, const PackedExtinction* mips, std::span<con
     const float reach = steps.back().distance + 0.5f * steps.back().length;
     V sum = hn::Zero(d);
     for (int k = 0; k < kNearRays; ++k) {
-        const std::size_t at = (rays.first_start + k * rays.count + ray) % (rays.starts[0].size() - 16);
+        // An odd stride spreads a group's starts over the list; neighbouring groups continue elsewhere.
+        const std::size_t at = (ray * 5 + k * (kStarts / kNearRays)) % kStarts;
         V offset[3];
-        for (int a = 0; a < 3; ++a) {
-            offset[a] = hn::Zero(d);
-            for (int b = 0; b < 3; ++b)
-                offset[a] = hn::MulAdd(hn::Set(d, rays.extent[b][a]), hn::LoadU(d, &rays.starts[b][at]), offset[a]);
-        }
+        for (int a = 0; a < 3; ++a)
+            offset[a] = hn::LoadU(d, rays.starts[a] + at);
         V depth = hn::Zero(d);
         for (const ShadowStep& s : steps)
             depth = hn::Add(depth, step_depth(d, mips, s, origin, direction, offset, 1.0f - s.distance / reach));

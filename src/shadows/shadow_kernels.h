@@ -18,17 +18,16 @@ struct ShadowStep {
 
 // Rays of one light: planar arrays padded to a multiple of 16.
 struct ShadowRays {
-    const float* direction[3];    // nodes per metre
-    std::span<const float> starts[3];  // starting offsets [nodes], used cyclically from `first_start`
-    std::size_t first_start;
-    mat3 extent;                  // nodes of offset per unit of start
-    std::size_t count;            // padded
+    const float* direction[3];  // nodes per metre
+    const float* starts[3];     // kStarts + 16 starting offsets [nodes], the last 16 repeating the first
+    std::size_t count;          // padded
 };
 
 // Marches all rays from `origin` [nodes, relative to the reference]; transmittance of ray r at stored distance k goes to
 // out[r * distances + k], times 65535. Up to the first stored distance, where `near_steps` lead, the transmittance is the
 // mean over kNearRays rays from different places of the light's extent, all converging there.
 constexpr int kNearRays = 4;
+constexpr std::size_t kStarts = 64;
 void march_shadow_rays(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
                        std::span<const ShadowStep> steps, const vec3& origin, const ShadowRays& rays, int distances,
                        std::uint16_t* out);

@@ -6,9 +6,10 @@
 //  - What is stored and interpolated is transmittance, in 16 bits: a light stands for many, and the mean of their
 //    transmittances is what the receiver needs.
 //  - A light stands for a region, and near it the mean transmittance of that region is what counts, more than that of its
-//    centre (exp is convex): up to the nearest distance asked for, each texel averages several rays that start at
-//    different places of the light's extent and converge there. Starts belong to the vertex and texel: no flicker.
-//  - Rays see density averaged over at most half the light's spacing near the light, shrinking to single voxels at the
+//    centre (exp is convex, and fire burns where the smoke is dense): up to the nearest distance asked for, each texel
+//    averages several rays that start at voxels the light stands for, picked systematically in proportion to what they
+//    give it, and converge there.
+//  - Rays see density averaged over an eighth of the light's spacing near the light, shrinking to single voxels at the
 //    far end.
 #pragma once
 
@@ -32,8 +33,13 @@ struct ShadowMapLayout {
     std::size_t bytes_per_light() const { return stride() * 2; }
 };
 
+// What the lights of a level stand for: the weight (luminance, or whatever placed their centres) of every node of the
+// medium's lattice.
+using NodeWeights = std::vector<float>;
+
 // The maps of the lights [first, first + count) of `level`, one after another in `maps` (transmittance times 65535).
-void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const ShadowMapLayout& layout,
-                       std::size_t first, std::size_t count, std::vector<std::uint16_t>& maps);
+void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const NodeWeights& weights,
+                       const ShadowMapLayout& layout, std::size_t first, std::size_t count,
+                       std::vector<std::uint16_t>& maps);
 
 }  // namespace brisance

@@ -1,0 +1,60 @@
+// One bounce of scattered light on a coarse lattice, balanced (multiple_scattering.h).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "gathering/gather.h"
+
+namespace brisance {
+
+struct BounceBalance;
+
+// Light leaving the nodes of a lattice after a scattering.
+struct ScatteredLight {
+    std::vector<Rgb> intensity;      // mean over directions [W/sr]
+    std::vector<float> directional;  // degrees 1 and 2, 24 per node (sh.h); empty: isotropic
+    void add(const ScatteredLight& other, float factor);
+};
+
+// What the light arriving at the medium's nodes becomes: the exact projection of extinction * albedo * fluence / 4 pi, and
+// of its higher moments times the phase function's. Only nodes with `mask` count.
+ScatteredLight scattered_light(const Medium& medium, const Gathered& arriving, const std::vector<std::uint8_t>& mask);
+
+class CoarseOperator {
+public:
+    CoarseOperator(const ExtinctionPyramid& fine, int level, const LightingSettings& lighting, float alpha);
+
+    std::size_t active_nodes() const { return active_; }
+    std::uint64_t bytes() const;
+
+    // Lights of the fine lattice splatted to the coarse nodes.
+    ScatteredLight restricted(const ScatteredLight& fine, const BrickLattice& fine_lattice) const;
+
+    // One flight and one scattering. Fills the balance; appends level costs when `costs` is empty.
+    ScatteredLight bounce(const ScatteredLight& lights, BounceBalance& balance, std::vector<LevelCost>& costs,
+                          Progress& progress);
+
+    // Scattered light of the coarse nodes as fine lights: the source function is interpolated, the fine extinction decides
+    // where it leaves from.
+    ScatteredLight spread_to_fine(const ScatteredLight& coarse, const Medium& fine) const;
+
+private:
+    Gathered gather(const ScatteredLight& lights, std::vector<LevelCost>& costs, Progress& progress);
+    void balance_nodes(const ExtinctionPyramid& fine);
+
+    int level_;
+    Medium medium_;  // coarse
+    std::unique_ptr<ExtinctionPyramid> pyramid_;
+    LightingSettings lighting_;
+    float alpha_;
+    std::size_t active_ = 0;
+    std::vector<std::uint8_t> mask_;
+    std::vector<float> weight_;  // extinction: centres do not depend on a bounce's light
+    std::vector<float> escape_;  // per node: probability of leaving without a collision
+    std::vector<float> factor_;  // D
+    LightingGrid grid_;
+    ShadowMapCache maps_;
+};
+
+}  // namespace brisance

@@ -1,0 +1,80 @@
+// Orders of scattering above the first: the scattered light becomes the lights of the next hierarchy.
+//
+// The series is solved on a coarser medium, voxels 2^m wide (the mean extinction of the pyramid's level m), where one
+// bounce is the same gather as the fire's: near field on the lattice, levels above with shadow maps. Positions and centres
+// are weighted by extinction, not by the light of a bounce, so the bounce is one linear operator K and its shadow maps are
+// made once. Then
+//   phi_{k+1} = K (V sigma albedo phi_k / 4 pi),  k = 1, 2, ...
+// until what is left is known well enough: successive bounces settle on the operator's first eigenvector, so the tail is
+// the geometric series of their ratio. The last scattering toward the camera is gathered once more on the fine lattice
+// from the sum of all orders.
+//
+// Balance. A gather errs by some percent, and bounces multiply it. What is emitted collides or escapes, and escape
+// probabilities are cheap to march exactly; by reciprocity the same number says how bright an isothermal medium is. So K
+// becomes D K D with a positive factor per node, such that a unit source function gives 4 pi (1 - escape) at every node:
+// energy is then conserved for any distribution of light, and Kirchhoff's law holds. What remains is measured against
+// independent escape rays bounce by bounce, reported, and scaled out.
+//
+// Anisotropic phase functions: radiance arriving is kept as moments up to degree 2 (sh.h), lights are directional, and the
+// last scattering uses the phase function itself.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "gathering/gather.h"
+#include "scattering/balance.h"
+
+namespace brisance {
+
+// One bounce's energy, as fractions of the power it set out with (luminance).
+struct BounceBalance {
+    int order = 0;                // scatterings before this flight: 0 is the fire's own light
+    double emitted = 0.0;         // power / 4 pi that set out [W/sr], relative to the fire's
+    double collided = 0.0;        // as gathered
+    double escaped = 0.0;         // as marched
+    double escape_error = 0.0;    // standard error of `escaped`
+    double scale = 1.0;           // applied: (1 - escaped) / collided
+    double corrected() const { return collided * scale + escaped; }  // 1 after correction
+};
+
+struct ScatteringCosts {
+    int lattice_level = 0;
+    std::size_t coarse_nodes = 0;
+    double operator_seconds = 0.0;  // escape probabilities and balance factors
+    double series_seconds = 0.0;
+    double final_seconds = 0.0;
+    std::vector<LevelCost> series_levels;  // of the first bounce
+    std::vector<LevelCost> final_levels;
+    std::vector<BounceBalance> balances;  // orders >= 1
+    int bounces = 0;              // computed one by one
+    double tail_ratio = 0.0;      // of successive bounces' power at the end
+    double tail_share = 0.0;      // of the scattered power that the extrapolated tail makes up
+    double remainder = 0.0;       // estimated share still missing
+    std::uint64_t bytes = 0;
+};
+
+struct ScatteringInput {
+    const ExtinctionPyramid* pyramid;
+    const Gathered* first;                    // light arriving at the nodes from the fire, balanced; moments if g != 0
+    const std::vector<std::uint8_t>* needed;  // nodes the camera may ask for
+    const std::vector<vec3>* toward_camera;   // per node; null for an isotropic phase function
+    LightingSettings lighting;
+    ScatteringSettings settings;
+};
+
+// Fluence (and radiance scattered toward the camera, where asked for) of light scattered at least once before, at the
+// medium's nodes. `orders`: 2 or more, or -1 for all.
+Gathered multiple_scattering(const ScatteringInput& input, ScatteringCosts& costs, Progress& progress);
+
+// The factor that closes a bounce's balance, from a gather at all nodes with extinction; fills `balance`.
+Rgb close_balance(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& lights, const std::vector<Rgb>& fluence,
+                  BounceBalance& balance);
+
+// Node fluence as colour triples, 0 where `mask` is 0.
+std::vector<Rgb> fluence_at_nodes(const Gathered& gathered, const std::vector<std::uint8_t>& mask);
+
+// Sharpens the gathered fields for interpolation (sharpen_interpolant), in place.
+void prepare_interpolation(const BrickLattice& lattice, const std::vector<std::uint8_t>& mask, Gathered& gathered);
+
+}  // namespace brisance
