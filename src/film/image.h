@@ -21,17 +21,20 @@ struct Layer {
 struct Image {
     int width = 0;
     int height = 0;
-    std::vector<Layer> layers;  // the beauty first
+    std::vector<Layer> layers;                          // the beauty first
     const Layer& layer(const std::string& name) const;  // throws Error when absent
 };
 
 // What the header of the EXR records.
 struct ImageMetadata {
     int frame = 0;
-    dmat4 camera_from_world{1.0};  // right-handed: x right, y up, looking along -z; converted to the EXR convention on writing
+    dmat4 camera_from_world{
+        1.0};  // right-handed: x right, y up, looking along -z; converted to the EXR convention on writing
     double vertical_fov_degrees = 0.0;
     double render_seconds = 0.0;
     double samples_per_pixel = 0.0;
+    double frames_per_second = 0.0;           // 0: not recorded
+    std::string comments;                     // for people; empty: not recorded
     std::map<std::string, std::string> text;  // "brisance/version", "brisance/shot", "brisance/volume", ...
 };
 

@@ -8,13 +8,14 @@ namespace brisance {
 enum class ViewTransform { Filmic, Srgb };
 
 struct OutputSettings {
-    std::string path;             // EXR; frame tokens as in VolumeSettings::file
-    bool png = true;              // beside the EXR, same stem
-    bool statistics = true;       // JSON beside the EXR, same stem
-    bool cell_layers = true;      // one layer per ledger cell
-    bool bounce_layers = false;   // one layer per scattering order
-    float exposure_stops = 0.0f;  // of the PNG only
+    std::string path;                            // EXR; frame tokens as in VolumeSettings::file
+    bool png = true;                             // beside the EXR, same stem
+    bool statistics = true;                      // JSON beside the EXR, same stem
+    bool cell_layers = true;                     // one layer per ledger cell
+    bool bounce_layers = false;                  // one layer per scattering order
+    float exposure_stops = 0.0f;                 // of the PNG only
     ViewTransform view = ViewTransform::Filmic;  // of the PNG only
+    double frames_per_second = 0.0;              // recorded in the EXR; 0: not recorded
 };
 
 }  // namespace brisance

@@ -1,6 +1,7 @@
 // Writing frames: each file appears whole or not at all. The only door to OpenEXR and OpenImageIO.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -9,10 +10,19 @@
 
 namespace brisance {
 
+// What could not be stored as it was.
+struct ExrReport {
+    std::uint64_t clamped = 0;     // finite values beyond the largest half (65504), stored as that
+    std::uint64_t not_finite = 0;  // NaN and infinite values, stored unchanged
+    std::string describe() const;  // one line; empty when nothing is to be told
+};
+
 // Scan-line EXR, ZIP, half (float where the layer says so). Beauty channels bare, others "layer.channel"; a one-channel
 // layer named as its channel ("Z") is written bare. Written to a temporary file in the same folder, then renamed.
+// With SOURCE_DATE_EPOCH set, equal images and metadata give equal bytes: the capture date is that time in UTC, and the
+// render time is left out.
 // Throws Error CannotCreate (folder missing or not writable) or OutputFailed (no space left).
-void write_exr(const std::filesystem::path& file, const Image& image, const ImageMetadata& metadata);
+ExrReport write_exr(const std::filesystem::path& file, const Image& image, const ImageMetadata& metadata);
 
 // 8-bit PNG of the beauty under a view transform at `exposure_stops`; alpha is dropped over black.
 void write_png(const std::filesystem::path& file, const Image& image, float exposure_stops, ViewTransform view);
@@ -20,7 +30,8 @@ void write_png(const std::filesystem::path& file, const Image& image, float expo
 // Writes text as a whole file, by temporary file and rename.
 void write_text(const std::filesystem::path& file, const std::string& text);
 
-// Reads an EXR's channels back as float; layers regrouped as write_exr wrote them.
+// Reads an EXR's channels back as float; layers regrouped as write_exr wrote them, the beauty first and the others by
+// name. Pixels of the display window that lie outside the data window are 0.
 // Throws Error MissingInput or BadData.
 Image read_exr(const std::filesystem::path& file);
 

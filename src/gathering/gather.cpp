@@ -20,20 +20,20 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// The farthest any light of the level can be from any receiver.
-float farthest_distance(const GridLevel& level, const Receivers& receivers) {
-    Box lights, points;
+// From any light of the level to the farthest corner of the medium: beyond, nothing dims the light any more.
+float farthest_distance(const GridLevel& level, const Medium& medium) {
+    Box lights, corners;
     for (const vec3& p : level.position)
         lights.add(p);
-    for (const ReceiverBlock& b : receivers.blocks()) {
-        points.add(b.bounds.low);
-        points.add(b.bounds.high);
-    }
-    const vec3 far = glm::max(glm::abs(lights.high - points.low), glm::abs(points.high - lights.low));
-    return glm::length(far) * 1.0001f;
+    const ivec3 first = medium.lattice.min_brick() * BrickLattice::kSize;
+    for (int k = 0; k < 8; ++k)
+        corners.add(medium.local_of_node(first + medium.lattice.brick_extent() * BrickLattice::kSize *
+                                                     ivec3(k & 1, k >> 1 & 1, k >> 2 & 1)));
+    const vec3 far = glm::max(glm::abs(lights.high - corners.low), glm::abs(corners.high - lights.low));
+    return glm::length(far);
 }
 
-ShadowMapLayout layout_of(const LightField& field, const GridLevel& level, bool top, const Receivers& receivers) {
+ShadowMapLayout layout_of(const LightField& field, const GridLevel& level, bool top) {
     ShadowMapLayout layout;
     layout.resolution = field.settings.shadow_resolution << std::min(level.level - 1, 3);
     layout.distances = field.settings.shadow_distances;
@@ -41,7 +41,7 @@ ShadowMapLayout layout_of(const LightField& field, const GridLevel& level, bool 
     layout.near_distance = 0.5f * radius;
     layout.far_distance = 2.0f * radius;
     if (top) {
-        const float far = std::max(layout.far_distance, farthest_distance(level, receivers));
+        const float far = std::max(layout.far_distance, farthest_distance(level, field.pyramid->medium()));
         layout.distances = std::min(64, static_cast<int>(std::ceil(layout.distances * far / layout.far_distance)));
         layout.far_distance = far;
     }
@@ -109,7 +109,7 @@ public:
         ShadowMapLayout layout;
         std::size_t batch = level.size();
         if (maps) {
-            layout = layout_of(field_, level, top, receivers_);
+            layout = layout_of(field_, level, top);
             fit_to_memory(layout, level.size(), field_.settings.memory_limit_bytes, level.level, progress_);
             batch = std::clamp<std::size_t>(field_.settings.memory_limit_bytes / layout.bytes_per_light(),
                                             std::min(kLeastBatch, level.size()), level.size());
@@ -210,10 +210,16 @@ Receivers node_receivers(const Medium& medium, const LatticeRequest& request, st
     return receivers;
 }
 
-// The lit nodes as lights of a level whose vertices are the nodes.
-GridLevel level_zero(const LightField& field) {
+void gather_upper_levels(const LightField& field, FarGather& far, std::vector<LevelCost>& costs) {
+    const auto& levels = field.grid->levels;
+    for (std::size_t l = 0; l < levels.size(); ++l)
+        costs.push_back(far.run(levels[l], l + 1 == levels.size()));
+}
+
+}  // namespace
+
+GridLevel bottom_level(const LightField& field) {
     const Medium& medium = field.pyramid->medium();
-    LightingGrid grid;
     GridLevel level;
     level.spacing = medium.spacing;
     std::vector<std::pair<ivec3, std::size_t>> lit;
@@ -235,14 +241,6 @@ GridLevel level_zero(const LightField& field) {
     level.index_rows();
     return level;
 }
-
-void gather_upper_levels(const LightField& field, FarGather& far, std::vector<LevelCost>& costs) {
-    const auto& levels = field.grid->levels;
-    for (std::size_t l = 0; l < levels.size(); ++l)
-        costs.push_back(far.run(levels[l], l + 1 == levels.size()));
-}
-
-}  // namespace
 
 Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
                          Progress& progress) {
@@ -285,12 +283,12 @@ Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request,
     return out;
 }
 
-Gathered gather_at_points(const LightField& field, const Receivers& receivers, float mean_cosine,
-                          std::vector<LevelCost>& costs, Progress& progress) {
+Gathered gather_at_points(const LightField& field, const GridLevel& bottom, const Receivers& receivers,
+                          float mean_cosine, std::vector<LevelCost>& costs, Progress& progress) {
     Gathered out;
     out.resize(receivers.size(), !receivers.out_x.empty(), false);
     FarGather gather(field, receivers, mean_cosine, out, progress);
-    costs.push_back(gather.run(level_zero(field), false));
+    costs.push_back(gather.run(bottom, false));
     gather_upper_levels(field, gather, costs);
     return out;
 }

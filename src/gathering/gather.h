@@ -60,8 +60,12 @@ struct LatticeRequest {
 Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
                          Progress& progress);
 
-// At any points (local [m]) given as receivers; level 0 by marched shadows and the ball kernel. Planar over receivers.
-Gathered gather_at_points(const LightField& field, const Receivers& receivers, float mean_cosine,
-                          std::vector<LevelCost>& costs, Progress& progress);
+// The lit nodes as a level of lights for gather_at_points; its vertices are the nodes.
+GridLevel bottom_level(const LightField& field);
+
+// At any points (local [m]) given as receivers; level 0 (`bottom`, made once) by marched shadows and the ball kernel.
+// Planar over receivers.
+Gathered gather_at_points(const LightField& field, const GridLevel& bottom, const Receivers& receivers,
+                          float mean_cosine, std::vector<LevelCost>& costs, Progress& progress);
 
 }  // namespace brisance

@@ -5,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "core/rng.h"
+#include "lights/footprint.h"
 #include "lights/voxel_lights.h"
 #include "medium/phase.h"
 #include "shadows/shadow_kernels.h"
@@ -82,6 +83,11 @@ private:
     std::vector<float> begin_[3], end_[3], metres_;
 };
 
+std::uint64_t vertex_key(const ivec3& v) {
+    const auto part = [](int c) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(c) & 0x1fffffu); };
+    return part(v.x) << 42 | part(v.y) << 21 | part(v.z);
+}
+
 // One draw of the hat function's density on [-1, 1].
 float hat_sample(Rng& rng) { return rng.next() + rng.next() - 1.0f; }
 
@@ -139,22 +145,27 @@ dvec3 collided(const Medium& medium, const std::vector<Rgb>& fluence) {
     return total(project_extinction_times(medium, fluence)) / (4.0 * double(kPi));
 }
 
-std::vector<float> escape_probabilities(const ExtinctionPyramid& pyramid, const std::vector<vec3>& points,
+std::vector<float> escape_probabilities(const ExtinctionPyramid& pyramid, const std::vector<ivec3>& vertices, int level,
                                         int directions) {
     const Medium& medium = pyramid.medium();
-    std::vector<float> probability(points.size());
+    std::vector<float> probability(vertices.size(), 1.0f);
     const std::size_t batch = std::max<std::size_t>(1, (std::size_t{1} << 20) / directions);
-    for (std::size_t first = 0; first < points.size(); first += batch) {
-        const std::size_t count = std::min(batch, points.size() - first);
+    for (std::size_t first = 0; first < vertices.size(); first += batch) {
+        const std::size_t count = std::min(batch, vertices.size() - first);
         ExitRays exits(pyramid, count * directions);
-        parallel_for(count, [&](std::size_t k) {
-            Rng rng(Stream::EscapeRay, first + k, 1);
-            const double turn_u = rng.next(), turn_v = rng.next();
-            for (int d = 0; d < directions; ++d)
-                exits.set(k * directions + d, medium.index_from_local * points[first + k],
-                          sphere_direction(std::fmod((d + turn_u) / directions, 1.0),
-                                           std::fmod(turn_v + d * kGoldenRatio, 1.0)));
-        }, 256);
+        parallel_blocks(count, 256, [&](std::size_t begin, std::size_t end) {
+            FootprintPicker picker(medium, medium.extinction, level);
+            for (std::size_t k = begin; k < end; ++k) {
+                const std::vector<ivec3>& starts = picker.pick(vertices[first + k], directions);
+                Rng rng(Stream::EscapeRay, vertex_key(vertices[first + k]), 1);
+                const double turn_u = rng.next(), turn_v = rng.next();
+                // Starts come in space order and directions in order of height: an odd stride parts the two.
+                for (std::size_t d = 0; d < starts.size(); ++d)
+                    exits.set(k * directions + d, vec3(starts[d * 27 % starts.size()] - medium.reference_node),
+                              sphere_direction(std::fmod((d + turn_u) / directions, 1.0),
+                                               std::fmod(turn_v + d * kGoldenRatio, 1.0)));
+            }
+        });
         const std::vector<float> transmittance = exits.march(1.0f);
         for (std::size_t k = 0; k < count; ++k) {
             float sum = 0.0f;

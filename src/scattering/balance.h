@@ -21,8 +21,9 @@ EscapeEstimate estimate_escape(const ExtinctionPyramid& pyramid, const std::vect
 // Power absorbed and scattered, over 4 pi: the exact integral of extinction * fluence of the two interpolated fields.
 dvec3 collided(const Medium& medium, const std::vector<Rgb>& fluence);
 
-// Escape probability averaged over all directions, from each of the given nodes [m, local]; `directions` per node.
-std::vector<float> escape_probabilities(const ExtinctionPyramid& pyramid, const std::vector<vec3>& points,
+// Escape probability averaged over all directions and over what each vertex stands for: `directions` stratified rays per
+// vertex (of the lattice 2^level coarser than the medium's), each from a node under its hat picked by extinction.
+std::vector<float> escape_probabilities(const ExtinctionPyramid& pyramid, const std::vector<ivec3>& vertices, int level,
                                         int directions);
 
 }  // namespace brisance

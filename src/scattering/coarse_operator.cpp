@@ -161,14 +161,14 @@ std::uint64_t CoarseOperator::bytes() const {
 
 void CoarseOperator::balance_nodes(const ExtinctionPyramid& fine) {
     std::vector<std::size_t> nodes;
-    std::vector<vec3> points;
+    std::vector<ivec3> vertices;
     for (std::size_t i = 0; i < mask_.size(); ++i)
         if (mask_[i]) {
             nodes.push_back(i);
-            points.push_back(medium_.local_of_node(medium_.lattice.first_node(i / BrickLattice::kNodes) +
-                                                   BrickLattice::node_in_brick(int(i % BrickLattice::kNodes))));
+            vertices.push_back(medium_.lattice.first_node(i / BrickLattice::kNodes) +
+                               BrickLattice::node_in_brick(int(i % BrickLattice::kNodes)));
         }
-    const std::vector<float> escape = escape_probabilities(fine, points, kEscapeDirections);
+    const std::vector<float> escape = escape_probabilities(fine, vertices, level_, kEscapeDirections);
     escape_.assign(mask_.size(), 1.0f);
     for (std::size_t k = 0; k < nodes.size(); ++k)
         escape_[nodes[k]] = escape[k];

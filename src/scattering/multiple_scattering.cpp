@@ -40,41 +40,43 @@ int choose_level(const ExtinctionPyramid& pyramid, int wish) {
     return level;
 }
 
-// The sum of orders that leaves for the camera, and how it was reached.
-ScatteredLight sum_series(CoarseOperator& op, const ScatteredLight& first, const ScatteringSettings& settings,
-                          ScatteringCosts& costs, Progress& progress) {
-    ScatteredLight sum = first;
+// Runs the series on the coarse lattice and hands every order's light (scattered twice, three times, ...) to `take`, the
+// extrapolated tail last.
+template <class Take>
+void run_series(CoarseOperator& op, const ScatteredLight& first, const ScatteringSettings& settings,
+                ScatteringCosts& costs, Progress& progress, const Take& take) {
     ScatteredLight lights = first;
     const double start = power(first.intensity);
-    double previous = start, ratio = 0.0, drift = 1.0;
+    double previous = start, ratio = 0.0, sum = start;
     const int wanted = settings.bounces < 0 ? kMostBounces : settings.bounces - 2;
     for (int k = 0; k < wanted && previous > 0.0; ++k) {
         BounceBalance balance;
         balance.order = k + 1;
         balance.emitted = previous / start;
-        lights = op.bounce(lights, balance, costs.series_levels, progress);
+        lights = op.bounce(lights, balance, costs.levels, progress);
         costs.balances.push_back(balance);
-        sum.add(lights, 1.0f);
+        take(lights, 1.0f);
         ++costs.bounces;
         const double now = power(lights.intensity);
-        drift = std::abs(now / previous - ratio);
+        const double drift = std::abs(now / previous - ratio);
         ratio = now / previous;
         previous = now;
+        sum += now;
         if (settings.bounces >= 0)
             continue;
-        // The tail is previous * ratio / (1 - ratio); a ratio still drifting leaves about this much of it unknown.
+        // The tail is now * ratio / (1 - ratio); a ratio still drifting leaves about this much of it unknown.
         const double room = std::max(1.0 - ratio, 1e-6);
-        costs.remainder = now * drift / (room * room) / power(sum.intensity);
+        costs.remainder = now * drift / (room * room) / sum;
+        progress.fraction(std::min(1.0, settings.remainder / std::max(costs.remainder, 1e-9)));
         if (costs.remainder < settings.remainder || now < 1e-6 * start)
             break;
     }
     costs.tail_ratio = ratio;
     if (settings.bounces < 0 && ratio > 0.0 && ratio < 1.0) {
         const double tail = ratio / (1.0 - ratio);
-        costs.tail_share = tail * power(lights.intensity) / power(sum.intensity);
-        sum.add(lights, static_cast<float>(tail));
+        costs.tail_share = tail * previous / (sum + tail * previous);
+        take(lights, static_cast<float>(tail));
     }
-    return sum;
 }
 
 }  // namespace
@@ -116,51 +118,55 @@ Rgb close_balance(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& ligh
     return scale;
 }
 
-Gathered multiple_scattering(const ScatteringInput& input, ScatteringCosts& costs, Progress& progress) {
+std::vector<ScatteredLight> solve_scattering(const ScatteringInput& input, ScatteringCosts& costs, Progress& progress) {
     const ExtinctionPyramid& pyramid = *input.pyramid;
     const Medium& medium = pyramid.medium();
+    std::vector<ScatteredLight> orders;
+    orders.push_back(scattered_light(medium, *input.first, *input.needed));
+    if (input.settings.bounces == 2 || !(power(orders[0].intensity) > 0.0))
+        return orders;
+
     auto start = std::chrono::steady_clock::now();
-    const ScatteredLight fine_first = scattered_light(medium, *input.first, *input.needed);
     costs.lattice_level = choose_level(pyramid, input.settings.lattice_level);
-    LightingSettings lighting = input.lighting;
-    CoarseOperator op(pyramid, costs.lattice_level, lighting, input.settings.alpha);
+    CoarseOperator op(pyramid, costs.lattice_level, input.lighting, input.settings.alpha);
     costs.coarse_nodes = op.active_nodes();
     costs.operator_seconds = seconds_since(start);
 
     start = std::chrono::steady_clock::now();
-    // Light scattered once, on the coarse lattice; the sum below starts with it.
-    const ScatteredLight first = op.restricted(fine_first, medium.lattice);
-    ScatteredLight sum = sum_series(op, first, input.settings, costs, progress);
+    const ScatteredLight first = op.restricted(orders[0], medium.lattice);
+    ScatteredLight sum = first;
+    sum.add(first, -1.0f);
+    run_series(op, first, input.settings, costs, progress, [&](const ScatteredLight& light, float factor) {
+        if (!input.separate_orders)
+            return sum.add(light, factor);
+        ScatteredLight scaled = light;
+        scaled.add(light, factor - 1.0f);
+        orders.push_back(op.spread_to_fine(scaled, medium));
+    });
+    if (!input.separate_orders)
+        orders[0].add(op.spread_to_fine(sum, medium), 1.0f);
     costs.series_seconds = seconds_since(start);
     costs.bytes = op.bytes();
+    return orders;
+}
 
-    start = std::chrono::steady_clock::now();
-    // Orders two and up are known per coarse node as light leaving; the last flight wants them on fine voxels.
-    sum.add(first, -1.0f);
-    ScatteredLight lights = op.spread_to_fine(sum, medium);
-    lights.add(fine_first, 1.0f);
-    sharpen_lights(medium.lattice, lights.intensity);
+LightField HierarchyLights::field(const ExtinctionPyramid& pyramid, float alpha, const LightingSettings& settings,
+                                  ShadowMapCache* cache) const {
+    return {&pyramid, &light.intensity, light.directional.empty() ? nullptr : &light.directional,
+            &grid,    &weight,          alpha,
+            settings, cache};
+}
 
-    std::vector<float> weight(lights.intensity.size());
-    for (std::size_t i = 0; i < weight.size(); ++i)
-        weight[i] = luminance(lights.intensity[i]);
-    LightingGrid grid = build_lighting_grid(medium, lights.intensity, &weight, automatic_levels(medium));
-    if (!lights.directional.empty())
-        set_intensity(grid, medium.lattice, lights.intensity, &lights.directional);
-    LightField field{&pyramid, &lights.intensity, lights.directional.empty() ? nullptr : &lights.directional, &grid,
-                     &weight, input.settings.alpha, lighting, nullptr};
-    Gathered gathered = gather_at_nodes(field, {input.needed, input.toward_camera, false, medium.mean_cosine},
-                                        costs.final_levels, progress);
-    prepare_interpolation(medium.lattice, *input.needed, gathered);
-    if (lighting.energy_balance) {
-        BounceBalance balance;
-        balance.order = -1;
-        balance.emitted = power(lights.intensity) / std::max(power(fine_first.intensity), 1e-300);
-        gathered.scale(close_balance(pyramid, lights.intensity, fluence_at_nodes(gathered, *input.needed), balance));
-        costs.balances.push_back(balance);
-    }
-    costs.final_seconds = seconds_since(start);
-    return gathered;
+HierarchyLights build_hierarchy(const Medium& medium, ScatteredLight light, int levels) {
+    HierarchyLights h;
+    h.light = std::move(light);
+    h.weight.resize(h.light.intensity.size());
+    for (std::size_t i = 0; i < h.weight.size(); ++i)
+        h.weight[i] = luminance(h.light.intensity[i]);
+    h.grid = build_lighting_grid(medium, h.light.intensity, &h.weight, levels > 0 ? levels : automatic_levels(medium));
+    if (!h.light.directional.empty())
+        set_intensity(h.grid, medium.lattice, h.light.intensity, &h.light.directional);
+    return h;
 }
 
 }  // namespace brisance

@@ -24,6 +24,7 @@
 
 #include "gathering/gather.h"
 #include "scattering/balance.h"
+#include "scattering/coarse_operator.h"
 
 namespace brisance {
 
@@ -43,29 +44,37 @@ struct ScatteringCosts {
     std::size_t coarse_nodes = 0;
     double operator_seconds = 0.0;  // escape probabilities and balance factors
     double series_seconds = 0.0;
-    double final_seconds = 0.0;
-    std::vector<LevelCost> series_levels;  // of the first bounce
-    std::vector<LevelCost> final_levels;
-    std::vector<BounceBalance> balances;  // orders >= 1
-    int bounces = 0;              // computed one by one
-    double tail_ratio = 0.0;      // of successive bounces' power at the end
-    double tail_share = 0.0;      // of the scattered power that the extrapolated tail makes up
-    double remainder = 0.0;       // estimated share still missing
+    std::vector<LevelCost> levels;  // of the first bounce
+    std::vector<BounceBalance> balances;
+    int bounces = 0;            // computed one by one
+    double tail_ratio = 0.0;    // of successive bounces' power at the end
+    double tail_share = 0.0;    // of the scattered power that the extrapolated tail makes up
+    double remainder = 0.0;     // estimated share still missing
     std::uint64_t bytes = 0;
 };
 
 struct ScatteringInput {
     const ExtinctionPyramid* pyramid;
     const Gathered* first;                    // light arriving at the nodes from the fire, balanced; moments if g != 0
-    const std::vector<std::uint8_t>* needed;  // nodes the camera may ask for
-    const std::vector<vec3>* toward_camera;   // per node; null for an isotropic phase function
+    const std::vector<std::uint8_t>* needed;  // nodes where `first` holds
     LightingSettings lighting;
     ScatteringSettings settings;
+    bool separate_orders = false;
 };
 
-// Fluence (and radiance scattered toward the camera, where asked for) of light scattered at least once before, at the
-// medium's nodes. `orders`: 2 or more, or -1 for all.
-Gathered multiple_scattering(const ScatteringInput& input, ScatteringCosts& costs, Progress& progress);
+// Light leaving the medium's nodes after one or more scatterings, ready to be gathered a last time: one entry, or one per
+// order (scattered once, twice, ..., and the tail) where orders are to be kept apart.
+std::vector<ScatteredLight> solve_scattering(const ScatteringInput& input, ScatteringCosts& costs, Progress& progress);
+
+// Lights of all levels made from light leaving nodes.
+struct HierarchyLights {
+    ScatteredLight light;
+    std::vector<float> weight;
+    LightingGrid grid;
+    LightField field(const ExtinctionPyramid& pyramid, float alpha, const LightingSettings& settings,
+                     ShadowMapCache* cache) const;
+};
+HierarchyLights build_hierarchy(const Medium& medium, ScatteredLight light, int levels);
 
 // The factor that closes a bounce's balance, from a gather at all nodes with extinction; fills `balance`.
 Rgb close_balance(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& lights, const std::vector<Rgb>& fluence,

@@ -64,78 +64,23 @@ TexelTable texel_table(const Medium& medium, int resolution) {
     return t;
 }
 
-// Offsets from the light's centre [nodes] to kStarts of the voxels it stands for: systematic picks in proportion to hat
-// times weight, in node order, put into a scattered order; the first 16 stand again at the end for whole-vector loads.
-class StartPicker {
-public:
-    StartPicker(const Medium& medium, const NodeWeights& weights, const GridLevel& level)
-        : medium_(medium), weights_(weights), level_(level) {}
-
-    void pick(std::size_t light, std::array<std::vector<float>, 3>& starts) {
-        gather(light);
-        const vec3 centre = medium_.index_from_local * level_.position[light];
-        for (auto& s : starts)
-            s.assign(kStarts + 16, 0.0f);
-        if (found_.empty())
-            return;
-        const float total = found_.back().passed;
-        std::size_t at = 0;
-        for (std::size_t k = 0; k < kStarts; ++k) {
-            const float goal = (k + 0.5f) / kStarts * total;
-            while (at + 1 < found_.size() && found_[at].passed < goal)
-                ++at;
-            const vec3 offset = vec3(found_[at].node - medium_.reference_node) - centre;
-            const std::size_t place = k * 27 % kStarts;  // 27 is prime to kStarts
-            for (int a = 0; a < 3; ++a)
-                starts[a][place] = offset[a];
-        }
-        for (auto& s : starts)
-            std::copy_n(s.begin(), 16, s.begin() + kStarts);
+// Offsets from the light's centre [nodes] to kStarts of the voxels it stands for, in a scattered order; the first 16 stand
+// again at the end for whole-vector loads.
+void pick_starts(FootprintPicker& picker, const Medium& medium, const GridLevel& level, std::size_t light,
+                 std::array<std::vector<float>, 3>& starts) {
+    const vec3 centre = medium.index_from_local * level.position[light];
+    for (auto& s : starts)
+        s.assign(kStarts + 16, 0.0f);
+    const std::vector<ivec3>& picks = picker.pick(level.vertex[light], kStarts);
+    for (std::size_t k = 0; k < picks.size(); ++k) {
+        const vec3 offset = vec3(picks[k] - medium.reference_node) - centre;
+        const std::size_t place = k * 27 % kStarts;  // 27 is prime to kStarts
+        for (int a = 0; a < 3; ++a)
+            starts[a][place] = offset[a];
     }
-
-private:
-    struct Found {
-        ivec3 node;
-        float passed;
-    };
-
-    // The weighted nodes under the vertex's hat, with running sums.
-    void gather(std::size_t light) {
-        const int h = 1 << level_.level;
-        const ivec3 vertex = level_.vertex[light] * h;
-        const ivec3 low = (vertex - h + 1) >> 3, high = (vertex + h - 1) >> 3;
-        found_.clear();
-        float passed = 0.0f;
-        for (int x = low.x; x <= high.x; ++x)
-            for (int y = low.y; y <= high.y; ++y)
-                for (int z = low.z; z <= high.z; ++z) {
-                    const int b = medium_.lattice.find({x, y, z});
-                    if (b >= 0)
-                        passed = gather_brick(b, vertex, h, passed);
-                }
-    }
-
-    float gather_brick(int b, const ivec3& vertex, int h, float passed) {
-        const ivec3 first = medium_.lattice.first_node(b);
-        for (int n = 0; n < BrickLattice::kNodes; ++n) {
-            const float w = weights_[std::size_t(b) * BrickLattice::kNodes + n];
-            if (!(w > 0.0f))
-                continue;
-            const ivec3 node = first + BrickLattice::node_in_brick(n);
-            const ivec3 rest = h - glm::abs(node - vertex);
-            if (std::min({rest.x, rest.y, rest.z}) <= 0)
-                continue;
-            passed += w * (float(rest.x) / h) * (float(rest.y) / h) * (float(rest.z) / h);
-            found_.push_back({node, passed});
-        }
-        return passed;
-    }
-
-    const Medium& medium_;
-    const NodeWeights& weights_;
-    const GridLevel& level_;
-    std::vector<Found> found_;
-};
+    for (auto& s : starts)
+        std::copy_n(s.begin(), 16, s.begin() + kStarts);
+}
 
 // Copies the interior of a map into place and wraps its border: crossing an edge of the square continues on the same edge
 // mirrored about its middle.
@@ -177,10 +122,10 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
     parallel_blocks(count, 8, [&](std::size_t begin, std::size_t end) {
         std::vector<std::uint16_t> interior(texels.padded * layout.distances);
         std::array<std::vector<float>, 3> starts;
-        StartPicker picker(medium, weights, level);
+        FootprintPicker picker(medium, weights, level.level);
         for (std::size_t k = begin; k < end; ++k) {
             const std::size_t light = first + k;
-            picker.pick(light, starts);
+            pick_starts(picker, medium, level, light, starts);
             const ShadowRays rays{{texels.direction[0].data(), texels.direction[1].data(), texels.direction[2].data()},
                                   {starts[0].data(), starts[1].data(), starts[2].data()},
                                   texels.padded};

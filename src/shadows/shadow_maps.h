@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "lights/footprint.h"
 #include "lights/lighting_grid.h"
 #include "medium/extinction_pyramid.h"
 
@@ -33,11 +34,8 @@ struct ShadowMapLayout {
     std::size_t bytes_per_light() const { return stride() * 2; }
 };
 
-// What the lights of a level stand for: the weight (luminance, or whatever placed their centres) of every node of the
-// medium's lattice.
-using NodeWeights = std::vector<float>;
-
 // The maps of the lights [first, first + count) of `level`, one after another in `maps` (transmittance times 65535).
+// `weights`: what the level's centres are weighted by, per node of the medium's lattice.
 void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const NodeWeights& weights,
                        const ShadowMapLayout& layout, std::size_t first, std::size_t count,
                        std::vector<std::uint16_t>& maps);

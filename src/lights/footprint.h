@@ -1,0 +1,39 @@
+// What a vertex of a coarser lattice stands for: the nodes under its hat, by weight.
+#pragma once
+
+#include <vector>
+
+#include "medium/medium.h"
+
+namespace brisance {
+
+// A weight (luminance, extinction, ...) for every node of a medium's lattice.
+using NodeWeights = std::vector<float>;
+
+// Picks nodes under the hat of a vertex systematically in proportion to hat times weight. Keeps scratch memory: one
+// picker per thread.
+class FootprintPicker {
+public:
+    // Vertices lie at every 2^level-th node.
+    FootprintPicker(const Medium& medium, const NodeWeights& weights, int level)
+        : medium_(medium), weights_(weights), level_(level) {}
+
+    // `count` picks in node order; empty when nothing has weight.
+    const std::vector<ivec3>& pick(const ivec3& vertex, int count);
+
+private:
+    struct Found {
+        ivec3 node;
+        double passed;  // running sum of weights
+    };
+    void search(const ivec3& vertex);
+    double search_brick(int brick, const ivec3& centre, double passed);
+
+    const Medium& medium_;
+    const NodeWeights& weights_;
+    int level_;
+    std::vector<Found> found_;
+    std::vector<ivec3> picks_;
+};
+
+}  // namespace brisance

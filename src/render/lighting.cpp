@@ -1,0 +1,312 @@
+#include "render/lighting.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "core/parallel.h"
+#include "lights/voxel_lights.h"
+#include "medium/phase.h"
+
+namespace brisance {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+nlohmann::ordered_json level_table(const std::vector<LevelCost>& costs) {
+    auto table = nlohmann::ordered_json::array();
+    for (const LevelCost& c : costs)
+        table.push_back({{"level", c.level},
+                         {"lights", c.lights},
+                         {"resolution", c.resolution},
+                         {"distances", c.distances},
+                         {"map_bytes", c.map_bytes},
+                         {"held_bytes", c.held_bytes},
+                         {"map_seconds", c.map_seconds},
+                         {"gather_seconds", c.gather_seconds},
+                         {"evaluations", c.evaluations}});
+    return table;
+}
+
+std::uint64_t most_held(const std::vector<LevelCost>& costs) {
+    std::uint64_t most = 0;
+    for (const LevelCost& c : costs)
+        most = std::max(most, c.held_bytes);
+    return most;
+}
+
+nlohmann::ordered_json balance_row(const BounceBalance& b, const std::string& order) {
+    return {{"order", order},
+            {"emitted", b.emitted},
+            {"collided", b.collided},
+            {"escaped", b.escaped},
+            {"escape_standard_error", b.escape_error},
+            {"scale", b.scale},
+            {"corrected", b.corrected()}};
+}
+
+// Nodes whose light the camera or the smoke can ask for: corners of cells with extinction.
+std::vector<std::uint8_t> nodes_beside_extinction(const Medium& medium) {
+    constexpr int kWide = BrickLattice::kSize + 2;
+    std::vector<std::uint8_t> needed(medium.lattice.node_count(), 0);
+    parallel_for(medium.lattice.brick_count(), [&](std::size_t b) {
+        std::vector<float> box(kWide * kWide * kWide);
+        copy_box(medium.lattice, medium.extinction, 1, medium.lattice.first_node(b) - 1, ivec3(kWide), box);
+        for (int n = 0; n < BrickLattice::kNodes; ++n) {
+            const ivec3 p = BrickLattice::node_in_brick(n);
+            bool any = false;
+            for (int k = 0; k < 27 && !any; ++k)
+                any = box[((p.x + k / 9) * kWide + p.y + k / 3 % 3) * kWide + p.z + k % 3] > 0.0f;
+            needed[b * BrickLattice::kNodes + n] = any;
+        }
+    });
+    return needed;
+}
+
+std::vector<vec3> directions_to(const Medium& medium, const vec3& eye) {
+    std::vector<vec3> directions(medium.lattice.node_count());
+    parallel_for(directions.size(), [&](std::size_t i) {
+        const vec3 p = medium.local_of_node(medium.lattice.first_node(i / BrickLattice::kNodes) +
+                                            BrickLattice::node_in_brick(int(i % BrickLattice::kNodes)));
+        const vec3 way = eye - p;
+        const float d = glm::length(way);
+        directions[i] = d > 0.0f ? way / d : vec3(0.0f, 0.0f, 1.0f);
+    }, 4096);
+    return directions;
+}
+
+// March points as receivers, sorted into blocks by brick; `order` says which point each padded receiver is.
+Receivers point_receivers(const Medium& medium, const std::vector<MarchPoint>& points, bool directional,
+                          std::vector<std::uint32_t>& order) {
+    struct Keyed {
+        std::uint64_t brick;
+        std::uint32_t point;
+    };
+    std::vector<Keyed> keyed(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const ivec3 node = ivec3(glm::floor(medium.index_from_local * points[i].local)) + (1 << 20);
+        const ivec3 b = node >> 2;
+        keyed[i] = {std::uint64_t(b.x) << 42 | std::uint64_t(b.y) << 21 | std::uint64_t(b.z), std::uint32_t(i)};
+    }
+    std::sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) {
+        return a.brick != b.brick ? a.brick < b.brick : a.point < b.point;
+    });
+    Receivers receivers;
+    std::vector<vec3> positions, directions;
+    for (std::size_t i = 0; i < keyed.size();) {
+        positions.clear();
+        directions.clear();
+        std::size_t end = i;
+        for (; end < keyed.size() && keyed[end].brick == keyed[i].brick; ++end) {
+            positions.push_back(points[keyed[end].point].local);
+            if (directional)
+                directions.push_back(points[keyed[end].point].toward_camera);
+            order.push_back(keyed[end].point);
+        }
+        receivers.add_block(positions, directions);
+        while (order.size() < receivers.size())
+            order.push_back(order.back());
+        i = end;
+    }
+    return receivers;
+}
+
+}  // namespace
+
+Lighting::Lighting(const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera,
+                   Statistics& statistics, Progress& progress)
+    : shot_(shot),
+      plan_(plan),
+      medium_(medium),
+      statistics_(statistics),
+      progress_(progress),
+      pyramid_(medium, ExtinctionPyramid::kMaxLevels),
+      needed_(nodes_beside_extinction(medium)) {
+    if (plan.directional)
+        toward_camera_ = directions_to(medium, vec3(camera.eye_local()));
+    light_from_fire();
+}
+
+std::vector<Rgb> Lighting::source_function(const Gathered& g) const {
+    const std::size_t n = needed_.size();
+    std::vector<Rgb> source(n, Rgb(0.0f));
+    parallel_for(n, [&](std::size_t i) {
+        if (!needed_[i])
+            return;
+        for (int c = 0; c < 3; ++c)
+            source[i][c] = medium_.albedo_at(i)[c] *
+                           (g.scattered.empty() ? g.fluence[c * n + i] / (4.0f * kPi) : g.scattered[c * n + i]);
+    }, 4096);
+    return source;
+}
+
+void Lighting::light_from_fire() {
+    progress_.stage("fire to lights");
+    Clock::time_point start = Clock::now();
+    HierarchyLights lights = build_hierarchy(medium_, {voxel_lights(medium_), {}}, shot_.lighting.levels);
+    const double emitted = luminance(Rgb(total(lights.light.intensity)));
+    statistics_.stages.push_back({"lights and hierarchy", seconds_since(start), lights.grid.bytes(),
+                                  {{"intensity_sum", emitted}, {"lattice_and_pyramid_bytes", pyramid_.bytes()}}});
+
+    progress_.stage("light from the fire (MV)");
+    start = Clock::now();
+    const bool nodes = !marching() || plan_.multiple || shot_.lighting.energy_balance;
+    StageCost stage{"light from the fire (MV)", 0.0, 0, {}};
+    Rgb scale(1.0f);
+    if (nodes) {
+        std::vector<LevelCost> costs;
+        const LightField field = lights.field(pyramid_, shot_.lighting.alpha, shot_.lighting, nullptr);
+        const bool moments = plan_.multiple && plan_.directional;
+        Gathered first = gather_at_nodes(
+            field, {&needed_, plan_.directional ? &toward_camera_ : nullptr, moments, medium_.mean_cosine}, costs,
+            progress_);
+        prepare_interpolation(medium_.lattice, needed_, first);
+        if (shot_.lighting.energy_balance) {
+            BounceBalance balance;
+            balance.emitted = 1.0;
+            scale = close_balance(pyramid_, lights.light.intensity, fluence_at_nodes(first, needed_), balance);
+            first.scale(scale);
+            stage.detail["balance"].push_back(balance_row(balance, "0"));
+        }
+        stage.bytes = most_held(costs) + (first.fluence.size() + first.scattered.size() + first.moments.size()) * 4;
+        stage.detail["levels"] = level_table(costs);
+        stage.seconds = seconds_since(start);
+        statistics_.stages.push_back(stage);
+        if (!marching())
+            nodes_.single = source_function(first);
+        if (plan_.multiple)
+            light_from_smoke(first);
+    }
+    if (marching()) {
+        fire_ = std::make_unique<PointLights>();
+        fire_->lights = std::move(lights);
+        fire_->field = fire_->lights.field(pyramid_, shot_.lighting.alpha, shot_.lighting, &fire_->maps);
+        fire_->bottom = bottom_level(fire_->field);
+        fire_->scale = scale;
+    }
+}
+
+Gathered Lighting::gather_last_flight(const HierarchyLights& lights, int order, nlohmann::ordered_json& balances,
+                                      std::vector<LevelCost>& costs) {
+    const LightField field = lights.field(pyramid_, shot_.scattering.alpha, shot_.lighting, nullptr);
+    Gathered g = gather_at_nodes(
+        field, {&needed_, plan_.directional ? &toward_camera_ : nullptr, false, medium_.mean_cosine}, costs, progress_);
+    prepare_interpolation(medium_.lattice, needed_, g);
+    if (!shot_.lighting.energy_balance)
+        return g;
+    BounceBalance balance;
+    balance.emitted = 1.0;
+    const Rgb scale = close_balance(pyramid_, lights.light.intensity, fluence_at_nodes(g, needed_), balance);
+    g.scale(scale);
+    if (smoke_)
+        smoke_->scale = scale;
+    balances.push_back(balance_row(balance, order < 0 ? "last" : std::to_string(order)));
+    return g;
+}
+
+void Lighting::light_from_smoke(const Gathered& first) {
+    progress_.stage("orders of scattering");
+    Clock::time_point start = Clock::now();
+    ScatteringCosts costs;
+    const bool apart = shot_.output.bounce_layers && !marching();
+    std::vector<ScatteredLight> orders =
+        solve_scattering({&pyramid_, &first, &needed_, shot_.lighting, shot_.scattering, apart}, costs, progress_);
+    StageCost series{"orders of scattering on the coarse lattice", seconds_since(start), costs.bytes, {}};
+    series.detail = {{"lattice_level", costs.lattice_level},
+                     {"nodes", costs.coarse_nodes},
+                     {"operator_seconds", costs.operator_seconds},
+                     {"series_seconds", costs.series_seconds},
+                     {"bounces", costs.bounces},
+                     {"tail_ratio", costs.tail_ratio},
+                     {"tail_share", costs.tail_share},
+                     {"estimated_remainder", costs.remainder}};
+    series.detail["levels"] = level_table(costs.levels);
+    for (const BounceBalance& b : costs.balances)
+        series.detail["balance"].push_back(balance_row(b, std::to_string(b.order)));
+    statistics_.stages.push_back(series);
+    if (shot_.scattering.bounces < 0 && costs.remainder > shot_.scattering.remainder)
+        progress_.warning("series", "multiple scattering stopped after " + std::to_string(costs.bounces) +
+                                        " bounces with an estimated " + std::to_string(100.0 * costs.remainder) +
+                                        " % of its light missing");
+
+    progress_.stage("light from the smoke (MM)");
+    start = Clock::now();
+    StageCost last{"light from the smoke (MM)", 0.0, 0, {}};
+    last.detail["balance"] = nlohmann::ordered_json::array();
+    std::vector<LevelCost> levels;
+    Gathered sum;
+    for (std::size_t k = 0; k < orders.size(); ++k) {
+        sharpen_lights(medium_.lattice, orders[k].intensity);
+        HierarchyLights lights = build_hierarchy(medium_, std::move(orders[k]), shot_.lighting.levels);
+        if (marching()) {
+            smoke_ = std::make_unique<PointLights>();
+            if (!shot_.lighting.energy_balance) {
+                smoke_->lights = std::move(lights);
+                break;
+            }
+        }
+        std::vector<LevelCost> these;
+        const Gathered g = gather_last_flight(lights, apart ? int(k) + 1 : -1, last.detail["balance"], these);
+        if (levels.empty())
+            levels = these;
+        if (apart)
+            nodes_.orders.push_back(source_function(g));
+        if (sum.fluence.empty())
+            sum = g;
+        else
+            sum.add(g);
+        if (marching())
+            smoke_->lights = std::move(lights);
+    }
+    if (marching()) {
+        smoke_->field = smoke_->lights.field(pyramid_, shot_.scattering.alpha, shot_.lighting, &smoke_->maps);
+        smoke_->bottom = bottom_level(smoke_->field);
+    } else {
+        nodes_.multiple = source_function(sum);
+    }
+    last.seconds = seconds_since(start);
+    last.bytes = most_held(levels) + (sum.fluence.size() + sum.scattered.size()) * 4;
+    last.detail["levels"] = level_table(levels);
+    if (last.detail["balance"].empty())
+        last.detail.erase("balance");
+    statistics_.stages.push_back(last);
+}
+
+void Lighting::at_points(const std::vector<MarchPoint>& points, std::vector<PointLighting>& lighting) {
+    if (points.empty())
+        return;
+    std::vector<std::uint32_t> order;
+    const Receivers receivers = point_receivers(medium_, points, plan_.directional, order);
+    const std::size_t n = order.size();
+    const auto gather = [&](const std::unique_ptr<PointLights>& lights, Rgb PointLighting::*slot) {
+        if (!lights)
+            return;
+        std::vector<LevelCost> costs;
+        Progress silent;
+        const Gathered g =
+            gather_at_points(lights->field, lights->bottom, receivers, medium_.mean_cosine, costs, silent);
+        for (std::size_t i = 0; i < n; ++i) {
+            Rgb& out = lighting[order[i]].*slot;
+            for (int c = 0; c < 3; ++c)
+                out[c] = lights->scale[c] *
+                         (g.scattered.empty() ? g.fluence[c * n + i] / (4.0f * kPi) : g.scattered[c * n + i]);
+        }
+    };
+    gather(fire_, &PointLighting::single);
+    gather(smoke_, &PointLighting::multiple);
+    // Albedo per point, where it varies, is that of the nearest node.
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        Rgb albedo = medium_.albedo;
+        if (!medium_.albedo_nodes.empty()) {
+            const std::int64_t node = medium_.lattice.find_node(
+                ivec3(glm::round(medium_.index_from_local * points[i].local)) + medium_.reference_node);
+            albedo = node < 0 ? Rgb(0.0f) : medium_.albedo_nodes[node];
+        }
+        lighting[i].single *= albedo;
+        lighting[i].multiple *= albedo;
+    }
+}
+
+}  // namespace brisance

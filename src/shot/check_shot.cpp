@@ -1,0 +1,75 @@
+#include "shot/check_shot.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/error.h"
+
+namespace brisance {
+namespace {
+
+using Given = std::map<std::string, std::string>;
+
+constexpr double kRigidTolerance = 1e-4;  // matrices come from files with six digits
+
+[[noreturn]] void reject(const Given& given, const std::string& key, const std::string& why) {
+    throw Error(ExitCode::Usage, fmt::format("{}: {}: {}", given.at(key), key, why));
+}
+
+void check_matrix(const Given& given, const dmat4& m) {
+    const std::string key = "camera.world_from_camera";
+    for (const char* other : {"camera.eye", "camera.target", "camera.up"})
+        if (given.contains(other))
+            reject(given, key,
+                   fmt::format("takes the place of {}, which is given too ({}); remove one", other, given.at(other)));
+    if (m[0][3] != 0.0 || m[1][3] != 0.0 || m[2][3] != 0.0 || m[3][3] != 1.0)
+        reject(given, key,
+               "the last row must be 0 0 0 1; the 16 numbers are row after row, translation at the rows' ends");
+    const dmat3 axes(m);
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j <= i; ++j)
+            if (!(std::abs(glm::dot(axes[i], axes[j]) - (i == j ? 1.0 : 0.0)) < kRigidTolerance))
+                reject(given, key, "must be rigid (a rotation and a translation), without scale or shear");
+    if (glm::determinant(axes) < 0.0)
+        reject(given, key, "is mirrored; it must be right-handed: x right, y up, looking along -z");
+}
+
+void check_look_at(const Given& given, const CameraSettings& camera) {
+    for (const auto& [key, other] : {std::pair{"camera.eye", "camera.target"}, {"camera.target", "camera.eye"}})
+        if (given.contains(key) && !given.contains(other))
+            reject(given, key, fmt::format("is given without {}; give both, or none for a framed camera", other));
+    const std::string up_key = given.contains("camera.up") ? "camera.up" : "camera.eye";
+    const double up = glm::length(camera.up);
+    if (given.contains("camera.up") && !(up > 0.0))
+        reject(given, up_key, "has no length");
+    if (!given.contains("camera.eye"))
+        return;
+    const dvec3 forward = camera.target - camera.eye;
+    const double distance = glm::length(forward);
+    if (!(distance > 0.0))
+        reject(given, "camera.eye", "is where camera.target is: there is no direction to look in");
+    if (glm::length(glm::cross(forward, camera.up)) < 1e-9 * distance * up)
+        reject(given, up_key, "the camera looks along camera.up; choose another up, e.g. [0, 1, 0]");
+}
+
+void check_fire(const Given& given, const FireSettings& fire) {
+    if (fire.temperature_in.x == fire.temperature_in.y)
+        reject(given, "fire.temperature_in", "the two values must differ");
+    if (fire.modulate_by_flame && fire.model != FireModel::Blackbody && fire.model != FireModel::NormalizedBlackbody)
+        reject(given, "fire.modulate_by_flame", "works with fire.model blackbody or blackbody_normalized only");
+}
+
+}  // namespace
+
+void check_shot(const Shot& shot, const Given& given, const std::string& source) {
+    if (shot.volume.file.empty())
+        throw Error(ExitCode::Usage, fmt::format("{}: volume.file is missing: which .vdb file to render", source));
+    if (shot.camera.world_from_camera)
+        check_matrix(given, *shot.camera.world_from_camera);
+    else
+        check_look_at(given, shot.camera);
+    check_fire(given, shot.medium.fire);
+}
+
+}  // namespace brisance

@@ -1,0 +1,97 @@
+// One JSON value to one setting and back: what it accepts, in code, in words and as JSON Schema.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/vec.h"
+#include "medium/settings.h"
+
+namespace brisance {
+
+using Json = nlohmann::ordered_json;
+
+template <class T>
+struct Codec {
+    Json schema;                                        // JSON Schema of the accepted values
+    std::string expected;                               // the same in words, after "expected"
+    std::function<std::optional<T>(const Json&)> read;  // absent: not accepted
+    std::function<Json(const T&)> write;
+};
+
+// Bounds are included unless the flag beside them says otherwise.
+struct Range {
+    double low;
+    double high;
+    bool without_low = false;
+    bool without_high = false;
+    bool contains(double value) const;
+    std::string words() const;  // "in [0, 1]", "at least 0", "of any size"
+    void add_to(Json& schema) const;
+};
+
+Range at_least(double low);
+Range above(double low);
+Range any_number();
+
+Codec<double> real(const Range& range);
+Codec<float> real_float(const Range& range);
+Codec<int> whole(int low, int high);
+Codec<std::uint64_t> mebibytes(double low, double high);  // given as MiB, held as bytes
+Codec<bool> flag();
+Codec<std::string> text(bool may_be_empty);
+Codec<std::optional<std::string>> optional_text();  // null: absent
+Codec<Rgb> rgb(const Range& range);                 // one number for gray, or three
+Codec<dvec3> point();
+Codec<vec2> pair_of(const Range& range);
+Codec<dmat4> matrix();                // 16 numbers, row after row
+Codec<std::vector<RampStop>> ramp();  // [[value, [r, g, b]], ...], values rising
+
+// A float as the shortest decimal that means it, not as the double next to it.
+double plain(float value);
+
+// One of some words. The first word of a value is the one written; others of the same value are understood.
+template <class E>
+Codec<E> choice(std::vector<std::pair<std::string, E>> words) {
+    Codec<E> codec;
+    Json names = Json::array();
+    for (const auto& [word, value] : words) {
+        codec.expected += (names.empty() ? "\"" : ", \"") + word + "\"";
+        names.push_back(word);
+    }
+    codec.expected = "one of " + codec.expected;
+    codec.schema = {{"enum", names}};
+    codec.read = [words](const Json& json) -> std::optional<E> {
+        for (const auto& [word, value] : words)
+            if (json == word)
+                return value;
+        return std::nullopt;
+    };
+    codec.write = [words](const E& wanted) -> Json {
+        for (const auto& [word, value] : words)
+            if (value == wanted)
+                return word;
+        return nullptr;
+    };
+    return codec;
+}
+
+// Either a word that stands for `value`, or what `codec` takes.
+template <class T>
+Codec<T> or_word(Codec<T> codec, const std::string& word, const T& value) {
+    Codec<T> result;
+    result.expected = "\"" + word + "\" or " + codec.expected;
+    result.schema = {{"anyOf", Json::array({Json{{"const", word}}, codec.schema})}};
+    result.read = [codec, word, value](const Json& json) -> std::optional<T> {
+        return json == word ? std::optional<T>(value) : codec.read(json);
+    };
+    result.write = [codec, word, value](const T& t) -> Json { return t == value ? Json(word) : codec.write(t); };
+    return result;
+}
+
+}  // namespace brisance

@@ -1,0 +1,78 @@
+#include "shot/keys.h"
+
+namespace brisance {
+namespace {
+
+// For editors only: names the schema, means nothing to the picture.
+Key schema_key() {
+    return {"$schema",
+            "where the schema of this file is, for editors; has no effect on the picture",
+            text(true).expected,
+            text(true).schema,
+            [](Shot&, const Json& json) { return text(true).read(json).has_value(); },
+            [](const Shot&) -> std::optional<Json> { return std::nullopt; }};
+}
+
+std::vector<Key> all_keys() {
+    std::vector<Key> keys = {schema_key(), make_key(
+                                               "name", "of the shot, and of its files where output.path is empty",
+                                               text(true), [](Shot & s) -> auto& { return s.name; })};
+    add_volume_keys(keys);
+    add_medium_keys(keys);
+    add_camera_keys(keys);
+    add_lighting_keys(keys);
+    add_output_keys(keys);
+    return keys;
+}
+
+}  // namespace
+
+const std::vector<Key>& shot_keys() {
+    static const std::vector<Key> keys = all_keys();
+    return keys;
+}
+
+const std::vector<std::pair<std::string, std::string>>& shot_sections() {
+    static const std::vector<std::pair<std::string, std::string>> sections = {
+        {"volume", "the OpenVDB file and its grids"},
+        {"volume.grids", "which grid plays which role: \"name\" or \"name[index]\", null for automatic, \"\" for none"},
+        {"smoke", "from density to optical coefficients"},
+        {"fire", "what glows"},
+        {"camera", "the pinhole camera; without eye and target, or world_from_camera, it is framed on the volume"},
+        {"lighting", "how the fire's light reaches the smoke"},
+        {"scattering", "light scattered more than once"},
+        {"output", "what is written"},
+        {"output.layers", "layers of the EXR besides the beauty"},
+    };
+    return sections;
+}
+
+void add_volume_keys(std::vector<Key>& keys) {
+    keys.push_back(make_key(
+        "volume.file", "the .vdb file, relative to the shot's folder; frame tokens: ####, @@@, %04d, $F4, <frame04>",
+        text(false), [](Shot & s) -> auto& { return s.volume.file; }));
+    keys.push_back(make_key(
+        "volume.preset", "how grids are recognised by name",
+        choice<MappingPreset>({{"auto", MappingPreset::Automatic},
+                               {"automatic", MappingPreset::Automatic},
+                               {"houdini", MappingPreset::Houdini},
+                               {"embergen", MappingPreset::EmberGen},
+                               {"mantaflow", MappingPreset::Mantaflow}}),
+        [](Shot & s) -> auto& { return s.volume.preset; }));
+    keys.push_back(make_key(
+        "volume.grids.density", "smoke", optional_text(), [](Shot & s) -> auto& { return s.volume.grids.density; }));
+    keys.push_back(make_key(
+        "volume.grids.temperature", "of black-body fire, mapped to kelvin by fire.temperature_*", optional_text(),
+        [](Shot & s) -> auto& { return s.volume.grids.temperature; }));
+    keys.push_back(make_key(
+        "volume.grids.flame", "intensity of the fire", optional_text(),
+        [](Shot & s) -> auto& { return s.volume.grids.flame; }));
+    keys.push_back(make_key(
+        "volume.grids.colour", "three channels; colour_role says of what", optional_text(),
+        [](Shot & s) -> auto& { return s.volume.grids.colour; }));
+    keys.push_back(make_key(
+        "volume.half_voxel_shift", "true: the sample of index i lies at i + 1/2 (Blender means this) instead of at i",
+        flag(), [](Shot & s) -> auto& { return s.volume.half_voxel_shift; }));
+}
+
+}  // namespace brisance

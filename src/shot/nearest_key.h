@@ -1,0 +1,15 @@
+// Which key was probably meant.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace brisance {
+
+// Insertions, deletions, replacements and exchanges of neighbours that lead from one text to the other.
+int edit_distance(const std::string& a, const std::string& b);
+
+// The known dotted path most like `path`: by the whole, or by its last part in another place.
+std::string nearest_key(const std::string& path, const std::vector<std::string>& known);
+
+}  // namespace brisance

@@ -1,0 +1,191 @@
+#include "shot/read_shot.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <sstream>
+#include <system_error>
+
+#include "core/error.h"
+#include "shot/check_shot.h"
+#include "shot/json_text.h"
+#include "shot/keys.h"
+#include "shot/nearest_key.h"
+
+namespace brisance {
+namespace {
+
+using Where = std::function<std::string(const std::string& path)>;  // "shot.json:12", "--set smoke.albedo=2"
+
+struct Preset {
+    std::string name;
+    std::vector<std::string> overrides;
+};
+
+const std::vector<Preset>& presets() {
+    static const std::vector<Preset> all = {
+        {"draft",
+         {"lighting.alpha=1", "lighting.shadow_resolution=8", "camera.samples_per_axis=1", "scattering.alpha=1",
+          "scattering.remainder=0.01"}},
+        {"final", {}},
+    };
+    return all;
+}
+
+std::string kind_of(const Json& value) {
+    if (value.is_object())
+        return "an object";
+    if (value.is_array())
+        return "a list";
+    if (value.is_string())
+        return "text";
+    return value.is_boolean() ? "a truth value" : value.is_null() ? "null" : "a number";
+}
+
+std::string shortened(const Json& value) {
+    constexpr std::size_t most = 60;
+    const std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
+    return text.size() <= most ? text : text.substr(0, most) + "...";
+}
+
+[[noreturn]] void reject_value(const std::string& where, const std::string& path, const std::string& expected,
+                               const Json& value) {
+    throw Error(ExitCode::Usage, fmt::format("{}: {}: expected {}, got {} ({})", where, path, expected,
+                                             shortened(value), kind_of(value)));
+}
+
+const Key* find_key(const std::string& path) {
+    for (const Key& key : shot_keys())
+        if (key.path == path)
+            return &key;
+    return nullptr;
+}
+
+bool is_section(const std::string& path) {
+    for (const auto& [name, help] : shot_sections())
+        if (name == path)
+            return true;
+    return path.empty();
+}
+
+[[noreturn]] void reject_key(const std::string& where, const std::string& path) {
+    std::vector<std::string> known;
+    for (const Key& key : shot_keys())
+        known.push_back(key.path);
+    for (const auto& [name, help] : shot_sections())
+        known.push_back(name);
+    throw Error(ExitCode::Usage,
+                fmt::format("{}: unknown key {}; did you mean {}?", where, path, nearest_key(path, known)));
+}
+
+// Lays JSON over a shot and remembers where each key was given.
+class Layering {
+public:
+    explicit Layering(Shot& shot) : shot_(shot) {}
+
+    void apply(const std::string& path, const Json& value, const Where& where) {
+        if (const Key* key = find_key(path)) {
+            if (!key->set(shot_, value))
+                reject_value(where(path), path, key->expected, value);
+            given_[path] = where(path);
+            return;
+        }
+        if (!is_section(path))
+            reject_key(where(path), path);
+        if (!value.is_object())
+            reject_value(where(path), path.empty() ? "a shot" : path, "an object in braces", value);
+        for (const auto& item : value.items())
+            apply(path.empty() ? item.key() : path + "." + item.key(), item.value(), where);
+    }
+
+    // "key=value"; `origin` begins messages.
+    void override_with(const std::string& setting, const std::string& origin) {
+        const std::size_t equals = setting.find('=');
+        if (equals == std::string::npos || equals == 0)
+            throw Error(ExitCode::Usage, fmt::format("{}: expected key=value, e.g. smoke.albedo=0.9", origin));
+        const std::string path = setting.substr(0, equals);
+        const std::string text = setting.substr(equals + 1);
+        const Where where = [&](const std::string&) { return origin; };
+        Json value = Json::parse(text, nullptr, false);
+        if (value.is_discarded())
+            value = text;
+        // Text may look like JSON: name=2024 means "2024".
+        if (const Key* key = find_key(path);
+            key && !value.is_string() && !key->set(shot_, value) && key->set(shot_, text))
+            value = text;
+        apply(path, value, where);
+    }
+
+    const std::map<std::string, std::string>& given() const { return given_; }
+
+private:
+    Shot& shot_;
+    std::map<std::string, std::string> given_;
+};
+
+void apply_preset(const std::string& name, Layering& layering) {
+    if (name.empty())
+        return;
+    for (const Preset& preset : presets()) {
+        if (preset.name != name)
+            continue;
+        for (const std::string& setting : preset.overrides)
+            layering.override_with(setting, "preset " + name);
+        return;
+    }
+    throw Error(ExitCode::Usage,
+                fmt::format("unknown preset {}; there are {}", name, fmt::join(shot_presets(), " and ")));
+}
+
+std::string read_text(const std::filesystem::path& file) {
+    std::error_code error;
+    if (!std::filesystem::exists(file, error))
+        throw Error(ExitCode::MissingInput, fmt::format("{}: no such file", file.string()));
+    if (std::filesystem::is_directory(file, error))
+        throw Error(ExitCode::Usage, fmt::format("{}: is a folder, not a shot", file.string()));
+    std::ifstream stream(file, std::ios::binary);
+    std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    if (!stream.good() && !stream.eof())
+        throw Error(ExitCode::MissingInput, fmt::format("{}: cannot be read", file.string()));
+    return text;
+}
+
+}  // namespace
+
+const std::vector<std::string>& shot_presets() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> result;
+        for (const Preset& preset : presets())
+            result.push_back(preset.name);
+        return result;
+    }();
+    return names;
+}
+
+Shot read_shot(const std::filesystem::path& file, const ShotOptions& options) {
+    Shot shot = parse_shot(read_text(file), file.string(), file.parent_path(), options);
+    if (shot.name.empty())
+        shot.name = file.stem().string();
+    return shot;
+}
+
+Shot parse_shot(const std::string& text, const std::string& source, const std::filesystem::path& folder,
+                const ShotOptions& options) {
+    const JsonText json = parse_json_text(text, source);
+    Shot shot;
+    shot.folder = folder;
+    Layering layering(shot);
+    layering.apply("", json.value, [&](const std::string& path) {
+        const auto line = json.line_of_key.find(path);
+        return line == json.line_of_key.end() ? source : fmt::format("{}:{}", source, line->second);
+    });
+    apply_preset(options.preset, layering);
+    for (const std::string& setting : options.overrides)
+        layering.override_with(setting, "--set " + setting);
+    check_shot(shot, layering.given(), source);
+    return shot;
+}
+
+}  // namespace brisance

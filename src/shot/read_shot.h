@@ -1,0 +1,29 @@
+// A shot from its JSON file. Errors say file and line, the key, what was given and what is expected.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "shot/shot.h"
+
+namespace brisance {
+
+// Layers over the defaults: the file, then the preset, then the overrides in their order. A later one wins.
+struct ShotOptions {
+    std::string preset;                  // a name of shot_presets(); empty: none
+    std::vector<std::string> overrides;  // "smoke.albedo=0.9": JSON, or text where it is no JSON
+};
+
+// Names of the presets. "final" changes nothing: the shot as written, over the defaults.
+const std::vector<std::string>& shot_presets();
+
+// Throws Error MissingInput (no such file) or Usage (no JSON; unknown, misplaced or doubled key; wrong type; out of
+// range; settings that contradict each other).
+Shot read_shot(const std::filesystem::path& file, const ShotOptions& options = {});
+
+// The same from text. `source` stands for the file in messages; relative paths of the shot are relative to `folder`.
+Shot parse_shot(const std::string& text, const std::string& source, const std::filesystem::path& folder,
+                const ShotOptions& options = {});
+
+}  // namespace brisance
