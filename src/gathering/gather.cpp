@@ -35,7 +35,10 @@ float farthest_distance(const GridLevel& level, const Medium& medium) {
 
 ShadowMapLayout layout_of(const LightField& field, const GridLevel& level, bool top) {
     ShadowMapLayout layout;
-    layout.resolution = field.settings.shadow_resolution << std::min(level.level - 1, 3);
+    // A coarser light's map covers more voxels but its own size blurs its shadows: resolution grows as the square root of
+    // the spacing (more gained less than the hierarchy's own error on real smoke), to even numbers.
+    const float growth = std::sqrt(float(1 << std::min(level.level - 1, 6)));
+    layout.resolution = std::min(128, 2 * static_cast<int>(std::lround(0.5f * growth * field.settings.shadow_resolution)));
     layout.distances = field.settings.shadow_distances;
     const float radius = field.alpha * level.spacing;
     layout.near_distance = 0.5f * radius;

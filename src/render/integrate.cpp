@@ -206,7 +206,7 @@ int automatic_samples(const Camera& camera, const CellField& field) {
         nearest = std::min(nearest, std::max(0.0, glm::dot(centre - camera.eye_local(), camera.forward())));
     }
     const double footprint = camera.pixel_angle() * nearest / medium.spacing;  // voxels per pixel
-    return std::clamp(static_cast<int>(std::ceil(3.0 * std::min(footprint, 1e3))), 1, 8);
+    return std::clamp(static_cast<int>(std::ceil(5.0 * std::min(footprint, 1e3))), 1, 8);
 }
 
 Image render_picture(const CellField& field, const Camera& camera, const PictureSettings& settings,

@@ -36,7 +36,7 @@ struct PictureSettings {
     bool has_multiple = false;
 };
 
-// The samples along a pixel's side that keep neighbouring rays within a third of a voxel where the medium is nearest.
+// The samples along a pixel's side that keep neighbouring rays within a fifth of a voxel where the medium is nearest.
 int automatic_samples(const Camera& camera, const CellField& field);
 
 // Beauty (R, G, B, A), cell layers, Z (opacity-weighted mean distance along the view axis, 1e10 where nothing is) and

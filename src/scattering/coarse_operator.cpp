@@ -14,8 +14,8 @@ namespace brisance {
 
 namespace {
 
-constexpr int kEscapeDirections = 64;
-constexpr int kBalanceSweeps = 4;
+constexpr int kEscapeDirections = 32;
+constexpr int kBalanceSweeps = 3;
 
 // The medium of a pyramid level: coarse nodes at every 2^level-th index, mean extinction, mean albedo by extinction.
 Medium coarse_medium(const ExtinctionPyramid& fine, int level) {
