@@ -1,5 +1,6 @@
 #include "render/camera.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
@@ -25,6 +26,23 @@ dmat4 look_at(const CameraSettings& s) {
     m[2] = glm::dvec4(back, 0.0);
     m[3] = glm::dvec4(s.eye, 1.0);
     return m;
+}
+
+// The distance from a box's middle at which all its corners fill nine tenths of the picture at most.
+double fitting_distance(const dvec3& half_size, const dvec3& back, const CameraSettings& s) {
+    constexpr double fill = 0.9;
+    const dvec3 right = glm::normalize(glm::cross(-back, s.up));
+    const dvec3 up = glm::cross(back, right);
+    const double vertical = fill * std::tan(0.5 * s.vertical_fov_degrees * kDegree);
+    const double horizontal = vertical * s.width / s.height;
+    double distance = 1e-9;
+    for (int k = 0; k < 8; ++k) {
+        const dvec3 corner = half_size * dvec3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
+        const double nearer = glm::dot(corner, back);
+        distance = std::max({distance, nearer + std::abs(glm::dot(corner, right)) / horizontal,
+                             nearer + std::abs(glm::dot(corner, up)) / vertical});
+    }
+    return distance;
 }
 
 }  // namespace
@@ -65,12 +83,11 @@ CameraSettings framed_camera(const Medium& medium, const CameraSettings& like) {
     }
     if (!(low.x <= high.x))
         low = dvec3(-1.0), high = dvec3(1.0);
-    const double radius = std::max(0.5 * glm::length(high - low), 1e-9);
-    const double half = 0.5 * s.vertical_fov_degrees * kDegree * std::min(1.0, double(s.width) / s.height);
     s.world_from_camera.reset();
     s.target = 0.5 * (low + high);
     s.up = dvec3(0.0, 0.0, 1.0);
-    s.eye = s.target + glm::normalize(dvec3(0.25, -1.0, 0.22)) * (0.92 * radius / std::sin(half));
+    const dvec3 back = glm::normalize(dvec3(0.25, -1.0, 0.22));
+    s.eye = s.target + back * fitting_distance(0.5 * (high - low), back, s);
     return s;
 }
 

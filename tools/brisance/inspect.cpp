@@ -170,6 +170,14 @@ Json shot_json(const Inspection& inspection) {
         fire["strength"] = 1.0;
         fire["threshold"] = 0.0;
     }
+    if (look.fire == SuggestedFire::Flame && look.max_flame > 0.0f) {
+        // From dull red to yellow white: what a flame without a temperature grid is expected to look like.
+        const auto stop = [&](float share, std::array<double, 3> colour) {
+            return Json::array({plain(share * look.max_flame), colour});
+        };
+        fire["ramp"] = {stop(0.0f, {0.7, 0.06, 0.006}), stop(0.3f, {1.0, 0.22, 0.03}), stop(0.65f, {1.0, 0.5, 0.12}),
+                        stop(1.0f, {1.0, 0.8, 0.42})};
+    }
     if (look.fire == SuggestedFire::Blackbody) {
         fire["temperature_in"] = {plain(look.temperature_in.x), plain(look.temperature_in.y)};
         fire["temperature_kelvin"] = {plain(look.temperature_kelvin.x), plain(look.temperature_kelvin.y)};
