@@ -1,0 +1,189 @@
+// A file appears whole or not at all, and what was there before stays until then.
+
+#include "film/whole_file.h"
+
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <csignal>
+#include <functional>
+
+#include "core/error.h"
+#include "film/write_image.h"
+#include "fixtures.h"
+
+namespace brisance {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::contents;
+using testing::gray_image;
+using testing::TemporaryFolder;
+
+Error error_of(const std::function<void()>& work) {
+    try {
+        work();
+    } catch (const Error& error) {
+        return error;
+    }
+    return {ExitCode::Success, "no error"};
+}
+
+// The three writers, each on a file in `folder`.
+void expect_all_fail(const fs::path& folder, ExitCode code, const std::string& hint) {
+    const Image image = gray_image(200, 200, 0.3f);
+    const std::vector<std::pair<std::string, std::function<void(const fs::path&)>>> writers = {
+        {"a.exr", [&](const fs::path& file) { write_exr(file, image, {}); }},
+        {"a.png", [&](const fs::path& file) { write_png(file, image, 0.0f, ViewTransform::Filmic); }},
+        {"a.json", [&](const fs::path& file) { write_text(file, std::string(1 << 20, 'x')); }},
+    };
+    for (const auto& writer : writers) {
+        const std::string& name = writer.first;
+        const Error error = error_of([&] { writer.second(folder / name); });
+        EXPECT_EQ(error.code(), code) << name;
+        EXPECT_NE(std::string(error.what()).find((folder / name).string()), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find(hint), std::string::npos) << error.what();
+    }
+}
+
+TEST(WholeFile, ReplacesWhatWasThereAndLeavesNothingElse) {
+    const TemporaryFolder folder;
+    write_whole_file(folder / "a.txt", "first");
+    write_whole_file(folder / "a.txt", "second");
+    EXPECT_EQ(contents(folder / "a.txt"), "second");
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"a.txt"});
+}
+
+TEST(WholeFile, MissingFolderIsNamed) {
+    const TemporaryFolder folder;
+    expect_all_fail(folder / "absent", ExitCode::CannotCreate, "does not exist");
+    EXPECT_TRUE(folder.names().empty());
+}
+
+TEST(WholeFile, AFileInPlaceOfTheFolderIsNamed) {
+    const TemporaryFolder folder;
+    std::ofstream(folder / "file") << "x";
+    expect_all_fail(folder / "file", ExitCode::CannotCreate, "is not a folder");
+}
+
+TEST(WholeFile, FolderWithoutPermissionIsNamed) {
+    const TemporaryFolder folder;
+    fs::permissions(folder.path(),
+                    fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec);
+    const bool as_root = geteuid() == 0;  // whom permissions do not stop
+    if (as_root && seteuid(65534) != 0)
+        GTEST_SKIP() << "cannot become an ordinary user";
+    expect_all_fail(folder.path(), ExitCode::CannotCreate, "no permission");
+    EXPECT_EQ(error_of([&] { check_writable(folder / "a.exr"); }).code(), ExitCode::CannotCreate);
+    if (as_root) {
+        ASSERT_EQ(seteuid(0), 0);
+    }
+}
+
+TEST(WholeFile, NeverReplacesWhatIsNoFile) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "a.exr");
+    EXPECT_EQ(error_of([&] { write_whole_file(folder / "a.exr", "x"); }).code(), ExitCode::CannotCreate);
+    EXPECT_EQ(error_of([&] { write_whole_file("/dev/null", "x"); }).code(), ExitCode::CannotCreate);
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST(WholeFile, WritesThroughALink) {
+    const TemporaryFolder folder;
+    write_whole_file(folder / "target.txt", "old");
+    fs::create_symlink("target.txt", folder / "link.txt");
+    write_whole_file(folder / "link.txt", "new");
+    EXPECT_TRUE(fs::is_symlink(folder / "link.txt"));
+    EXPECT_EQ(contents(folder / "target.txt"), "new");
+}
+
+TEST(WholeFile, LongNamesAreWritten) {
+    const TemporaryFolder folder;
+    const std::string name = std::string(250, 'n') + ".exr";
+    write_whole_file(folder / name, "x");
+    EXPECT_EQ(folder.names(), std::vector<std::string>{name});
+    EXPECT_EQ(error_of([&] { write_whole_file(folder / std::string(300, 'n'), "x"); }).code(), ExitCode::CannotCreate);
+}
+
+TEST(WholeFile, CheckingLeavesNoTrace) {
+    const TemporaryFolder folder;
+    check_writable(folder / "a.exr");
+    EXPECT_TRUE(folder.names().empty());
+}
+
+// Limits the size of files while it lives.
+class FileSizeLimit {
+public:
+    explicit FileSizeLimit(rlim_t bytes) {
+        handler_ = std::signal(SIGXFSZ, SIG_IGN);
+        getrlimit(RLIMIT_FSIZE, &before_);
+        const rlimit limit{bytes, before_.rlim_max};
+        setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ~FileSizeLimit() {
+        setrlimit(RLIMIT_FSIZE, &before_);
+        std::signal(SIGXFSZ, handler_);
+    }
+    FileSizeLimit(const FileSizeLimit&) = delete;
+    FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+private:
+    rlimit before_{};
+    void (*handler_)(int) = nullptr;
+};
+
+TEST(WholeFile, AWriteThatFailsHalfWayLeavesTheOldFileAndNothingElse) {
+    const TemporaryFolder folder;
+    write_whole_file(folder / "a.json", "old");
+    {
+        const FileSizeLimit limit(100);
+        expect_all_fail(folder.path(), ExitCode::OutputFailed, "larger than allowed");
+    }
+    EXPECT_EQ(folder.names(), std::vector<std::string>{"a.json"});
+    EXPECT_EQ(contents(folder / "a.json"), "old");
+}
+
+TEST(WholeFile, AFullDiskIsNamedAndLeftClean) {
+    const TemporaryFolder folder;
+    if (mount("tmpfs", folder.path().c_str(), "tmpfs", 0, "size=16k") != 0)
+        GTEST_SKIP() << "not permitted to mount a small file system";
+    write_whole_file(folder / "a.json", "old");
+    const Error error = error_of([&] { write_text(folder / "a.json", std::string(1 << 20, 'x')); });
+    const std::vector<std::string> names = folder.names();
+    const std::string old = contents(folder / "a.json");
+    umount(folder.path().c_str());
+    EXPECT_EQ(error.code(), ExitCode::OutputFailed);
+    EXPECT_NE(std::string(error.what()).find("no space left"), std::string::npos) << error.what();
+    EXPECT_EQ(names, std::vector<std::string>{"a.json"});
+    EXPECT_EQ(old, "old");
+}
+
+TEST(WholeFile, AnInterruptedWriteLeavesNothing) {
+    const TemporaryFolder folder;
+    for (int round = 0; round < 5; ++round) {
+        const pid_t child = fork();
+        if (child == 0) {
+            std::signal(SIGALRM, [](int) {
+                remove_unfinished_files();
+                _exit(0);
+            });
+            ualarm(static_cast<useconds_t>(20000 + 7000 * round), 0);
+            const std::string much(64 << 20, 'x');
+            for (;;)
+                write_whole_file(folder / "a.txt", much);
+        }
+        int status = 0;
+        waitpid(child, &status, 0);
+        EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    }
+    for (const std::string& name : folder.names())
+        EXPECT_EQ(name, "a.txt");
+    if (fs::exists(folder / "a.txt")) {
+        EXPECT_EQ(fs::file_size(folder / "a.txt"), std::uintmax_t{64} << 20);
+    }
+}
+
+}  // namespace
+}  // namespace brisance

@@ -1,0 +1,188 @@
+// Different ways to the same light agree, and threads and memory do not show.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/parallel.h"
+#include "gather_fixture.h"
+
+namespace brisance {
+namespace {
+
+using namespace testing;
+
+Recipe fireball(float extinction) {
+    Recipe r = glowing_ball(10, 1.0f);
+    r.density = [](const ivec3& n) { return ball(n, dvec3(0.0), 10.0) * (0.3f + noise(n >> 1, 1)); };
+    r.flame = [](const ivec3& n) { return noise(n >> 2, 2) > 0.5f ? noise(n, 3) : 0.0f; };
+    r.settings.smoke.extinction_per_metre = extinction;
+    return r;
+}
+
+struct Difference {
+    double mean = 0.0, rms = 0.0;
+};
+
+// Relative to the mean of `b`.
+Difference difference(const std::vector<float>& a, const std::vector<float>& b) {
+    double sum = 0.0, square = 0.0, reference = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        sum += a[i] - b[i];
+        square += (double(a[i]) - b[i]) * (double(a[i]) - b[i]);
+        reference += b[i];
+    }
+    return {sum / reference, std::sqrt(square * a.size()) / reference};
+}
+
+TEST(Agreement, MapsAgreeWithExactShadows) {
+    const Lit lit(make_medium(fireball(3.0f)));
+    const Gathered exact = at_all_nodes(lit, lighting(ShadowMethod::Exact));
+    const Gathered maps = at_all_nodes(lit, lighting(ShadowMethod::Maps));
+    const Difference d = difference(maps.fluence, exact.fluence);
+    EXPECT_LT(std::abs(d.mean), 0.03);
+    EXPECT_LT(d.rms, 0.05);
+}
+
+TEST(Agreement, PointsAtTheNodesSeeWhatTheNodesSee) {
+    const Lit lit(make_medium(fireball(2.0f)));
+    std::vector<vec3> points;
+    std::vector<float> expected;
+    const Gathered nodes = at_all_nodes(lit, lighting(ShadowMethod::Exact));
+    for (std::size_t i = 0; i < lit.medium.lattice.node_count(); i += 37)
+        if (lit.medium.extinction[i] > 0.0f) {
+            points.push_back(lit.medium.local_of_node(node_at(lit.medium, i)));
+            expected.push_back(nodes.fluence[i]);
+        }
+    const std::vector<float> got = at_points(lit, lighting(ShadowMethod::Exact), points);
+    const Difference d = difference(got, expected);
+    EXPECT_LT(std::abs(d.mean), 0.02);
+    EXPECT_LT(d.rms, 0.05);
+}
+
+TEST(Agreement, NodesThatAskAloneGetWhatTheyGetTogether) {
+    const Lit lit(make_medium(fireball(2.0f)));
+    const Gathered all = at_all_nodes(lit, lighting(ShadowMethod::Maps, 1.0f));
+    std::vector<std::uint8_t> needed(lit.medium.lattice.node_count(), 0);
+    for (std::size_t i = 0; i < needed.size(); ++i)
+        needed[i] = noise(node_at(lit.medium, i), 8) < 0.03f;
+    std::vector<LevelCost> costs;
+    Progress silent;
+    const Gathered some = gather_at_nodes(field_of(lit, lighting(ShadowMethod::Maps, 1.0f)),
+                                          {&needed, nullptr, false, 0.0f}, costs, silent);
+    const std::size_t nodes = needed.size();
+    for (std::size_t i = 0; i < nodes; ++i)
+        for (int c = 0; needed[i] && c < 3; ++c)
+            ASSERT_NEAR(some.fluence[c * nodes + i] / all.fluence[c * nodes + i], 1.0f, 2e-3f);
+    EXPECT_EQ(costs.size(), lit.grid.levels.size() + 1);
+}
+
+TEST(Agreement, TheNumberOfThreadsDoesNotShow) {
+    const Medium medium = make_medium(fireball(2.0f));
+    std::vector<std::vector<float>> nodes, points;
+    for (const int threads : {1, 2, 8}) {
+        const ThreadLimit limit(threads);
+        const Lit lit(medium);
+        const std::vector<vec3> camera(medium.lattice.node_count(), glm::normalize(vec3(1.0f, 2.0f, 3.0f)));
+        const Gathered g = at_all_nodes(lit, lighting(ShadowMethod::Maps, 1.0f), &camera, true, 0.5f);
+        nodes.push_back(g.fluence);
+        nodes.back().insert(nodes.back().end(), g.scattered.begin(), g.scattered.end());
+        nodes.back().insert(nodes.back().end(), g.moments.begin(), g.moments.end());
+        std::vector<vec3> at;
+        for (int i = 0; i < 200; ++i)
+            at.push_back(2.0f * vec3(noise(ivec3(i), 1), noise(ivec3(i), 2), noise(ivec3(i), 3)) - 1.0f);
+        points.push_back(at_points(lit, lighting(ShadowMethod::Maps, 1.0f), at));
+    }
+    for (int k : {1, 2}) {
+        EXPECT_EQ(nodes[0], nodes[k]);
+        EXPECT_EQ(points[0], points[k]);
+    }
+}
+
+TEST(Agreement, LittleMemoryIsMentionedAndCostsLittle) {
+    const Lit lit(make_medium(fireball(2.0f)));
+    const Gathered free = at_all_nodes(lit, lighting(ShadowMethod::Maps));
+    LightingSettings tight = lighting(ShadowMethod::Maps);
+    tight.memory_limit_bytes = 1 << 20;
+    const std::vector<std::uint8_t> needed(lit.medium.lattice.node_count(), 1);
+    std::vector<LevelCost> costs;
+    Listener listener;
+    const Gathered g = gather_at_nodes(field_of(lit, tight), {&needed, nullptr, false, 0.0f}, costs, listener);
+    ASSERT_FALSE(listener.notices.empty());
+    EXPECT_NE(listener.notices[0].find("memory limit of 1 MiB"), std::string::npos) << listener.notices[0];
+    for (const LevelCost& cost : costs)
+        EXPECT_LE(cost.held_bytes, std::uint64_t{2} << 20);
+    const Difference d = difference(g.fluence, free.fluence);
+    EXPECT_LT(std::abs(d.mean), 0.03);
+    EXPECT_LT(d.rms, 0.06);
+}
+
+TEST(Agreement, InBatchesOrAtOnceTheLightIsTheSame) {
+    Recipe r = fireball(0.5f);
+    r.box = cube(0, 27);
+    r.density = r.flame = [](const ivec3& n) { return 0.5f + noise(n, 4); };
+    const Lit lit(make_medium(r));
+    ASSERT_GT(lit.grid.levels[0].size(), 2500u);
+    LightingSettings settings = lighting(ShadowMethod::Maps, 1.0f);
+    settings.shadow_resolution = 4;
+    settings.shadow_distances = 2;
+    std::vector<std::uint8_t> needed(lit.medium.lattice.node_count(), 0);
+    for (std::size_t i = 0; i < needed.size(); i += 61)
+        needed[i] = 1;
+    std::vector<LevelCost> whole_costs, costs;
+    Progress silent;
+    const LatticeRequest request{&needed, nullptr, false, 0.0f};
+    const Gathered whole = gather_at_nodes(field_of(lit, settings), request, whole_costs, silent);
+    settings.memory_limit_bytes = whole_costs[1].map_bytes / lit.grid.levels[0].size() * 2100;
+    const Gathered batches = gather_at_nodes(field_of(lit, settings), request, costs, silent);
+    EXPECT_LT(costs[1].held_bytes, whole_costs[1].held_bytes);
+    EXPECT_EQ(costs[1].resolution, whole_costs[1].resolution);
+    EXPECT_EQ(costs[1].evaluations, whole_costs[1].evaluations);
+    for (std::size_t i = 0; i < needed.size(); ++i)
+        if (needed[i]) {
+            ASSERT_NEAR(batches.fluence[i], whole.fluence[i], 2e-5f * whole.fluence[i]);
+        }
+}
+
+TEST(Agreement, MapsKeptForLaterAreTheSameMaps) {
+    const Lit lit(make_medium(fireball(2.0f)));
+    std::vector<LevelCost> costs;
+    Progress silent;
+    const std::vector<std::uint8_t> needed(lit.medium.lattice.node_count(), 1);
+    LightingSettings small = lighting(ShadowMethod::Maps, 1.0f);
+    small.shadow_resolution = 4;
+    small.shadow_distances = 2;
+    const Gathered whole = gather_at_nodes(field_of(lit, small), {&needed, nullptr, false, 0.0f}, costs, silent);
+    for (const LevelCost& cost : costs)
+        EXPECT_EQ(cost.map_bytes, cost.held_bytes);
+    ShadowMapCache cache;
+    LightField kept = field_of(lit, small);
+    kept.cache = &cache;
+    std::vector<LevelCost> ignored;
+    const Gathered first = gather_at_nodes(kept, {&needed, nullptr, false, 0.0f}, ignored, silent);
+    const Gathered second = gather_at_nodes(kept, {&needed, nullptr, false, 0.0f}, ignored, silent);
+    EXPECT_EQ(whole.fluence, first.fluence);
+    EXPECT_EQ(whole.fluence, second.fluence);
+}
+
+TEST(Agreement, TwiceTheSizeAndHalfTheExtinctionIsTheSameFire) {
+    Recipe r = fireball(2.0f);
+    const Lit small(make_medium(r));
+    r.world_from_index = cubic(2.0 / 10);
+    r.settings.smoke.extinction_per_metre = 1.0f;
+    const Lit large(make_medium(r));
+    const Gathered a = at_all_nodes(small, lighting(ShadowMethod::Maps, 1.0f));
+    const Gathered b = at_all_nodes(large, lighting(ShadowMethod::Maps, 1.0f));
+    for (std::size_t i = 0; i < a.fluence.size(); ++i)
+        ASSERT_NEAR(b.fluence[i], a.fluence[i], 1e-4f * a.fluence[i] + 1e-6f);
+}
+
+TEST(Agreement, WithoutLightNothingArrives) {
+    Recipe r = fireball(2.0f);
+    const Medium medium = make_medium(r);
+    const Lit lit(medium, std::vector<Rgb>(medium.lattice.node_count(), Rgb(0.0f)));
+    const Gathered g = at_all_nodes(lit, lighting(ShadowMethod::Maps));
+    EXPECT_TRUE(std::all_of(g.fluence.begin(), g.fluence.end(), [](float v) { return v == 0.0f; }));
+}
+
+}  // namespace
+}  // namespace brisance

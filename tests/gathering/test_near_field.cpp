@@ -1,0 +1,111 @@
+// The lattice's own near field: lines through voxels, and the light a node gives itself.
+#include <gtest/gtest.h>
+
+#include "gather_fixture.h"
+#include "gathering/near_field.h"
+
+namespace brisance {
+namespace {
+
+using namespace testing;
+
+// What a punctured cubic lattice of 1/d^2 lacks of its integral, times h^2.
+constexpr double kCubicLattice = 8.9136;
+
+TEST(NearField, SelfLightWithoutExtinctionIsTheLatticeConstant) {
+    for (const float h : {1.0f, 0.01f, 30.0f}) {
+        const NearField field(mat3(h), 2.0f * h, true);
+        EXPECT_NEAR(field.self_kernel(0.0f) * h * h, kCubicLattice, 0.01);
+        EXPECT_NEAR(field.self_kernel(1e-7f / h) * h * h, kCubicLattice, 0.01);
+    }
+}
+
+TEST(NearField, SelfLightInDenseSmokeIsAllThatIsEmitted) {
+    for (const float h : {1.0f, 0.05f}) {
+        const NearField field(mat3(h), 2.0f * h, true);
+        for (const double tau : {30.0, 1e2, 1e4, 1e6, 1e9}) {
+            const double all = 4.0 * kPiExact / (tau / h * h * h * h);
+            EXPECT_NEAR(field.self_kernel(float(tau / h)) / all, 1.0, 2e-3) << "optical thickness " << tau;
+        }
+    }
+}
+
+// kappa(s) + sum over o != 0 of exp(-s |o|) / |o|^2 = 4 pi / (s V): absorbed equals emitted, at every thickness.
+TEST(NearField, SelfLightClosesTheBalanceOfUniformSmoke) {
+    const NearField field(mat3(1.0f), 2.0f, true);
+    for (const double s : {0.4, 0.7, 1.0, 1.7, 3.0, 8.0}) {
+        double lattice = 0.0;
+        const int reach = static_cast<int>(35.0 / s);
+        for (int x = -reach; x <= reach; ++x)
+            for (int y = -reach; y <= reach; ++y)
+                for (int z = -reach; z <= reach; ++z) {
+                    const double d2 = double(x) * x + double(y) * y + double(z) * z;
+                    if (d2 > 0.0 && d2 <= double(reach) * reach)
+                        lattice += std::exp(-s * std::sqrt(d2)) / d2;
+                }
+        EXPECT_NEAR((field.self_kernel(float(s)) + lattice) / (4.0 * kPiExact / s), 1.0, 3e-3) << "s h = " << s;
+    }
+}
+
+TEST(NearField, SelfLightNeverTurnsNegativeNorGrowsWithExtinction) {
+    for (const mat3& lattice :
+         {mat3(1.0f), mat3(some_linear_map()), mat3(vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 6))}) {
+        const NearField field(lattice, 2.0f * std::cbrt(std::abs(glm::determinant(lattice))), true);
+        float before = 1e30f;
+        for (float s = 1e-4f; s < 1e5f; s *= 1.2f) {
+            const float kappa = field.self_kernel(s);
+            ASSERT_GE(kappa, 0.0f) << s;
+            ASSERT_LE(kappa, before * 1.0001f) << s;
+            before = kappa;
+        }
+    }
+}
+
+TEST(NearField, TapsIntegrateTheInterpolatedFieldExactly) {
+    const mat3 lattice(some_linear_map());
+    const float h = std::cbrt(std::abs(glm::determinant(lattice)));
+    const NearField field(lattice, 2.0f * h, true);
+    Recipe r;
+    r.box = cube(-16, 15);
+    r.world_from_index = transform(some_linear_map(), dvec3(0.0));
+    r.density = [](const ivec3& n) { return noise(n, 9); };
+    r.settings = black_smoke();
+    const Medium medium = make_medium(r);
+    const ExtinctionPyramid pyramid(medium, 1);
+    for (const NearField::Separation& s : field.stencil()) {
+        double depth = 0.0;
+        for (const NearField::Tap& tap : s.taps)
+            depth += double(tap.length) * medium.extinction[medium.lattice.find_node(tap.node)];
+        double marched = 0.0;
+        const int steps = 1000;
+        const vec3 from = medium.local_of_node(ivec3(0)), to = medium.local_of_node(s.node);
+        for (int k = 0; k < steps; ++k)
+            marched += pyramid.extinction_at(glm::mix(from, to, (k + 0.5f) / steps));
+        marched *= glm::length(to - from) / steps;
+        ASSERT_NEAR(depth / marched, 1.0, 2e-4);
+        ASSERT_LT(glm::length(s.direction + glm::normalize(to - from)), 1e-5f) << "from the light to the receiver";
+    }
+}
+
+TEST(NearField, TheStencilReachesAsFarAsTheBlendAndNoFarther) {
+    for (const float alpha : {1.0f, 2.0f, 3.0f}) {
+        const NearField field(mat3(0.5f), alpha * 0.5f, false);
+        std::size_t expected = 0;
+        for (int x = -6; x <= 6; ++x)
+            for (int y = -6; y <= 6; ++y)
+                for (int z = -6; z <= 6; ++z) {
+                    const float d = std::sqrt(float(x * x + y * y + z * z));
+                    expected += d > 0.0f && d < 2.0f * alpha;
+                }
+        EXPECT_EQ(field.separations(), expected);
+        for (const NearField::Separation& s : field.stencil()) {
+            const float d = 0.5f * glm::length(vec3(s.node));
+            const float blend = std::min(1.0f, 2.0f - d / (alpha * 0.5f));
+            EXPECT_NEAR(s.kernel, blend / (d * d), 1e-5f);
+            EXPECT_TRUE(s.taps.empty());
+        }
+    }
+}
+
+}  // namespace
+}  // namespace brisance

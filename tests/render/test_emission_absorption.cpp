@@ -1,0 +1,153 @@
+// Rays through glowing smoke against closed forms, from transparent to opaque.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fixtures/media.h"
+#include "render/integrate.h"
+
+namespace brisance {
+namespace {
+
+using testing::cube;
+using testing::cubic;
+using testing::make_medium;
+using testing::Recipe;
+
+constexpr double kThickness[] = {1e-6, 1e-4, 1e-2, 0.1, 1.0, 10.0, 1e2, 1e4, 1e6};  // optical, of a voxel
+
+// 32 voxels of 0.1 m along z, half a voxel of them in each of the ramps at the ends; source function 1 all over.
+Recipe slab(double voxel_depth) {
+    Recipe r;
+    r.box = {ivec3(-16, -16, -8), ivec3(15, 15, 39)};
+    r.world_from_index = cubic(0.1);
+    r.density = [](const ivec3& n) { return n.z >= 0 && n.z < 32 ? 1.0f : 0.0f; };
+    r.flame = [](const ivec3&) { return 1.0f; };
+    r.settings = testing::black_smoke();
+    r.settings.smoke.extinction_per_metre = static_cast<float>(voxel_depth / 0.1);
+    return r;
+}
+
+RaySum look(const Medium& medium, const dvec3& world_origin, const dvec3& direction, int parts = 2) {
+    const CellField field(medium, {}, {});
+    return integrate(field, {dvec3(medium.local_of_world(world_origin)), glm::normalize(direction)}, parts);
+}
+
+void expect_one_minus_transmittance(const RaySum& sum, double depth, double tolerance) {
+    EXPECT_NEAR(sum.v.x / -std::expm1(-depth), 1.0, tolerance) << "optical depth " << depth;
+    // Alpha is a picture's channel: right to a few of its rounding steps, or where it ends, in opacity 1 - 1e-5.
+    EXPECT_NEAR(1.0 - sum.transmittance, -std::expm1(-depth), 1e-5 + 1e-4 * std::min(1.0, depth));
+}
+
+TEST(EmissionAbsorption, SlabsRadiateOneMinusTransmittance) {
+    for (const double voxel : kThickness)
+        expect_one_minus_transmittance(look(make_medium(slab(voxel)), {0.013, 0.027, -5.0}, {0, 0, 1}), 32.0 * voxel,
+                                       2e-4);
+}
+
+TEST(EmissionAbsorption, SlantedRaysSeeALongerSlab) {
+    for (const double voxel : {1e-6, 1e-2, 0.1, 1.0}) {
+        const dvec3 direction(0.2, -0.15, 1.0);
+        const dvec3 origin = dvec3(0.013, 0.027, 1.6) - 2.5 * direction;
+        expect_one_minus_transmittance(look(make_medium(slab(voxel)), origin, direction),
+                                       32.0 * voxel * glm::length(direction), 2e-4);
+    }
+}
+
+TEST(EmissionAbsorption, RaysOnTheFacesOfVoxelsSeeTheSame) {
+    for (const double voxel : kThickness) {
+        const Medium medium = make_medium(slab(voxel));
+        for (const double x : {-0.8, 0.0, 0.1, 0.8})
+            for (const double sign : {-1.0, 1.0})
+                expect_one_minus_transmittance(look(medium, {x, 0.0, 1.6 - sign * 6.0}, {0, 0, sign}), 32.0 * voxel,
+                                               2e-4);
+    }
+}
+
+TEST(EmissionAbsorption, FromInsideARaySeesWhatIsAheadOfIt) {
+    for (const double voxel : kThickness) {
+        const Medium medium = make_medium(slab(voxel));
+        for (const double z : {0.0, 0.8, 1.0, 2.47}) {
+            const double ahead = z == 0.0 ? 31.5 : 31.5 - z / 0.1;
+            expect_one_minus_transmittance(look(medium, {0.013, 0.027, z}, {0, 0, 1}), ahead * voxel, 5e-4);
+        }
+    }
+}
+
+TEST(EmissionAbsorption, ASlabBehindASlabIsSeenThroughIt) {
+    for (const double voxel : {1e-4, 0.02, 0.1}) {
+        Recipe r = slab(voxel);
+        r.box.high.z = 79;
+        r.density = [](const ivec3& n) { return (n.z >= 0 && n.z < 16) || (n.z >= 40 && n.z < 72) ? 1.0f : 0.0f; };
+        r.flame = [](const ivec3& n) { return n.z < 28 ? 3.0f : 0.5f; };
+        const double first = 16.0 * voxel, second = 32.0 * voxel;
+        const double expected = -3.0 * std::expm1(-first) - 0.5 * std::exp(-first) * std::expm1(-second);
+        EXPECT_NEAR(look(make_medium(r), {0.0, 0.0, -3.0}, {0, 0, 1}).v.x / expected, 1.0, 2e-4);
+    }
+}
+
+TEST(EmissionAbsorption, BallsRadiateAsTheirChordsSay) {
+    for (const double radius_depth : {1e-5, 0.01, 0.5, 2.0, 10.0, 1e4, 1e7}) {
+        const Medium medium = make_medium(testing::glowing_ball(16, static_cast<float>(radius_depth)));
+        for (const double b : {0.0, 0.3, 0.6, 0.9}) {
+            const double chord = 2.0 * radius_depth * std::sqrt(1.0 - b * b);
+            const RaySum sum = look(medium, {b, 0.011, -3.0}, {0, 0, 1});
+            EXPECT_NEAR(sum.v.x / -std::expm1(-chord), 1.0, b > 0.8 ? 0.03 : 0.01) << radius_depth << ", b = " << b;
+        }
+    }
+}
+
+TEST(EmissionAbsorption, ATransparentFlameShinesByItsDepth) {
+    Recipe r = slab(1.0);
+    r.flame = r.density;
+    r.density = nullptr;
+    r.settings.fire.convention = EmissionConvention::Direct;
+    const RaySum sum = look(make_medium(r), {0.013, 0.027, -5.0}, {0, 0, 1});
+    EXPECT_NEAR(sum.v.x, 3.2, 1e-4);
+    EXPECT_EQ(sum.transmittance, 1.0f);
+}
+
+// Emission that does not care for density, within smoke: j / sigma (1 - exp(-tau)).
+TEST(EmissionAbsorption, AFlameInSmokeIsDimmedByIt) {
+    for (const double voxel : {1e-6, 1e-3, 0.3, 100.0}) {
+        Recipe r = slab(voxel);
+        r.flame = r.density;
+        r.settings.fire.convention = EmissionConvention::Direct;
+        const RaySum sum = look(make_medium(r), {0.013, 0.027, -5.0}, {0, 0, 1});
+        const double sigma = voxel / 0.1;
+        EXPECT_NEAR(sum.v.x / (-std::expm1(-32.0 * voxel) / sigma), 1.0, 2e-4) << voxel;
+    }
+}
+
+TEST(EmissionAbsorption, ScatteredSourcesAreSeenAsEmittedOnesAre) {
+    const Medium medium = make_medium(slab(0.05));
+    const std::vector<Rgb> single(medium.lattice.node_count(), Rgb(2.0f)), multiple(single.size(), Rgb(5.0f));
+    const CellField field(medium, single, multiple);
+    const RaySum sum = integrate(field, {dvec3(medium.local_of_world({0.0, 0.0, -5.0})), {0, 0, 1}}, 2);
+    const double opacity = -std::expm1(-32.0 * 0.05);
+    EXPECT_NEAR(sum.v.x / opacity, 1.0, 1e-4);
+    EXPECT_NEAR(sum.mv.x / opacity, 2.0, 2e-4);
+    EXPECT_NEAR(sum.mm.x / opacity, 5.0, 5e-4);
+}
+
+TEST(EmissionAbsorption, FinerStepsThroughNoiseConverge) {
+    Recipe r = slab(0.5);
+    r.density = [](const ivec3& n) { return testing::noise(n, 1); };
+    r.flame = [](const ivec3& n) { return testing::noise(n, 2); };
+    const Medium medium = make_medium(r);
+    const dvec3 origin(-0.3, 0.2, -5.0), direction(0.1, 0.05, 1.0);
+    const double fine = look(medium, origin, direction, 64).v.x;
+    EXPECT_NEAR(look(medium, origin, direction, 2).v.x / fine, 1.0, 0.01);
+    EXPECT_NEAR(look(medium, origin, direction, 16).v.x / fine, 1.0, 1e-3);
+}
+
+TEST(EmissionAbsorption, PhiOneIsRightForEveryDepth) {
+    EXPECT_EQ(phi1(0.0f), 1.0f);
+    for (double tau = 1e-12; tau < 1e12; tau *= 3.0) {
+        const double f = static_cast<float>(tau);
+        EXPECT_NEAR(phi1(float(f)) / (-std::expm1(-f) / f), 1.0, 3e-7) << tau;
+    }
+}
+
+}  // namespace
+}  // namespace brisance

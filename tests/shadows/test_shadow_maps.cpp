@@ -1,0 +1,210 @@
+// A light's map says how much of it is left, in every direction and at every distance it is asked at.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/parallel.h"
+#include "fixtures/media.h"
+#include "shadows/octahedral.h"
+#include "shadows/shadow_maps.h"
+
+namespace brisance {
+namespace {
+
+using testing::black_smoke;
+using testing::cube;
+using testing::cubic;
+using testing::Lit;
+using testing::make_medium;
+using testing::noise;
+using testing::Recipe;
+
+Recipe block(float extinction) {
+    Recipe r;
+    r.box = cube(-32, 32);
+    r.world_from_index = cubic(0.1);
+    r.density = [](const ivec3&) { return 1.0f; };
+    r.settings = black_smoke();
+    r.settings.smoke.extinction_per_metre = extinction;
+    return r;
+}
+
+ShadowMapLayout layout_of(const GridLevel& level) {
+    ShadowMapLayout layout;
+    layout.resolution = 16;
+    layout.distances = 8;
+    layout.near_distance = 0.5f * level.spacing;
+    layout.far_distance = 2.0f * level.spacing;
+    return layout;
+}
+
+std::vector<std::uint16_t> maps_of(const Lit& lit, const GridLevel& level, const ShadowMapLayout& layout) {
+    std::vector<std::uint16_t> maps;
+    build_shadow_maps(lit.pyramid, level, lit.weight, layout, 0, level.size(), maps);
+    return maps;
+}
+
+float distance_of(const ShadowMapLayout& layout, int k) {
+    return glm::mix(layout.near_distance, layout.far_distance, float(k) / float(layout.distances - 1));
+}
+
+// Transmittance of a texel; interior texels are 0 .. resolution - 1, the border lies at -1 and at resolution.
+float stored(const std::vector<std::uint16_t>& maps, const ShadowMapLayout& layout, std::size_t light, int u, int v,
+             int k) {
+    const std::size_t texel = std::size_t(u + 1) * layout.side() + (v + 1);
+    return float(maps[light * layout.stride() + texel * layout.distances + k]) / 65535.0f;
+}
+
+vec3 direction_of(const ShadowMapLayout& layout, int u, int v) {
+    const auto at = [&](int i) { return (2.0f * float(i) + 1.0f) / float(layout.resolution) - 1.0f; };
+    return octahedral_direction(at(u), at(v));
+}
+
+void expect_beers_law(const Lit& lit, const GridLevel& level, float extinction) {
+    const ShadowMapLayout layout = layout_of(level);
+    const std::vector<std::uint16_t> maps = maps_of(lit, level, layout);
+    for (std::size_t light = 0; light < level.size(); ++light)
+        for (int u = -1; u <= layout.resolution; ++u)
+            for (int v = -1; v <= layout.resolution; ++v)
+                for (int k = 0; k < layout.distances; ++k)
+                    ASSERT_NEAR(stored(maps, layout, light, u, v, k), std::exp(-extinction * distance_of(layout, k)),
+                                1e-3f);
+}
+
+TEST(ShadowMaps, UniformSmokeDimsByBeersLaw) {
+    for (const float extinction : {0.01f, 1.0f, 4.0f}) {
+        const auto lit = testing::single_light(make_medium(block(extinction)), ivec3(0));
+        for (int l = 0; l < 3; ++l)  // level 3 reaches 1.6 m, half way to the block's walls
+            expect_beers_law(*lit, lit->grid.levels[l], extinction);
+    }
+}
+
+TEST(ShadowMaps, UniformSmokeDimsByBeersLawOnASkewLatticeToo) {
+    Recipe r = block(1.0f);
+    r.world_from_index = testing::transform(testing::some_linear_map(), dvec3(0.0));
+    const auto lit = testing::single_light(make_medium(r), ivec3(0));
+    for (int l = 0; l < 2; ++l)
+        expect_beers_law(*lit, lit->grid.levels[l], 1.0f);
+}
+
+TEST(ShadowMaps, EmptySpaceDimsNothing) {
+    Recipe r = block(1.0f);
+    r.density = nullptr;
+    r.flame = [](const ivec3& n) { return testing::ball(n, dvec3(0.0), 4.0); };
+    r.settings.fire.convention = EmissionConvention::Direct;
+    const Lit lit(make_medium(r));
+    const GridLevel& level = lit.grid.levels[0];
+    const ShadowMapLayout layout = layout_of(level);
+    const std::vector<std::uint16_t> maps = maps_of(lit, level, layout);
+    for (std::size_t light = 0; light < level.size(); ++light)
+        for (int i = 0; i < layout.resolution; ++i)
+            for (int k = 0; k < layout.distances; ++k)
+                ASSERT_EQ(stored(maps, layout, light, i, 3, k), 1.0f);
+}
+
+TEST(ShadowMaps, AWallDarkensOnlyWhatLiesBehindIt) {
+    Recipe r = block(20.0f);
+    r.density = [](const ivec3& n) { return n.x >= 4 ? 1.0f : 1e-6f; };
+    const auto lit = testing::single_light(make_medium(r), ivec3(0));
+    const GridLevel& level = lit->grid.levels[2];
+    const ShadowMapLayout layout = layout_of(level);
+    const std::vector<std::uint16_t> maps = maps_of(*lit, level, layout);
+    for (int u = 0; u < layout.resolution; ++u)
+        for (int v = 0; v < layout.resolution; ++v) {
+            const vec3 w = direction_of(layout, u, v);
+            const float last = stored(maps, layout, 0, u, v, layout.distances - 1);
+            if (w.x < -0.05f) {
+                ASSERT_GT(last, 0.999f);
+            }
+            if (w.x > 0.8f) {
+                ASSERT_LT(last, 1e-4f);
+            }
+        }
+}
+
+TEST(ShadowMaps, LightFadesMonotonicallyWithDistance) {
+    Recipe r = block(3.0f);
+    r.density = [](const ivec3& n) { return noise(n, 1); };
+    r.flame = [](const ivec3& n) { return noise(n, 2); };
+    const Lit lit(make_medium(r));
+    const GridLevel& level = lit.grid.levels[2];
+    const ShadowMapLayout layout = layout_of(level);
+    const std::vector<std::uint16_t> maps = maps_of(lit, level, layout);
+    for (std::size_t light = 0; light < level.size(); light += 11)
+        for (int u = 0; u < layout.resolution; ++u)
+            for (int v = 0; v < layout.resolution; ++v)
+                for (int k = 1; k < layout.distances; ++k)
+                    ASSERT_LE(stored(maps, layout, light, u, v, k), stored(maps, layout, light, u, v, k - 1));
+}
+
+// The border continues the map over the edges of the octahedron's square: same texel, seen from the other side.
+TEST(ShadowMaps, TheBorderIsTheOtherSideOfTheSeam) {
+    for (const float v : {-0.9f, -0.2f, 0.0f, 0.4f, 0.8f}) {
+        for (const float side : {-1.0f, 1.0f}) {
+            EXPECT_LT(glm::length(octahedral_direction(side, v) - octahedral_direction(side, -v)), 1e-6f);
+            EXPECT_LT(glm::length(octahedral_direction(v, side) - octahedral_direction(-v, side)), 1e-6f);
+        }
+    }
+    Recipe r = block(2.0f);
+    r.density = [](const ivec3& n) { return noise(n >> 2, 1); };
+    const auto lit = testing::single_light(make_medium(r), ivec3(0));
+    const GridLevel& level = lit->grid.levels[1];
+    const ShadowMapLayout layout = layout_of(level);
+    const std::vector<std::uint16_t> maps = maps_of(*lit, level, layout);
+    const int end = layout.resolution, last = end - 1;
+    bool varies = false;
+    for (int i = 0; i < layout.resolution; ++i)
+        for (int k = 0; k < layout.distances; ++k) {
+            EXPECT_EQ(stored(maps, layout, 0, -1, i, k), stored(maps, layout, 0, 0, last - i, k));
+            EXPECT_EQ(stored(maps, layout, 0, end, i, k), stored(maps, layout, 0, last, last - i, k));
+            EXPECT_EQ(stored(maps, layout, 0, i, -1, k), stored(maps, layout, 0, last - i, 0, k));
+            EXPECT_EQ(stored(maps, layout, 0, i, end, k), stored(maps, layout, 0, last - i, last, k));
+            varies = varies || stored(maps, layout, 0, 0, i, k) != stored(maps, layout, 0, 0, last - i, k);
+        }
+    for (int k = 0; k < layout.distances; ++k) {  // all four corners are the downward pole
+        EXPECT_EQ(stored(maps, layout, 0, -1, -1, k), stored(maps, layout, 0, last, last, k));
+        EXPECT_EQ(stored(maps, layout, 0, end, -1, k), stored(maps, layout, 0, 0, last, k));
+    }
+    EXPECT_TRUE(varies);
+}
+
+TEST(ShadowMaps, TransmittanceAgreesWithAPlainMarch) {
+    Recipe r = block(1.5f);
+    r.density = [](const ivec3& n) { return 0.5f + 0.5f * std::sin(0.2f * n.x) * std::cos(0.15f * (n.y + n.z)); };
+    const auto lit = testing::single_light(make_medium(r), ivec3(2, -3, 5));
+    const GridLevel& level = lit->grid.levels[1];
+    const ShadowMapLayout layout = layout_of(level);
+    const std::vector<std::uint16_t> maps = maps_of(*lit, level, layout);
+    const vec3 light = lit->medium.local_of_node({2, -3, 5});
+    for (int u = 0; u < layout.resolution; ++u)
+        for (int v = 0; v < layout.resolution; ++v)
+            for (int k = 0; k < layout.distances; ++k) {
+                const vec3 to = light + direction_of(layout, u, v) * distance_of(layout, k);
+                ASSERT_NEAR(stored(maps, layout, 0, u, v, k), std::exp(-lit->pyramid.optical_depth(light, to)), 0.01f);
+            }
+}
+
+TEST(ShadowMaps, APartOfTheLevelHasTheMapsOfTheWholeWhateverTheThreads) {
+    Recipe r = block(3.0f);
+    r.density = [](const ivec3& n) { return noise(n, 1); };
+    r.flame = [](const ivec3& n) { return noise(n, 2); };
+    const Lit lit(make_medium(r));
+    const GridLevel& level = lit.grid.levels[2];
+    const ShadowMapLayout layout = layout_of(level);
+    const std::vector<std::uint16_t> whole = maps_of(lit, level, layout);
+    for (const int threads : {1, 8}) {
+        const ThreadLimit limit(threads);
+        std::vector<std::uint16_t> part;
+        build_shadow_maps(lit.pyramid, level, lit.weight, layout, 5, 20, part);
+        ASSERT_EQ(part.size(), 20 * layout.stride());
+        for (std::size_t i = 0; i < part.size(); ++i) {
+            const std::size_t texel = i % layout.stride();
+            if (texel + 2 < layout.stride()) {
+                ASSERT_EQ(part[i], whole[5 * layout.stride() + i]);
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace brisance

@@ -1,0 +1,134 @@
+// The table of keys: ranges and types hold for every key, in the code as in the schema.
+
+#include "shot/keys.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "shot/write_shot.h"
+#include "shot_errors.h"
+
+namespace brisance {
+namespace {
+
+using testing::complaint_about;
+using testing::with;
+
+TEST(Keys, HaveDistinctNamesKnownSectionsAndHelp) {
+    std::set<std::string> names;
+    for (const Key& key : shot_keys()) {
+        EXPECT_TRUE(names.insert(key.path).second) << key.path;
+        EXPECT_FALSE(key.help.empty()) << key.path;
+        EXPECT_FALSE(key.expected.empty()) << key.path;
+        const std::size_t point = key.path.rfind('.');
+        if (point != std::string::npos) {
+            const std::string section = key.path.substr(0, point);
+            EXPECT_TRUE(std::any_of(shot_sections().begin(), shot_sections().end(), [&](const auto& known) {
+                return known.first == section;
+            })) << key.path;
+        }
+    }
+}
+
+TEST(Keys, RefuseEveryOtherTypeAndLeaveTheShotAlone) {
+    const std::vector<Json> samples = {nullptr,       true, -7777777777.0, "no such word", Json::array({"a"}),
+                                       Json::object()};
+    for (const Key& key : shot_keys()) {
+        int accepted = 0;
+        for (const Json& sample : samples) {
+            Shot shot;
+            if (key.set(shot, sample))
+                ++accepted;
+            else
+                EXPECT_EQ(to_json(shot), to_json(Shot{})) << key.path << " " << sample.dump();
+        }
+        EXPECT_LE(accepted, 2) << key.path;  // text, and null beside it for grids
+    }
+}
+
+TEST(Keys, TellWhatWasGivenAndWhatIsExpected) {
+    EXPECT_EQ(complaint_about({"smoke.albedo=1.5"}),
+              "--set smoke.albedo=1.5: smoke.albedo: expected a number in [0, 1] or three of them [r, g, b], got 1.5 "
+              "(a number)");
+    EXPECT_EQ(complaint_about({"smoke.mean_cosine=1"}),
+              "--set smoke.mean_cosine=1: smoke.mean_cosine: expected a number in (-1, 1), got 1 (a number)");
+    EXPECT_EQ(complaint_about({"lighting.shadows=soft"}),
+              "--set lighting.shadows=soft: lighting.shadows: expected one of \"maps\", \"exact\", \"none\", got "
+              "\"soft\" (text)");
+    EXPECT_EQ(complaint_about({"output.png=1"}),
+              "--set output.png=1: output.png: expected true or false, got 1 (a number)");
+    EXPECT_EQ(complaint_about({"lighting.levels=many"}),
+              "--set lighting.levels=many: lighting.levels: expected \"auto\" or a whole number in [1, 24], got "
+              "\"many\" (text)");
+}
+
+TEST(Keys, BoundsAreChecked) {
+    const std::vector<std::string> wrong = {
+        "smoke.extinction_per_metre=-1",
+        "smoke.albedo=-0.1",
+        "smoke.albedo=[0.5,0.5]",
+        "smoke.albedo=[0.5,0.5,1.01]",
+        "smoke.mean_cosine=-1",
+        "fire.strength=-1",
+        "fire.strength=1e39",
+        "fire.colour=-1",
+        "fire.ramp=[[1,1],[1,1]]",
+        "fire.ramp=[[0,-1]]",
+        "fire.ramp=[[0]]",
+        "fire.temperature_kelvin=[-1,5]",
+        "camera.vertical_fov_degrees=0",
+        "camera.width=0",
+        "camera.vertical_fov_degrees=180",
+        "camera.width=20000",
+        "camera.height=7.5",
+        "camera.samples_per_axis=0",
+        "camera.filter_width_pixels=0",
+        "camera.up=[0,1]",
+        "lighting.alpha=0.9",
+        "lighting.levels=0",
+        "lighting.shadow_resolution=1",
+        "lighting.memory_limit_mebibytes=0",
+        "scattering.bounces=-1",
+        "scattering.remainder=0",
+        "scattering.remainder=1",
+        "scattering.lattice_level=-1",
+        "scattering.alpha=0",
+        "output.exposure_stops=1000",
+        "output.frames_per_second=0",
+        "volume.file=",
+        "colour_role=smoke",
+    };
+    for (const std::string& setting : wrong)
+        EXPECT_NE(complaint_about({setting}), "") << setting;
+    const std::vector<std::string> right = {
+        "smoke.extinction_per_metre=0",
+        "smoke.albedo=0",
+        "smoke.albedo=1",
+        "smoke.mean_cosine=-0.999",
+        "fire.ramp=[]",
+        "camera.width=16384",
+        "camera.width=640.0",
+        "lighting.alpha=1",
+        "lighting.levels=auto",
+        "scattering.bounces=0",
+        "scattering.bounces=all",
+        "scattering.lattice_level=0",
+        "output.exposure_stops=auto",
+        "volume.preset=auto",
+        "volume.preset=automatic",
+        "$schema=x.json",
+    };
+    for (const std::string& setting : right)
+        EXPECT_EQ(complaint_about({setting}), "") << setting;
+}
+
+TEST(Keys, FloatsAreWrittenAsTheyWereMeant) {
+    const std::string json = to_json(with({"smoke.albedo=0.1", "scattering.remainder=0.0001"}));
+    EXPECT_NE(json.find("\"albedo\": [0.1, 0.1, 0.1]"), std::string::npos) << json;
+    EXPECT_NE(json.find("\"remainder\": 0.0001,"), std::string::npos) << json;
+}
+
+}  // namespace
+}  // namespace brisance

@@ -1,0 +1,203 @@
+// Reading a shot: layers, places in the file, and complaints that say what to do.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "shot/nearest_key.h"
+#include "shot/write_shot.h"
+#include "shot_errors.h"
+
+namespace brisance {
+namespace {
+
+using testing::complaint;
+using testing::complaint_about;
+using testing::parsed;
+using testing::with;
+
+TEST(ReadShot, EveryKindOfValueArrives) {
+    const Shot shot = parsed(R"({
+        // a comment
+        "name": "burst",
+        "volume": {"file": "burst_####.vdb", "preset": "embergen", "half_voxel_shift": true,
+                   "grids": {"density": "density[1]", "temperature": "", "flame": null}},  /* another */
+        "smoke": {"extinction_per_metre": 20, "albedo": [0.9, 0.8, 0.7], "mean_cosine": -0.3},
+        "fire": {"model": "blackbody", "convention": "direct", "strength": 2.5, "threshold": -1, "colour": 0.5,
+                 "ramp": [[0, [1, 0, 0]], [2.5, [1, 1, 0.5]]], "modulate_by_flame": true,
+                 "temperature_in": [0, 3], "temperature_kelvin": [300, 2500]},
+        "colour_role": "emission",
+        "camera": {"eye": [1, 2, 3], "target": [0, 0, 0.5], "up": [0, 1, 0], "vertical_fov_degrees": 50.5,
+                   "width": 640, "height": 480, "samples_per_axis": 4, "filter": "gaussian",
+                   "filter_width_pixels": 2},
+        "lighting": {"alpha": 3, "levels": 5, "shadows": "exact", "shadow_resolution": 32, "shadow_distances": 12,
+                     "memory_limit_mebibytes": 512, "gather": "ray_march", "energy_balance": false},
+        "scattering": {"bounces": 4, "remainder": 0.01, "lattice_level": 1, "alpha": 2},
+        "output": {"path": "x.exr", "png": false, "statistics": false, "layers": {"cells": false, "bounces": true},
+                   "exposure_stops": -1.5, "view": "srgb", "frames_per_second": 24}
+    })");
+    EXPECT_EQ(shot.name, "burst");
+    EXPECT_EQ(shot.folder, "folder");
+    EXPECT_EQ(shot.volume.file, "burst_####.vdb");
+    EXPECT_EQ(shot.volume.preset, MappingPreset::EmberGen);
+    EXPECT_EQ(shot.volume.grids.density, "density[1]");
+    EXPECT_EQ(shot.volume.grids.temperature, "");
+    EXPECT_FALSE(shot.volume.grids.flame.has_value());
+    EXPECT_FALSE(shot.volume.grids.colour.has_value());
+    EXPECT_TRUE(shot.volume.half_voxel_shift);
+    EXPECT_EQ(shot.medium.smoke.extinction_per_metre, 20.0f);
+    EXPECT_EQ(shot.medium.smoke.albedo, Rgb(0.9f, 0.8f, 0.7f));
+    EXPECT_EQ(shot.medium.smoke.mean_cosine, -0.3f);
+    EXPECT_EQ(shot.medium.fire.model, FireModel::Blackbody);
+    EXPECT_EQ(shot.medium.fire.convention, EmissionConvention::Direct);
+    EXPECT_EQ(shot.medium.fire.threshold, -1.0f);
+    EXPECT_EQ(shot.medium.fire.colour, Rgb(0.5f));
+    ASSERT_EQ(shot.medium.fire.ramp.size(), 2u);
+    EXPECT_EQ(shot.medium.fire.ramp[1].value, 2.5f);
+    EXPECT_EQ(shot.medium.fire.ramp[1].colour, Rgb(1.0f, 1.0f, 0.5f));
+    EXPECT_EQ(shot.medium.fire.temperature_kelvin, vec2(300.0f, 2500.0f));
+    EXPECT_EQ(shot.medium.colour_role, ColourRole::Emission);
+    EXPECT_TRUE(shot.camera_given);
+    EXPECT_EQ(shot.camera.target, dvec3(0.0, 0.0, 0.5));
+    EXPECT_EQ(shot.camera.vertical_fov_degrees, 50.5);
+    EXPECT_EQ(shot.camera.samples_per_axis, 4);
+    EXPECT_EQ(shot.camera.filter, PixelFilter::Gaussian);
+    EXPECT_EQ(shot.lighting.levels, 5);
+    EXPECT_EQ(shot.lighting.shadows, ShadowMethod::Exact);
+    EXPECT_EQ(shot.lighting.memory_limit_bytes, std::uint64_t{512} << 20);
+    EXPECT_EQ(shot.lighting.gather, GatherMethod::RayMarch);
+    EXPECT_FALSE(shot.lighting.energy_balance);
+    EXPECT_EQ(shot.scattering.bounces, 4);
+    EXPECT_EQ(shot.scattering.lattice_level, 1);
+    EXPECT_TRUE(shot.output.bounce_layers);
+    EXPECT_TRUE(shot.exposure_given);
+    EXPECT_EQ(shot.output.exposure_stops, -1.5f);
+    EXPECT_EQ(shot.output.view, ViewTransform::Srgb);
+    EXPECT_EQ(shot.output.frames_per_second, 24.0);
+}
+
+TEST(ReadShot, WhatIsNotGivenKeepsItsDefault) {
+    const Shot shot = with({});
+    const Shot defaults;
+    EXPECT_EQ(shot.lighting.alpha, defaults.lighting.alpha);
+    EXPECT_EQ(shot.scattering.bounces, -1);
+    EXPECT_EQ(shot.camera.samples_per_axis, 0);
+    EXPECT_FALSE(shot.camera_given);
+    EXPECT_FALSE(shot.exposure_given);
+}
+
+TEST(ReadShot, SizeAndAngleAloneLeaveTheCameraFramed) {
+    EXPECT_FALSE(with({"camera.width=320", "camera.up=[0,1,0]", "camera.vertical_fov_degrees=20"}).camera_given);
+    EXPECT_TRUE(with({"camera.world_from_camera=[1,0,0,4, 0,1,0,5, 0,0,1,6, 0,0,0,1]"}).camera_given);
+}
+
+TEST(ReadShot, MatrixIsReadRowAfterRow) {
+    const Shot shot = with({"camera.world_from_camera=[1,0,0,4, 0,0,-1,5, 0,1,0,6, 0,0,0,1]"});
+    const dmat4 m = *shot.camera.world_from_camera;
+    EXPECT_EQ(dvec3(m[3]), dvec3(4.0, 5.0, 6.0));
+    EXPECT_EQ(dvec3(m * glm::dvec4(0, 0, -1, 0)), dvec3(0.0, 1.0, 0.0));  // looks along world +y
+}
+
+TEST(ReadShot, LaterLayersWin) {
+    const std::string file = R"({"volume": {"file": "a.vdb"}, "lighting": {"alpha": 4, "levels": 3}})";
+    EXPECT_EQ(parsed(file).lighting.alpha, 4.0f);
+    EXPECT_EQ(parsed(file, {"final", {}}).lighting.alpha, 4.0f);
+    const Shot draft = parsed(file, {"draft", {}});
+    EXPECT_LT(draft.lighting.alpha, 4.0f);
+    EXPECT_LT(draft.lighting.shadow_resolution, LightingSettings{}.shadow_resolution);
+    EXPECT_EQ(draft.lighting.levels, 3);
+    EXPECT_EQ(parsed(file, {"draft", {"lighting.alpha=5", "lighting.alpha=6"}}).lighting.alpha, 6.0f);
+}
+
+TEST(ReadShot, OverridesMayBeWholeSectionsOrPlainText) {
+    const Shot shot = with({R"(smoke={"albedo": 0.5, "mean_cosine": 0.25})", "name=2024", "volume.grids.flame=fire",
+                            "volume.grids.density=null", "output.path=a=b.exr"});
+    EXPECT_EQ(shot.medium.smoke.albedo, Rgb(0.5f));
+    EXPECT_EQ(shot.medium.smoke.mean_cosine, 0.25f);
+    EXPECT_EQ(shot.name, "2024");
+    EXPECT_EQ(shot.volume.grids.flame, "fire");
+    EXPECT_FALSE(shot.volume.grids.density.has_value());
+    EXPECT_EQ(shot.output.path, "a=b.exr");
+}
+
+TEST(ReadShot, UnknownKeysNameTheNearest) {
+    EXPECT_EQ(complaint("{\"volume\": {\"file\": \"a.vdb\"},\n \"smoke\": {\n  \"albdo\": 0.9}}"),
+              "a.json:3: unknown key smoke.albdo; did you mean smoke.albedo?");
+    EXPECT_EQ(complaint(R"({"colour_rôle": "albedo"})"),
+              "a.json:1: unknown key colour_rôle; did you mean colour_role?");
+    EXPECT_EQ(complaint_about({"albedo=1"}), "--set albedo=1: unknown key albedo; did you mean smoke.albedo?");
+    EXPECT_EQ(complaint_about({"lighting.bounces=1"}),
+              "--set lighting.bounces=1: unknown key lighting.bounces; did you mean scattering.bounces?");
+    EXPECT_EQ(complaint_about({"smoek.albedo=1"}),
+              "--set smoek.albedo=1: unknown key smoek.albedo; did you mean smoke.albedo?");
+    EXPECT_EQ(complaint_about({"ligting={}"}), "--set ligting={}: unknown key ligting; did you mean lighting?");
+    EXPECT_NE(complaint_about({"smoke.albedo.r=1"}), "");
+}
+
+TEST(ReadShot, MistakesInTheTextNameTheLine) {
+    EXPECT_EQ(complaint("{\n \"smoke\": {\"albedo\": 1,\n\n \"albedo\": 0}}"),
+              "a.json:4: smoke.albedo is given twice; it was given first on line 2");
+    EXPECT_TRUE(complaint("{\n\"name\": \"a\",\n}").starts_with("a.json:3: syntax error"));
+    EXPECT_TRUE(complaint("{\n\"name\" \"a\"}").starts_with("a.json:2: syntax error"));
+    EXPECT_TRUE(complaint("").starts_with("a.json:1: syntax error"));
+    EXPECT_TRUE(complaint("{\"name\": \"\xff\"}").starts_with("a.json:1: "));
+    EXPECT_EQ(complaint("[]"), "a.json: a shot: expected an object in braces, got [] (a list)");
+    EXPECT_EQ(complaint("{\n\"smoke\": 3}"), "a.json:2: smoke: expected an object in braces, got 3 (a number)");
+    EXPECT_EQ(complaint("{}"), "a.json: volume.file is missing: which .vdb file to render");
+    EXPECT_NE(complaint_about({"nonsense"}), "");
+    EXPECT_NE(complaint_about({"=3"}), "");
+}
+
+TEST(ReadShot, ContradictionsAreFound) {
+    EXPECT_NE(complaint_about({"camera.eye=[1,2,3]"}), "");
+    EXPECT_NE(complaint_about({"camera.target=[1,2,3]"}), "");
+    EXPECT_NE(complaint_about({"camera.eye=[1,2,3]", "camera.target=[1,2,3]"}), "");
+    EXPECT_NE(complaint_about({"camera.eye=[0,0,9]", "camera.target=[0,0,0]"}), "");  // along up
+    EXPECT_EQ(complaint_about({"camera.eye=[0,0,9]", "camera.target=[0,0,0]", "camera.up=[0,1,0]"}), "");
+    EXPECT_NE(complaint_about({"camera.up=[0,0,0]"}), "");
+    const std::string rigid = "camera.world_from_camera=[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]";
+    EXPECT_EQ(complaint_about({rigid}), "");
+    EXPECT_NE(complaint_about({rigid, "camera.eye=[1,0,0]", "camera.target=[0,0,0]"}), "");
+    EXPECT_NE(complaint_about({rigid, "camera.up=[0,1,0]"}), "");
+    for (const char* matrix : {"2,0,0,0, 0,2,0,0, 0,0,2,0, 0,0,0,1",   // scaled
+                               "-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1",  // mirrored
+                               "0,0,0,0, 0,0,0,0, 0,0,0,0, 0,0,0,1",   // singular
+                               "1,0,0,0, 0,1,0,0, 0,0,1,0, 4,5,6,1"})  // column after column
+        EXPECT_NE(complaint_about({"camera.world_from_camera=[" + std::string(matrix) + "]"}), "") << matrix;
+    EXPECT_NE(complaint_about({"fire.temperature_in=[1,1]"}), "");
+    EXPECT_NE(complaint_about({"fire.modulate_by_flame=true"}), "");
+    EXPECT_EQ(complaint_about({"fire.modulate_by_flame=true", "fire.model=blackbody"}), "");
+}
+
+TEST(ReadShot, FilesAreTakenByNameAndFolder) {
+    const std::filesystem::path folder = std::filesystem::temp_directory_path() / "brisance-shot-test";
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "burst.json") << R"({"volume": {"file": "a.vdb"}})";
+    const Shot shot = read_shot(folder / "burst.json");
+    std::filesystem::remove_all(folder);
+    EXPECT_EQ(shot.name, "burst");
+    EXPECT_EQ(shot.folder, folder);
+    try {
+        read_shot(folder / "burst.json");
+        FAIL() << "a file that is not there was read";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::MissingInput);
+    }
+}
+
+TEST(ReadShot, UnknownPresetsNameTheKnown) {
+    EXPECT_NE(complaint(R"({"volume": {"file": "a.vdb"}})", {"drfat", {}}).find("draft and final"), std::string::npos);
+}
+
+TEST(NearestKey, CountsTheStrokesBetweenTexts) {
+    EXPECT_EQ(edit_distance("", ""), 0);
+    EXPECT_EQ(edit_distance("abc", ""), 3);
+    EXPECT_EQ(edit_distance("albedo", "albdo"), 1);
+    EXPECT_EQ(edit_distance("albedo", "abledo"), 1);
+    EXPECT_EQ(edit_distance("kitten", "sitting"), 3);
+}
+
+}  // namespace
+}  // namespace brisance

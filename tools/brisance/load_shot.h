@@ -1,0 +1,22 @@
+// The shot a command line means: a shot file, or a bare .vdb with what its numbers suggest.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "shot/read_shot.h"
+#include "shot/shot.h"
+#include "volume/frame_path.h"
+
+namespace brisance {
+
+// `input` ending in .vdb, with or without frame tokens, gets the shot that `inspect` suggests for it (for the largest
+// file of a sequence, so that every frame gets the same); anything else is a shot file. Throws Error.
+Shot load_shot(const std::string& input, const ShotOptions& options, Progress& progress);
+
+// The volume's path or pattern, seen from the current folder.
+std::string volume_pattern(const Shot& shot);
+
+}  // namespace brisance

@@ -1,0 +1,26 @@
+// Where the files of each frame go.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "shot/shot.h"
+#include "volume/frame_path.h"
+
+namespace brisance {
+
+struct FrameOutput {
+    std::filesystem::path exr;
+    std::filesystem::path png;         // empty: not wanted
+    std::filesystem::path statistics;  // STEM.stats.json; empty: not wanted
+};
+
+// One output for each frame. `asked`: the EXR of the command line, or a folder for it, relative to the current folder;
+// empty: the shot's, relative to the shot's folder; if that is empty too, the shot's name in the current folder.
+// `inputs` are never overwritten. Throws Error Usage (no .exr; several frames would get one name; an input would be
+// overwritten), CannotCreate or OutputFailed when a folder is missing or cannot be written into.
+std::vector<FrameOutput> plan_outputs(const Shot& shot, const std::string& asked, const std::vector<FrameFile>& frames,
+                                      const std::filesystem::path& input);
+
+}  // namespace brisance

@@ -1,0 +1,222 @@
+#include "render_command.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "film/write_image.h"
+#include "load_shot.h"
+#include "outputs.h"
+#include "render/render_frame.h"
+#include "shot/write_shot.h"
+#include "volume/vdb_header.h"
+
+namespace brisance {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Failures {
+    std::size_t count = 0;
+    ExitCode first = ExitCode::Success;
+};
+
+Shot load(const RenderOptions& options, Progress& progress) {
+    return load_shot(options.input, {options.preset, options.overrides}, progress);
+}
+
+// Runs `work`; what it throws becomes a line and is counted. Returns whether it came to its end.
+bool attempt(const std::string& what, const std::function<void()>& work, TextProgress& progress, Failures& failures) {
+    const auto fail = [&](ExitCode code, const std::string& line) {
+        progress.say(fmt::format("error: {}{}", what, line));
+        if (failures.count++ == 0)
+            failures.first = code;
+        return false;
+    };
+    try {
+        work();
+        return true;
+    } catch (const Error& error) {
+        return fail(error.code(), error.what());
+    } catch (const std::bad_alloc&) {
+        return fail(ExitCode::Temporary, "out of memory; render at a lower resolution or on a larger machine");
+    } catch (const std::exception& error) {
+        return fail(ExitCode::RenderFailed, error.what());
+    }
+}
+
+std::optional<std::vector<int>> asked_frames(const RenderOptions& options) {
+    return options.frames.empty() ? std::nullopt : std::optional(parse_frames(options.frames));
+}
+
+// Files of all frames, each of them there and recognisably whole, before the first is rendered: a mistake in frame 90
+// should not cost the time of 89 frames. With --keep-going the others remain.
+std::vector<FrameFile> usable_frames(const std::string& pattern, const RenderOptions& options, TextProgress& progress,
+                                     Failures& failures) {
+    const std::optional<std::vector<int>> asked = asked_frames(options);
+    std::vector<FrameFile> frames;
+    if (!options.keep_going || !asked) {
+        frames = resolve_sequence(pattern, asked);
+    } else {
+        for (const int frame : *asked)
+            attempt(
+                "",
+                [&] {
+                    frames.push_back({frame, resolve_frame(pattern, frame)});
+                },
+                progress, failures);
+    }
+    std::vector<FrameFile> usable;
+    for (const FrameFile& frame : frames) {
+        if (!options.keep_going)
+            read_vdb_header(frame.file);
+        if (!options.keep_going || attempt(
+                                       "", [&] { read_vdb_header(frame.file); }, progress, failures))
+            usable.push_back(frame);
+    }
+    return usable;
+}
+
+// For `say`, which ends the line itself.
+std::string without_last_newline(std::string text) {
+    if (text.ends_with('\n'))
+        text.pop_back();
+    return text;
+}
+
+// Exposure of the PNGs. An automatic one is kept from the first frame that is not black, so that a sequence does not
+// pump.
+class PngExposure {
+public:
+    explicit PngExposure(const Shot& shot) {
+        if (shot.exposure_given)
+            stops_ = shot.output.exposure_stops;
+    }
+    float of(const Image& image, TextProgress& progress) {
+        if (stops_)
+            return *stops_;
+        const float stops = automatic_exposure(image);
+        if (stops != 0.0f) {
+            stops_ = std::round(100.0f * stops) / 100.0f;
+            progress.notice(
+                fmt::format("exposure of the PNG: {:+.2f} stops, chosen from the picture; keep it with --set "
+                            "output.exposure_stops={:.2f}",
+                            *stops_, *stops_));
+        }
+        return stops_.value_or(0.0f);
+    }
+
+private:
+    std::optional<float> stops_;
+};
+
+void add_metadata(RenderedFrame& frame, const Shot& shot, const fs::path& volume) {
+    auto& text = frame.metadata.text;
+    text.try_emplace("brisance/version", BRISANCE_VERSION);
+    text.try_emplace("brisance/shot", to_json(shot));
+    text.try_emplace("brisance/settings_hash", settings_hash(shot));
+    text.try_emplace("brisance/volume", volume.filename().string());
+    if (frame.metadata.frames_per_second == 0.0)
+        frame.metadata.frames_per_second = shot.output.frames_per_second;
+}
+
+std::string statistics_json(const RenderedFrame& frame, const fs::path& volume, const FrameOutput& output,
+                            std::optional<float> exposure) {
+    nlohmann::ordered_json json = {
+        {"schema_version", 1},           {"brisance", BRISANCE_VERSION},
+        {"frame", frame.metadata.frame}, {"volume", volume.string()},
+        {"image", output.exr.string()},  {"settings_hash", frame.metadata.text.at("brisance/settings_hash")}};
+    if (exposure)
+        json["png_exposure_stops"] = *exposure;
+    json.update(frame.statistics.to_json());
+    return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+void announce(const fs::path& file) {
+    std::puts(file.string().c_str());
+    std::fflush(stdout);
+}
+
+void write_frame(RenderedFrame& frame, const Shot& shot, const fs::path& volume, const FrameOutput& output,
+                 PngExposure& png_exposure, TextProgress& progress) {
+    progress.stage("writing");
+    add_metadata(frame, shot, volume);
+    const std::string trouble = write_exr(output.exr, frame.image, frame.metadata).describe();
+    announce(output.exr);
+    if (!trouble.empty()) {
+        progress.warning("exr-range", trouble);
+        frame.statistics.warnings.push_back("exr-range: " + trouble);
+    }
+    std::optional<float> exposure;
+    if (!output.png.empty()) {
+        exposure = png_exposure.of(frame.image, progress);
+        write_png(output.png, frame.image, *exposure, shot.output.view);
+        announce(output.png);
+    }
+    if (!output.statistics.empty()) {
+        write_text(output.statistics, statistics_json(frame, volume, output, exposure));
+        announce(output.statistics);
+    }
+}
+
+}  // namespace
+
+int run_render(const RenderOptions& options) {
+    TextProgress progress(options.progress);
+    const ThreadLimit limit(options.threads);
+    const Shot shot = load(options, progress);
+    if (options.print_config) {
+        progress.finish();
+        std::fputs(to_json(shot).c_str(), stdout);
+        return static_cast<int>(ExitCode::Success);
+    }
+    Failures failures;
+    const std::vector<FrameFile> frames = usable_frames(volume_pattern(shot), options, progress, failures);
+    const std::vector<FrameOutput> outputs = plan_outputs(shot, options.output, frames, options.input);
+    PngExposure exposure(shot);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        const FrameFile& frame = frames[i];
+        progress.begin_frame(frame.frame, frame.file.string(), i, frames.size());
+        const auto work = [&] {
+            RenderedFrame rendered = render_frame(shot, frame.file, frame.frame, progress);
+            write_frame(rendered, shot, frame.file, outputs[i], exposure, progress);
+            if (options.explain)
+                progress.say(without_last_newline(rendered.statistics.explain()));
+        };
+        const std::string what = frames.size() > 1 ? fmt::format("frame {}: ", frame.frame) : "";
+        if (!attempt(what, work, progress, failures) && !options.keep_going)
+            break;
+    }
+    if (failures.count > 0 && options.keep_going)
+        progress.say(fmt::format("{} frame{} failed", failures.count, failures.count == 1 ? "" : "s"));
+    progress.finish();
+    return static_cast<int>(failures.first);
+}
+
+int run_plan(const RenderOptions& options) {
+    TextProgress progress(options.progress);
+    const ThreadLimit limit(options.threads);
+    const Shot shot = load(options, progress);
+    Failures failures;
+    const std::vector<FrameFile> frames = usable_frames(volume_pattern(shot), options, progress, failures);
+    if (frames.empty())
+        return static_cast<int>(failures.first);
+    const std::vector<FrameOutput> outputs = plan_outputs(shot, options.output, frames, options.input);
+    const Statistics plan = plan_frame(shot, frames.front().file, progress);
+    progress.finish();
+    for (std::size_t i = 0; i < frames.size(); ++i)
+        fmt::print("frame {}: {} -> {}\n", frames[i].frame, frames[i].file.string(), outputs[i].exr.string());
+    fmt::print("{}{}\n", frames.size() > 1 ? fmt::format("plan of frame {}\n", frames.front().frame) : "",
+               without_last_newline(plan.explain()));
+    return static_cast<int>(failures.first);
+}
+
+}  // namespace brisance

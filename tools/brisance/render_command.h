@@ -1,0 +1,31 @@
+// `brisance render` and `brisance plan`.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "progress.h"
+
+namespace brisance {
+
+struct RenderOptions {
+    std::string input;   // a shot file, or a .vdb with or without frame tokens
+    std::string output;  // -o; empty: the shot's, or by name
+    std::string frames;  // -f; empty: those on disk
+    std::string preset;
+    std::vector<std::string> overrides;
+    int threads = 0;  // 0: all processors
+    bool explain = false;
+    bool print_config = false;
+    bool keep_going = false;
+    ProgressStyle progress = ProgressStyle::Automatic;
+};
+
+// Renders every frame and writes the paths of finished files to standard output. Returns the exit code; a failed
+// frame's where --keep-going went on after it. Throws Error for everything that concerns all frames.
+int run_render(const RenderOptions& options);
+
+// Prints what a render would read and do, to standard output. Throws Error.
+int run_plan(const RenderOptions& options);
+
+}  // namespace brisance

@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+"""Fails when a file of src/ includes a module or a library that its row in src/README.md leaves out.
+
+usage: check_includes.py SRC_FOLDER
+"""
+
+import pathlib
+import re
+import sys
+
+ROW = re.compile(r"^\| `(\w+)` \|[^|]*\|([^|]*)\|([^|]*)\|\s*$")
+INCLUDE = re.compile(r"^\s*#\s*include\s*([<\"])([^>\"]+)[>\"]", re.MULTILINE)
+# Other names under which a library's headers are found.
+ALIASES = {"oneapi": "tbb", "nanovdb": "openvdb"}
+SOURCES = {".h", ".hpp", ".cpp", ".cc", ".inl"}
+
+
+def read_rules(readme):
+    """Module name to (names it may include, libraries), in the order of the table."""
+    rules = {}
+    for line in readme.read_text(encoding="utf-8").splitlines():
+        match = ROW.match(line)
+        if match:
+            name, modules, libraries = match.groups()
+            split = lambda cell: [word for word in cell.split() if word != "-"]
+            rules[name] = (split(modules), split(libraries))
+    return rules
+
+
+def check_table(root, rules):
+    """The table itself: every folder has a row, every row a folder, and directions do not turn round."""
+    folders = {path.name for path in root.iterdir() if path.is_dir()}
+    for name in sorted(folders - rules.keys()):
+        yield f"{name}: no row in README.md"
+    for name in sorted(rules.keys() - folders):
+        yield f"{name}: a row in README.md, but no such folder"
+    above = set()
+    for name, (modules, _) in rules.items():
+        for module in modules:
+            if "/" not in module and module not in above:
+                yield f"{name}: its row names {module}, which is not a row above it"
+        above.add(name)
+
+
+def check_file(path, root, rules):
+    """Complaints about one file's includes."""
+    shown = path.relative_to(root)
+    name = shown.parts[0]
+    modules, libraries = rules[name]
+    walled = {library for _, names in rules.values() for library in names}
+    text = path.read_text(encoding="utf-8")
+    for match in INCLUDE.finditer(text):
+        quote, header = match.groups()
+        line = text.count("\n", 0, match.start(1)) + 1
+        first = header.split("/")[0]
+        library = ALIASES.get(first, first)
+        if library.startswith("Imf"):
+            library = "OpenEXR"
+        if first in rules:
+            if first != name and first not in modules and header not in modules:
+                yield f"{shown}:{line}: {name} must not include {header}"
+        elif library in walled:
+            if library not in libraries:
+                yield f"{shown}:{line}: {name} must not include {library}"
+        elif quote == '"' and not (root / header).exists():
+            yield f"{shown}:{line}: write {header} from src/ on, with its module"
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    root = pathlib.Path(sys.argv[1])
+    rules = read_rules(root / "README.md")
+    if not rules:
+        sys.exit(f"{root}/README.md holds no table of modules")
+    complaints = list(check_table(root, rules))
+    for path in sorted(root.glob("*/**/*")):
+        if path.suffix in SOURCES and path.relative_to(root).parts[0] in rules:
+            complaints += check_file(path, root, rules)
+    print("\n".join(complaints) if complaints else f"{len(rules)} modules keep to the table")
+    sys.exit(1 if complaints else 0)
+
+
+if __name__ == "__main__":
+    main()
