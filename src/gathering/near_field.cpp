@@ -104,37 +104,60 @@ NearField::NearField(const mat3& local_from_index, float radius, bool shadows)
     tabulate_self_kernel();
 }
 
+namespace {
+
+// The lattice correction by a Gaussian window w: K = w K + (1 - w) K, where (1 - w) K is smooth and the lattice sums it
+// without error, its value 1 / window^2 at the origin included.
+double windowed_self_kernel(double s, double window, double volume, const std::vector<double>& distances) {
+    double kappa = 4.0 * kPi * windowed_integral(s, window) / volume + 1.0 / (window * window);
+    for (double d : distances)
+        kappa -= std::exp(-s * d - d * d / (window * window)) / (d * d);
+    return kappa;
+}
+
+// Where extinction itself is the window.
+double direct_self_kernel(double s, double volume, const std::vector<double>& distances) {
+    double kappa = 4.0 * kPi / (s * volume);
+    for (double d : distances)
+        kappa -= std::exp(-s * d) / (d * d);
+    return kappa;
+}
+
+// Distances of all lattice nodes but the origin within `reach` [m].
+std::vector<double> node_distances(const mat3& local_from_index, double reach) {
+    const mat3 inverse = glm::transpose(glm::inverse(local_from_index));
+    ivec3 nodes;
+    for (int a = 0; a < 3; ++a)
+        nodes[a] = static_cast<int>(reach * glm::length(inverse[a]));
+    std::vector<double> distances;
+    for (int x = -nodes.x; x <= nodes.x; ++x)
+        for (int y = -nodes.y; y <= nodes.y; ++y)
+            for (int z = -nodes.z; z <= nodes.z; ++z) {
+                const double d = glm::length(local_from_index * vec3(x, y, z));
+                if (d > 0.0 && d < reach)
+                    distances.push_back(d);
+            }
+    return distances;
+}
+
+}  // namespace
+
 void NearField::tabulate_self_kernel() {
-    const double h = spacing_;
+    const double h = spacing_, volume = h * h * h;
     double longest = 0.0;
     for (int a = 0; a < 3; ++a)
         longest = std::max(longest, double(glm::length(local_from_index_[a])));
-    const double window = 2.5 * longest;
     const bool nearly_cubic = longest < 3.0 * h;
-    std::vector<double> distances;
-    if (nearly_cubic) {
-        const mat3 inverse = glm::transpose(glm::inverse(local_from_index_));
-        ivec3 reach;
-        for (int a = 0; a < 3; ++a)
-            reach[a] = static_cast<int>(5.0 * window * glm::length(inverse[a]));
-        for (int x = -reach.x; x <= reach.x; ++x)
-            for (int y = -reach.y; y <= reach.y; ++y)
-                for (int z = -reach.z; z <= reach.z; ++z) {
-                    const double d = glm::length(local_from_index_ * vec3(x, y, z));
-                    if (d > 0.0 && d < 5.0 * window)
-                        distances.push_back(d);
-                }
-    }
+    const double window = 5.0 * longest;
+    const std::vector<double> distances =
+        nearly_cubic ? node_distances(local_from_index_, 5.0 * window) : std::vector<double>{};
     self_.resize(kSelfEntries);
     parallel_for(kSelfEntries, [&](std::size_t i) {
         const double u = std::min(double(i) / (kSelfEntries - 1), 0.9999);
         const double s = u / (1.0 - u) / h;
-        double kappa = ball_self_kernel(s, h * h * h);
-        if (nearly_cubic) {
-            kappa = 4.0 * kPi * windowed_integral(s, window) / (h * h * h);
-            for (double d : distances)
-                kappa -= std::exp(-s * d - d * d / (window * window)) / (d * d);
-        }
+        const double kappa = !nearly_cubic            ? ball_self_kernel(s, volume)
+                             : s * longest < 0.7 ? windowed_self_kernel(s, window, volume, distances)
+                                                 : direct_self_kernel(s, volume, distances);
         self_[i] = static_cast<float>(kappa * h * h * (1.0 + s * h));
     });
 }

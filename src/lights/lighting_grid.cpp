@@ -17,19 +17,12 @@ struct Moments {
     Rgb intensity{0.0f};
     float weight = 0.0f;
     vec3 first{0.0f};
-    float second[6] = {};  // xx yy zz yz xz xy
 
     // Adds `share` of other moments whose vertex lies at `shift` from this one.
     void add(const Moments& m, float share, const vec3& shift) {
         intensity += share * m.intensity;
         const float w = share * m.weight;
-        const vec3 f = share * m.first;
-        for (int a = 0; a < 3; ++a) {
-            const int b = (a + 1) % 3, c = (a + 2) % 3;
-            second[a] += share * m.second[a] + 2.0f * f[a] * shift[a] + w * shift[a] * shift[a];
-            second[3 + a] += share * m.second[3 + a] + f[b] * shift[c] + f[c] * shift[b] + w * shift[b] * shift[c];
-        }
-        first += f + w * shift;
+        first += share * m.first + w * shift;
         weight += w;
     }
 };
@@ -78,37 +71,6 @@ MomentField coarser(const BrickLattice& fine_lattice, const Fine& fine, float fi
     return coarse;
 }
 
-// Lower-triangular square root of a covariance matrix; zero columns where a direction has no spread.
-mat3 cholesky(const mat3& c) {
-    mat3 l(0.0f);
-    const float tiny = 1e-6f * std::max(c[0][0] + c[1][1] + c[2][2], 1e-30f);
-    for (int j = 0; j < 3; ++j) {
-        float diagonal = c[j][j];
-        for (int k = 0; k < j; ++k)
-            diagonal -= l[k][j] * l[k][j];
-        if (diagonal <= tiny)
-            continue;
-        l[j][j] = std::sqrt(diagonal);
-        for (int i = j + 1; i < 3; ++i) {
-            float v = c[j][i];
-            for (int k = 0; k < j; ++k)
-                v -= l[k][i] * l[k][j];
-            l[j][i] = v / l[j][j];
-        }
-    }
-    return l;
-}
-
-mat3 extent_of(const Moments& m, const vec3& mean, const mat3& local_from_index) {
-    mat3 covariance;
-    for (int a = 0; a < 3; ++a) {
-        const int b = (a + 1) % 3, c = (a + 2) % 3;
-        covariance[a][a] = m.second[a] / m.weight - mean[a] * mean[a];
-        covariance[b][c] = covariance[c][b] = m.second[3 + a] / m.weight - mean[b] * mean[c];
-    }
-    return cholesky(local_from_index * covariance * glm::transpose(local_from_index));
-}
-
 GridLevel level_from(const Medium& medium, const MomentField& field, int number) {
     GridLevel level;
     level.level = number;
@@ -126,7 +88,6 @@ GridLevel level_from(const Medium& medium, const MomentField& field, int number)
     const std::size_t n = found.size();
     level.vertex.resize(n);
     level.position.resize(n);
-    level.extent.resize(n);
     level.intensity.resize(n);
     level.node.resize(n);
     parallel_for(n, [&](std::size_t k) {
@@ -135,7 +96,6 @@ GridLevel level_from(const Medium& medium, const MomentField& field, int number)
         level.vertex[k] = found[k].first;
         level.node[k] = found[k].second;
         level.position[k] = medium.local_of_node(found[k].first * (1 << number)) + medium.local_from_index * mean;
-        level.extent[k] = extent_of(m, mean, medium.local_from_index);
         level.intensity[k] = m.intensity;
     }, 256);
     level.index_rows();
@@ -161,7 +121,7 @@ void GridLevel::index_rows() {
 }
 
 std::uint64_t GridLevel::bytes() const {
-    return size() * (sizeof(ivec3) + sizeof(vec3) + sizeof(mat3) + sizeof(Rgb) + 4) + row_begin.size() * 4 +
+    return size() * (sizeof(ivec3) + sizeof(vec3) + sizeof(Rgb) + 4) + row_begin.size() * 4 +
            lattice.bytes();
 }
 

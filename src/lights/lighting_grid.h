@@ -21,7 +21,6 @@ struct GridLevel {
     float spacing = 0.0f;          // h_l [m]
     std::vector<ivec3> vertex;     // in vertices of this level, sorted by (x, y, z)
     std::vector<vec3> position;    // illumination centre, local [m]
-    std::vector<mat3> extent;      // square root of the covariance: extent * (unit-variance offset) [m]
     std::vector<Rgb> intensity;    // [W/sr]
 
     // Degrees 1 and 2 of a directional intensity, 24 per light ([3 * m + colour], sh.h); empty: isotropic.

@@ -4,7 +4,8 @@
 //   I_i = integral of hat_i(x) j(x) dV,   j = extinction * source + emission,
 // each factor interpolated on its own. Hats sum to one and reproduce linear functions, so the sum of all I_i is the exact
 // integral of j and their first moment is exact too. The integrand is of degree three per axis in each cell: a 2-point
-// Gauss rule per axis integrates it without error.
+// Gauss rule per axis integrates it without error. The result is then sharpened (sharpen_lights): the sum stays exact, the
+// first moment wherever the fire is smooth.
 #pragma once
 
 #include <cstdint>

@@ -58,7 +58,8 @@ ExtinctionPyramid::Packed ExtinctionPyramid::pack(const BrickLattice& lattice, c
     constexpr int kSide = BrickLattice::kSize + 1;
     std::vector<std::uint8_t> used(cells.brick_count(), 0);
     std::vector<std::vector<std::uint32_t>> packed(cells.brick_count());
-    const float to_stored = maximum > 0.0f ? kStoredMaximum / maximum : 0.0f;
+    // Extinction too small for its inverse to be a float stops nothing over any distance a float can hold.
+    const float to_stored = maximum > 1e-30f ? kStoredMaximum / maximum : 0.0f;
     parallel_for(cells.brick_count(), [&](std::size_t b) {
         std::vector<float> box(kSide * kSide * kSide);
         copy_box(lattice, nodes, 1, cells.first_node(b), ivec3(kSide), box);

@@ -45,13 +45,15 @@ SourceGrid source_grid(const BlockGrid& grid, bool half_voxel_shift, const dmat4
     for (const ivec3& o : grid.block_origin)
         bricks.push_back(o >> 3);
     s.lattice = BrickLattice(std::move(bricks));
-    const dvec3 offset(s.index_from_target[3]);
-    const dvec3 whole = glm::round(offset);
-    double deviation = glm::length(offset - whole);
-    for (int a = 0; a < 3; ++a) {
-        dvec3 unit(0.0);
-        unit[a] = 1.0;
-        deviation = std::max(deviation, 1e3 * glm::length(dvec3(s.index_from_target[a]) - unit));
+    // A whole shift, judged where the voxels are: at the corners of the grid's bricks.
+    const dmat4 target_from_index = glm::inverse(s.index_from_target);
+    const ivec3 first = s.lattice.min_brick() * BrickLattice::kSize;
+    const dvec3 whole = glm::round(dvec3(first) - dvec3(target_from_index * glm::dvec4(dvec3(first), 1.0)));
+    double deviation = 0.0;
+    for (int k = 0; k < 8; ++k) {
+        const dvec3 corner(first + s.lattice.brick_extent() * BrickLattice::kSize * ivec3(k & 1, k >> 1 & 1, k >> 2 & 1));
+        const dvec3 target(target_from_index * glm::dvec4(corner, 1.0));
+        deviation = std::max(deviation, glm::length(corner - target - whole));
     }
     if (deviation < 1e-3)
         s.shift = ivec3(whole);
@@ -210,12 +212,14 @@ void drop_zero_emission(Medium& medium) {
             field->clear();
 }
 
-void report_negatives(const MediumGrids& grids, Progress& progress) {
+void report_odd_values(const MediumGrids& grids, Progress& progress) {
     for (const auto* g : {&grids.density, &grids.temperature, &grids.flame, &grids.colour}) {
         if (!*g)
             continue;
         const GridCensus& c = (*g)->census;
         const std::string name = "grid '" + (*g)->info.name + "'";
+        if ((*g)->empty())
+            progress.notice(name + " is empty (no active voxel, or all zero)");
         if (c.nan_voxels)
             progress.warning("nan", name + ": " + std::to_string(c.nan_voxels) + " NaN or infinite voxels read as 0");
         if (c.negative_voxels && g != &grids.temperature)
@@ -249,7 +253,7 @@ std::uint64_t Medium::bytes() const {
 
 Medium build_medium(const MediumGrids& grids, const MediumSettings& settings, bool half_voxel_shift,
                     Progress& progress) {
-    report_negatives(grids, progress);
+    report_odd_values(grids, progress);
     Medium medium;
     set_transform(medium, finest(grids), half_voxel_shift);
     medium.albedo = settings.smoke.albedo;

@@ -28,7 +28,7 @@ vec3 sample_position(const CellSegment& s, double t) {
 void add_part(RaySum& sum, const CellRecord& r, bool direct, float length, float distance) {
     const float sigma = r.value[CellRecord::Extinction];
     const float tau = sigma * length;
-    const float path = sum.transmittance * length * phi1(tau);  // integral of T along the part [m]
+    const float path = std::exp(-sum.depth) * length * phi1(tau);  // integral of T along the part [m]
     const float opacity = path * sigma;
     sum.v += slot(r, CellRecord::V) * (direct ? path : opacity);
     sum.mv += slot(r, CellRecord::MV) * opacity;
@@ -36,7 +36,7 @@ void add_part(RaySum& sum, const CellRecord& r, bool direct, float length, float
     sum.albedo_sum += opacity * r.value[CellRecord::Albedo];
     sum.distance_weight += opacity;
     sum.distance_sum += opacity * distance;
-    sum.transmittance *= std::exp(-tau);
+    sum.depth += tau;
 }
 
 // Visits every part of every cell: visit(record, length, distance, direction) until it returns false.
@@ -107,7 +107,7 @@ public:
         const std::size_t i = std::size_t(y) * image_.width + x;
         const Rgb beauty = s.v + s.mv + s.mm;
         float* b = &image_.layers[beauty_].pixels[4 * i];
-        b[0] = beauty.x, b[1] = beauty.y, b[2] = beauty.z, b[3] = 1.0f - s.transmittance;
+        b[0] = beauty.x, b[1] = beauty.y, b[2] = beauty.z, b[3] = s.alpha;
         put(v_, i, s.v);
         put(mv_, i, s.mv);
         put(mm_, i, s.mm);
@@ -137,16 +137,10 @@ void add_weighted(RaySum& sum, const RaySum& s, float w) {
     sum.v += w * s.v;
     sum.mv += w * s.mv;
     sum.mm += w * s.mm;
-    sum.transmittance += w * s.transmittance;
+    sum.alpha += w * s.alpha;
     sum.distance_weight += w * s.distance_weight;
     sum.distance_sum += w * s.distance_sum;
     sum.albedo_sum += w * s.albedo_sum;
-}
-
-RaySum empty_pixel() {
-    RaySum sum;
-    sum.transmittance = 0.0f;
-    return sum;
 }
 
 // One row of pixels with lighting asked for at the march's own points: collect, light, integrate.
@@ -159,17 +153,17 @@ void marched_row(const CellField& field, const Camera& camera, int y, const std:
                 body(x, s, camera.ray(x + 0.5 + s.x, y + 0.5 + s.y));
     };
     for_rays([&](int, const PixelSample&, const Ray& ray) {
-        float transmittance = 1.0f;
+        float depth = 0.0f;
         walk_parts(field, ray, parts, [&](const CellRecord& r, float length, double t) {
             points.push_back({vec3(ray.origin + ray.direction * t), -vec3(ray.direction)});
-            transmittance *= std::exp(-r.value[CellRecord::Extinction] * length);
-            return transmittance > kOpaqueTransmittance;
+            depth += r.value[CellRecord::Extinction] * length;
+            return depth < kOpaqueDepth;
         });
     });
     std::vector<PointLighting> lighting(points.size());
     light_points(points, lighting);
     std::size_t next = 0;
-    std::vector<RaySum> row(camera.settings().width, empty_pixel());
+    std::vector<RaySum> row(camera.settings().width);
     for_rays([&](int x, const PixelSample& s, const Ray& ray) {
         RaySum sum;
         walk_parts(field, ray, parts, [&](CellRecord r, float length, double t) {
@@ -179,8 +173,9 @@ void marched_row(const CellField& field, const Camera& camera, int y, const std:
                 r.value[CellRecord::MM + c] = l.multiple[c];
             }
             add_part(sum, r, field.direct_emission(), length, static_cast<float>(t));
-            return sum.transmittance > kOpaqueTransmittance;
+            return sum.depth < kOpaqueDepth;
         });
+        sum.alpha = -std::expm1(-sum.depth);
         add_weighted(row[x], sum, s.weight);
     });
     for (int x = 0; x < camera.settings().width; ++x)
@@ -193,8 +188,9 @@ RaySum integrate(const CellField& field, const Ray& ray, int parts) {
     RaySum sum;
     walk_parts(field, ray, parts, [&](const CellRecord& r, float length, double t) {
         add_part(sum, r, field.direct_emission(), length, static_cast<float>(t));
-        return sum.transmittance > kOpaqueTransmittance;
+        return sum.depth < kOpaqueDepth;
     });
+    sum.alpha = -std::expm1(-sum.depth);
     return sum;
 }
 
@@ -224,7 +220,7 @@ Image render_picture(const CellField& field, const Camera& camera, const Picture
     std::atomic<int> done = 0;
     parallel_for(height, [&](std::size_t y) {
         for (int x = 0; x < width; ++x) {
-            RaySum sum = empty_pixel();
+            RaySum sum;
             for (const PixelSample& s : samples)
                 add_weighted(sum, integrate(field, camera.ray(x + 0.5 + s.x, y + 0.5 + s.y), settings.parts), s.weight);
             writer.pixel(x, static_cast<int>(y), sum);

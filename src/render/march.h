@@ -27,15 +27,15 @@ void walk_cells(const CellField& field, const Ray& ray, const Visit& visit);
 // What one ray sees. Radiance per ledger cell [W/(m^2 sr)].
 struct RaySum {
     Rgb v{0.0f}, mv{0.0f}, mm{0.0f};
-    float transmittance = 1.0f;
+    float depth = 0.0f;            // optical depth of the ray so far
+    float alpha = 0.0f;            // 1 - exp(-depth), set when the ray is done
     float distance_weight = 0.0f;  // opacity gathered, ...
     float distance_sum = 0.0f;     // ... times the distance along the ray [m]
     float albedo_sum = 0.0f;       // ... times albedo (luminance)
 };
 
-// Below this transmittance a ray ends: what lies behind changes a pixel by less than half a float's rounding step would
-// in a picture; alpha is then 1 to four digits.
-constexpr float kOpaqueTransmittance = 1e-5f;
+// Beyond this optical depth (transmittance 1e-5) a ray ends; alpha is then 1 to four digits.
+constexpr float kOpaqueDepth = 11.5f;
 
 }  // namespace brisance
 

@@ -88,9 +88,6 @@ std::uint64_t vertex_key(const ivec3& v) {
     return part(v.x) << 42 | part(v.y) << 21 | part(v.z);
 }
 
-// One draw of the hat function's density on [-1, 1].
-float hat_sample(Rng& rng) { return rng.next() + rng.next() - 1.0f; }
-
 // Node index of each of `rays` systematic picks in proportion to luminance.
 std::vector<std::size_t> pick_nodes(const std::vector<Rgb>& intensity, std::size_t rays) {
     double sum = 0.0;
@@ -116,14 +113,12 @@ EscapeEstimate estimate_escape(const ExtinctionPyramid& pyramid, const std::vect
         return estimate;
     ExitRays exits(pyramid, picks.size());
     parallel_for(picks.size(), [&](std::size_t r) {
-        Rng rng(Stream::EscapeRay, r);
         const std::size_t i = picks[r];
         const ivec3 node = medium.lattice.first_node(i / BrickLattice::kNodes) +
                            BrickLattice::node_in_brick(static_cast<int>(i % BrickLattice::kNodes));
-        const vec3 jitter(hat_sample(rng), hat_sample(rng), hat_sample(rng));
         // Golden-ratio rotation of consecutive rays: well spread for any run of them.
         const double u = std::fmod(0.5 + r * 0.7548776662466927, 1.0), v = std::fmod(0.5 + r * 0.5698402909980532, 1.0);
-        exits.set(r, vec3(node - medium.reference_node) + jitter, sphere_direction(u, v));
+        exits.set(r, vec3(node - medium.reference_node), sphere_direction(u, v));
     }, 1024);
     const std::vector<float> transmittance = exits.march(1.0f);
     dvec3 escaped[2] = {dvec3(0.0), dvec3(0.0)}, emitted[2] = {dvec3(0.0), dvec3(0.0)};

@@ -13,9 +13,9 @@ struct EscapeEstimate {
     std::size_t rays = 0;
 };
 
-// Unbiased but for the march's step: `rays` rays start at lights in proportion to luminance, systematically over the
-// nodes' order, spread over the light's hat, and leave in stratified directions; each carries its marched transmittance
-// to the edge of the medium. Two halves give the standard error.
+// `rays` rays start at the lights' nodes in proportion to luminance, systematically over the nodes' order, and leave in
+// stratified directions; each carries its marched transmittance to the edge of the medium. Unbiased for the node lights
+// but for the march's step. Two halves give the standard error.
 EscapeEstimate estimate_escape(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& intensity, std::size_t rays);
 
 // Power absorbed and scattered, over 4 pi: the exact integral of extinction * fluence of the two interpolated fields.

@@ -12,8 +12,8 @@ namespace brisance {
 
 namespace {
 
-// The smallest step worth taking [m]: half a node along the lattice's shortest edge, but no more than 64 times finer than
-// the mean spacing, so that a lattice of needles does not make marches endless.
+// The smallest step worth taking [m]: the lattice's shortest edge, but no finer than a sixteenth of the mean spacing, so
+// that a lattice of needles does not make marches endless.
 float finest_step(const Medium& medium) {
     float edge = medium.spacing;
     for (int a = 0; a < 3; ++a)
@@ -22,8 +22,8 @@ float finest_step(const Medium& medium) {
 }
 
 // Rays see density averaged over this share of the light's spacing at the light. Wide averages save steps and lose the
-// clumps of smoke in which fire burns: half a spacing let 5 % too much light through on real smoke, an eighth 1 %.
-constexpr float kFilterShare = 0.125f;
+// clumps of smoke in which fire burns: half a spacing let 5 % too much light through on real smoke, a sixteenth 1 %.
+constexpr float kFilterShare = 0.0625f;
 
 // Steps one averaged voxel long over [begin, end]; averages shrink to single voxels at the far end of the range.
 void add_steps(const ExtinctionPyramid& pyramid, const GridLevel& level, float far, float begin, float end, int store,

@@ -9,7 +9,7 @@
 //    centre (exp is convex, and fire burns where the smoke is dense): up to the nearest distance asked for, each texel
 //    averages several rays that start at voxels the light stands for, picked systematically in proportion to what they
 //    give it, and converge there.
-//  - Rays see density averaged over an eighth of the light's spacing near the light, shrinking to single voxels at the
+//  - Rays see density averaged over a sixteenth of the light's spacing near the light, shrinking to single voxels at the
 //    far end.
 #pragma once
 

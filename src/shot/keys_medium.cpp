@@ -33,7 +33,7 @@ void add_fire_keys(std::vector<Key>& keys) {
         "fire.strength", "multiplies the emission", real_float(at_least(0.0)),
         [](Shot & s) -> auto& { return s.medium.fire.strength; }));
     keys.push_back(make_key(
-        "fire.threshold", "subtracted from the emitting grid's values, before interpolation", real_float(any_number()),
+        "fire.threshold", "subtracted from the emitting grid's values, before interpolation", real_float(at_least(0.0)),
         [](Shot & s) -> auto& { return s.medium.fire.threshold; }));
     keys.push_back(make_key(
         "fire.colour", "multiplies the emission, linear Rec. 709", rgb(at_least(0.0)),

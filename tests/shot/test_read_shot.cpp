@@ -25,7 +25,7 @@ TEST(ReadShot, EveryKindOfValueArrives) {
         "volume": {"file": "burst_####.vdb", "preset": "embergen", "half_voxel_shift": true,
                    "grids": {"density": "density[1]", "temperature": "", "flame": null}},  /* another */
         "smoke": {"extinction_per_metre": 20, "albedo": [0.9, 0.8, 0.7], "mean_cosine": -0.3},
-        "fire": {"model": "blackbody", "convention": "direct", "strength": 2.5, "threshold": -1, "colour": 0.5,
+        "fire": {"model": "blackbody", "convention": "direct", "strength": 2.5, "threshold": 0.25, "colour": 0.5,
                  "ramp": [[0, [1, 0, 0]], [2.5, [1, 1, 0.5]]], "modulate_by_flame": true,
                  "temperature_in": [0, 3], "temperature_kelvin": [300, 2500]},
         "colour_role": "emission",
@@ -52,7 +52,7 @@ TEST(ReadShot, EveryKindOfValueArrives) {
     EXPECT_EQ(shot.medium.smoke.mean_cosine, -0.3f);
     EXPECT_EQ(shot.medium.fire.model, FireModel::Blackbody);
     EXPECT_EQ(shot.medium.fire.convention, EmissionConvention::Direct);
-    EXPECT_EQ(shot.medium.fire.threshold, -1.0f);
+    EXPECT_EQ(shot.medium.fire.threshold, 0.25f);
     EXPECT_EQ(shot.medium.fire.colour, Rgb(0.5f));
     ASSERT_EQ(shot.medium.fire.ramp.size(), 2u);
     EXPECT_EQ(shot.medium.fire.ramp[1].value, 2.5f);
