@@ -139,14 +139,14 @@ ScatteredLight scattered_light(const Medium& medium, const Gathered& arriving, c
 CoarseOperator::CoarseOperator(const ExtinctionPyramid& fine, int level, const LightingSettings& lighting, float alpha)
     : level_(level), medium_(coarse_medium(fine, level)), lighting_(lighting), alpha_(alpha) {
     pyramid_ = std::make_unique<ExtinctionPyramid>(medium_, ExtinctionPyramid::kMaxLevels);
-    weight_ = medium_.extinction;
-    mask_.resize(weight_.size());
-    for (std::size_t i = 0; i < weight_.size(); ++i)
+    unit_ = project_extinction_times(medium_, std::vector<Rgb>(medium_.extinction.size(), Rgb(1.0f)));
+    weight_.resize(unit_.size());
+    mask_.resize(unit_.size());
+    for (std::size_t i = 0; i < unit_.size(); ++i) {
+        weight_[i] = unit_[i].x;
         active_ += mask_[i] = weight_[i] > 0.0f;
-    std::vector<Rgb> unit(weight_.size());
-    for (std::size_t i = 0; i < unit.size(); ++i)
-        unit[i] = Rgb(medium_.voxel_volume * weight_[i]);
-    grid_ = build_lighting_grid(medium_, unit, &weight_, automatic_levels(medium_));
+    }
+    grid_ = build_lighting_grid(medium_, unit_, &weight_, automatic_levels(medium_));
     factor_.assign(weight_.size(), 1.0f);
     if (lighting_.energy_balance)
         balance_nodes(fine);
@@ -173,14 +173,12 @@ void CoarseOperator::balance_nodes(const ExtinctionPyramid& fine) {
     for (std::size_t k = 0; k < nodes.size(); ++k)
         escape_[nodes[k]] = escape[k];
 
-    // D K D (V sigma) = 4 pi (1 - escape), by the symmetric fixed point D <- D sqrt(wanted / found).
+    // D K D (unit source) = 4 pi (1 - escape), by the symmetric fixed point D <- D sqrt(wanted / found).
     std::vector<LevelCost> costs;
     Progress silent;
     ScatteredLight unit;
-    unit.intensity.resize(mask_.size());
+    unit.intensity = unit_;
     for (int sweep = 0; sweep < kBalanceSweeps; ++sweep) {
-        for (std::size_t i = 0; i < mask_.size(); ++i)
-            unit.intensity[i] = Rgb(medium_.voxel_volume * medium_.extinction[i]);
         const Gathered found = gather(unit, costs, silent);
         for (std::size_t i : nodes) {
             const float wanted = 4.0f * kPi * (1.0f - escape_[i]);
@@ -234,7 +232,7 @@ ScatteredLight CoarseOperator::bounce(const ScatteredLight& lights, BounceBalanc
         if (!escape_.empty())
             escaped += dvec3(lights.intensity[i]) * double(escape_[i]);
         const Rgb fluence(arriving.fluence[i], arriving.fluence[n + i], arriving.fluence[2 * n + i]);
-        hit += dvec3(fluence) * double(medium_.voxel_volume * medium_.extinction[i] / (4.0f * kPi));
+        hit += dvec3(fluence) * double(weight_[i] / (4.0f * kPi));
     }
     const double y = luminance(Rgb(emitted));
     balance.collided = luminance(Rgb(hit)) / y;
@@ -247,21 +245,7 @@ ScatteredLight CoarseOperator::bounce(const ScatteredLight& lights, BounceBalanc
         balance.scale = (1.0 - balance.escaped) / balance.collided;
         arriving.scale(scale);
     }
-    ScatteredLight next;
-    next.intensity.resize(n, Rgb(0.0f));
-    next.directional.assign(lights.directional.size(), 0.0f);
-    parallel_for(n, [&](std::size_t i) {
-        if (!mask_[i])
-            return;
-        const Rgb scattering = medium_.voxel_volume * medium_.extinction[i] * medium_.albedo_at(i);
-        for (int c = 0; c < 3; ++c) {
-            next.intensity[i][c] = scattering[c] * arriving.fluence[c * n + i] / (4.0f * kPi);
-            for (int m = 0; m < kShMoments && !next.directional.empty(); ++m)
-                next.directional[i * 24 + 3 * m + c] = scattering[c] * sh_phase_factor(m, medium_.mean_cosine) *
-                                                       arriving.moments[(3 * m + c) * n + i];
-        }
-    }, 512);
-    return next;
+    return scattered_light(medium_, arriving, mask_);
 }
 
 ScatteredLight CoarseOperator::spread_to_fine(const ScatteredLight& coarse, const Medium& fine) const {
@@ -278,7 +262,7 @@ ScatteredLight CoarseOperator::spread_to_fine(const ScatteredLight& coarse, cons
             sampler.at(fine.lattice.first_node(b) + BrickLattice::node_in_brick(k), [&](std::size_t q, float w) {
                 if (!mask_[q])
                     return;
-                const float per_mass = w / (medium_.voxel_volume * medium_.extinction[q]);
+                const float per_mass = w / weight_[q];
                 mass += w;
                 for (int c = 0; c < 3; ++c)
                     sum[c] += per_mass * coarse.intensity[q][c];
@@ -292,14 +276,21 @@ ScatteredLight CoarseOperator::spread_to_fine(const ScatteredLight& coarse, cons
     }, 4);
     ScatteredLight light;
     light.intensity = project_extinction_times(fine, source[0]);
-    if (!directional)
-        return light;
-    light.directional.resize(n * 24);
-    for (int m = 0; m < kShMoments; ++m) {
+    // Extinction and source vary together below the coarse voxel, which the product of averages does not see: the power is
+    // that of the series.
+    const dvec3 wanted = total(coarse.intensity), found = total(light.intensity);
+    Rgb scale(1.0f);
+    for (int c = 0; c < 3; ++c)
+        if (found[c] > 0.0)
+            scale[c] = static_cast<float>(wanted[c] / found[c]);
+    for (Rgb& i : light.intensity)
+        i *= scale;
+    light.directional.resize(directional ? n * 24 : 0);
+    for (int m = 0; m < kShMoments && directional; ++m) {
         const std::vector<Rgb> part = project_extinction_times(fine, source[1 + m]);
         for (std::size_t i = 0; i < n; ++i)
             for (int c = 0; c < 3; ++c)
-                light.directional[i * 24 + 3 * m + c] = part[i][c];
+                light.directional[i * 24 + 3 * m + c] = scale[c] * part[i][c];
     }
     return light;
 }
