@@ -10,12 +10,12 @@ namespace brisance {
 enum class ExitCode : int {
     Success = 0,
     RenderFailed = 1,
-    Usage = 2,         // command line, shot file: unknown key, wrong type
-    BadData = 65,      // a file that exists but cannot be used
-    MissingInput = 66, // a file or frame that is not there
-    CannotCreate = 73, // output folder or file cannot be made
-    OutputFailed = 74, // writing failed half way: the disk is full
-    Temporary = 75,    // out of memory: worth a retry elsewhere
+    Usage = 2,          // command line, shot file: unknown key, wrong type
+    BadData = 65,       // a file that exists but cannot be used
+    MissingInput = 66,  // a file or frame that is not there
+    CannotCreate = 73,  // output folder or file cannot be made
+    OutputFailed = 74,  // writing failed half way: the disk is full
+    Temporary = 75,     // out of memory: worth a retry elsewhere
     Interrupted = 130
 };
 

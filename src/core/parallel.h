@@ -20,11 +20,12 @@ private:
 
 int thread_count();
 
-// Calls body(i) once for each i in [0, n), in any order and on any thread. An exception thrown by a body is rethrown here.
-// `grain` is the least number of consecutive i handed to one task.
+// Calls body(i) once for each i in [0, n), in any order and on any thread. An exception thrown by a body is rethrown
+// here. `grain` is the least number of consecutive i handed to one task.
 void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body, std::size_t grain = 1);
 
-// Calls body(begin, end) over fixed ranges of `block` indices (the last may be shorter). Ranges depend on n and block only.
+// Calls body(begin, end) over fixed ranges of `block` indices (the last may be shorter). Ranges depend on n and block
+// only.
 void parallel_blocks(std::size_t n, std::size_t block,
                      const std::function<void(std::size_t begin, std::size_t end)>& body);
 

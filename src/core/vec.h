@@ -18,6 +18,8 @@ using glm::vec4;
 using Rgb = glm::vec3;
 
 // Rec. 709 luminance weights.
-inline float luminance(const Rgb& c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+inline float luminance(const Rgb& c) {
+    return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z;
+}
 
 }  // namespace brisance

@@ -63,8 +63,9 @@ HWY_INLINE V map_transmittance(D d, const ShadowMapLayout& layout, const std::ui
     const V last = hn::Set(d, static_cast<float>(layout.distances - 1));
     const float samples_per_metre =
         layout.distances > 1 ? (layout.distances - 1) / (layout.far_distance - layout.near_distance) : 0.0f;
-    const V k = hn::Min(hn::Max(hn::Mul(hn::Sub(distance, hn::Set(d, layout.near_distance)),
-                                        hn::Set(d, samples_per_metre)), zero), last);
+    const V k = hn::Min(
+        hn::Max(hn::Mul(hn::Sub(distance, hn::Set(d, layout.near_distance)), hn::Set(d, samples_per_metre)), zero),
+        last);
     const auto ik = hn::ConvertTo(di, k);
     const V as = hn::Sub(s, hn::ConvertTo(d, is)), at = hn::Sub(t, hn::ConvertTo(d, it));
     const V ak = hn::Sub(k, hn::ConvertTo(d, ik));
@@ -110,22 +111,24 @@ V exact_transmittance(D d, const FarLights& l, const vec3& light, const V way[3]
 HWY_INLINE V henyey_greenstein_lanes(D d, float g, V cosine) {
     const float h = std::abs(g);
     const V c = g < 0.0f ? hn::Neg(cosine) : cosine;
-    const V denominator = hn::MulAdd(hn::Set(d, 2.0f * h), hn::Sub(hn::Set(d, 1.0f), c),
-                                     hn::Set(d, (1.0f - h) * (1.0f - h)));
+    const V denominator =
+        hn::MulAdd(hn::Set(d, 2.0f * h), hn::Sub(hn::Set(d, 1.0f), c), hn::Set(d, (1.0f - h) * (1.0f - h)));
     return hn::Div(hn::Set(d, (1.0f - g * g) / (4.0f * kPi)), hn::Mul(denominator, hn::Sqrt(denominator)));
 }
 
-// Mean of 1 / r^2 over a ball of radius a seen from distance x of its centre: 3/(4 a^3) (2a + (a^2 - x^2)/x ln|(a+x)/(a-x)|).
+// Mean of 1 / r^2 over a ball of radius a seen from distance x of its centre: 3/(4 a^3) (2a + (a^2 - x^2)/x
+// ln|(a+x)/(a-x)|).
 V ball_kernel(D d, float a, V distance) {
     const V one = hn::Set(d, 1.0f);
     // Away from 0 and a, where the formula is 0/0 and the function smooth.
     V t = hn::Max(hn::Mul(distance, hn::Set(d, 1.0f / a)), hn::Set(d, 1e-2f));
     t = hn::IfThenElse(hn::Lt(hn::Abs(hn::Sub(t, one)), hn::Set(d, 1e-4f)), hn::Set(d, 1.0f + 1e-4f), t);
     const V log = hn::Log(d, hn::Abs(hn::Div(hn::Add(one, t), hn::Sub(one, t))));
-    const V near = hn::Mul(hn::MulAdd(hn::Div(hn::NegMulAdd(t, t, one), t), log, hn::Set(d, 2.0f)),
-                           hn::Set(d, 0.75f / (a * a)));
+    const V near =
+        hn::Mul(hn::MulAdd(hn::Div(hn::NegMulAdd(t, t, one), t), log, hn::Set(d, 2.0f)), hn::Set(d, 0.75f / (a * a)));
     const V inverse = hn::Div(one, hn::Max(distance, hn::Set(d, a)));
-    const V far = hn::Mul(hn::Mul(inverse, inverse), hn::MulAdd(hn::Mul(inverse, inverse), hn::Set(d, 0.2f * a * a), one));
+    const V far =
+        hn::Mul(hn::Mul(inverse, inverse), hn::MulAdd(hn::Mul(inverse, inverse), hn::Set(d, 0.2f * a * a), one));
     return hn::IfThenElse(hn::Lt(distance, hn::Set(d, 4.0f * a)), near, far);
 }
 
@@ -146,12 +149,13 @@ struct Basis {
 HWY_INLINE Basis basis_lanes(D d, V x, V y, V z) {
     const auto c = [&](float v) { return hn::Set(d, v); };
     return {{hn::Mul(c(kSh1), y), hn::Mul(c(kSh1), z), hn::Mul(c(kSh1), x), hn::Mul(c(kSh2a), hn::Mul(x, y)),
-             hn::Mul(c(kSh2a), hn::Mul(y, z)),
-             hn::MulAdd(c(3.0f * kSh2b), hn::Mul(z, z), c(-kSh2b)), hn::Mul(c(kSh2a), hn::Mul(x, z)),
-             hn::Mul(c(kSh2c), hn::Sub(hn::Mul(x, x), hn::Mul(y, y)))}};
+             hn::Mul(c(kSh2a), hn::Mul(y, z)), hn::MulAdd(c(3.0f * kSh2b), hn::Mul(z, z), c(-kSh2b)),
+             hn::Mul(c(kSh2a), hn::Mul(x, z)), hn::Mul(c(kSh2c), hn::Sub(hn::Mul(x, x), hn::Mul(y, y)))}};
 }
 
-HWY_INLINE void accumulate(D d, float* to, V value) { hn::StoreU(hn::Add(hn::LoadU(d, to), value), d, to); }
+HWY_INLINE void accumulate(D d, float* to, V value) {
+    hn::StoreU(hn::Add(hn::LoadU(d, to), value), d, to);
+}
 
 // Optical depth of a voxel ball's radius in the extinction at the receivers.
 V radius_depth(D d, const FarLights& l, const Receivers& r, std::size_t at) {
@@ -168,7 +172,8 @@ V radius_depth(D d, const FarLights& l, const Receivers& r, std::size_t at) {
 HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Receivers& r, std::size_t at,
                             const FarOutput& out) {
     const vec3 p = l.position[i];
-    const V way[3] = {hn::Sub(hn::Set(d, p.x), hn::LoadU(d, &r.x[at])), hn::Sub(hn::Set(d, p.y), hn::LoadU(d, &r.y[at])),
+    const V way[3] = {hn::Sub(hn::Set(d, p.x), hn::LoadU(d, &r.x[at])),
+                      hn::Sub(hn::Set(d, p.y), hn::LoadU(d, &r.y[at])),
                       hn::Sub(hn::Set(d, p.z), hn::LoadU(d, &r.z[at]))};
     const V square = hn::MulAdd(way[0], way[0], hn::MulAdd(way[1], way[1], hn::Mul(way[2], way[2])));
     const V safe = hn::Max(square, hn::Set(d, 1e-30f));
@@ -181,8 +186,8 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Rece
     const V minus = hn::Neg(inverse);
     const V wx = hn::Mul(way[0], minus), wy = hn::Mul(way[1], minus), wz = hn::Mul(way[2], minus);
     if (l.shadow == FarLights::Shadow::Maps)
-        w = hn::Mul(w, map_transmittance(d, l.layout, l.maps + (i - l.list_base) * l.layout.stride(), wx, wy, wz,
-                                         distance));
+        w = hn::Mul(
+            w, map_transmittance(d, l.layout, l.maps + (i - l.list_base) * l.layout.stride(), wx, wy, wz, distance));
     else if (l.shadow == FarLights::Shadow::Exact) {
         V t = exact_transmittance(d, l, p, way, distance);
         if (l.bottom)
@@ -194,8 +199,9 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Rece
     const Basis basis = moments ? basis_lanes(d, wx, wy, wz) : Basis{};
     V phase = hn::Zero(d);
     if (out.scattered) {
-        const V cosine = hn::MulAdd(wx, hn::LoadU(d, &r.out_x[at]),
-                                    hn::MulAdd(wy, hn::LoadU(d, &r.out_y[at]), hn::Mul(wz, hn::LoadU(d, &r.out_z[at]))));
+        const V cosine =
+            hn::MulAdd(wx, hn::LoadU(d, &r.out_x[at]),
+                       hn::MulAdd(wy, hn::LoadU(d, &r.out_y[at]), hn::Mul(wz, hn::LoadU(d, &r.out_z[at]))));
         phase = henyey_greenstein_lanes(d, out.mean_cosine, cosine);
     }
     for (int c = 0; c < 3; ++c) {
@@ -241,7 +247,9 @@ std::uint64_t gather(const FarLights& l, const Receivers& r, const ReceiverBlock
     return evaluations;
 }
 
-const char* instruction_set() { return hwy::TargetName(HWY_TARGET); }
+const char* instruction_set() {
+    return hwy::TargetName(HWY_TARGET);
+}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace brisance
@@ -258,7 +266,9 @@ std::uint64_t gather_far(const FarLights& lights, const Receivers& receivers, co
     return HWY_DYNAMIC_DISPATCH(gather)(lights, receivers, block, output);
 }
 
-const char* gather_instruction_set() { return HWY_DYNAMIC_DISPATCH(instruction_set)(); }
+const char* gather_instruction_set() {
+    return HWY_DYNAMIC_DISPATCH(instruction_set)();
+}
 
 }  // namespace brisance
 #endif

@@ -35,10 +35,11 @@ float farthest_distance(const GridLevel& level, const Medium& medium) {
 
 ShadowMapLayout layout_of(const LightField& field, const GridLevel& level, bool top) {
     ShadowMapLayout layout;
-    // A coarser light's map covers more voxels but its own size blurs its shadows: resolution grows as the square root of
-    // the spacing (more gained less than the hierarchy's own error on real smoke), to even numbers.
+    // A coarser light's map covers more voxels but its own size blurs its shadows: resolution grows as the square root
+    // of the spacing (more gained less than the hierarchy's own error on real smoke), to even numbers.
     const float growth = std::sqrt(float(1 << std::min(level.level - 1, 6)));
-    layout.resolution = std::min(128, 2 * static_cast<int>(std::lround(0.5f * growth * field.settings.shadow_resolution)));
+    layout.resolution =
+        std::min(128, 2 * static_cast<int>(std::lround(0.5f * growth * field.settings.shadow_resolution)));
     layout.distances = field.settings.shadow_distances;
     const float radius = field.alpha * level.spacing;
     layout.near_distance = 0.5f * radius;
@@ -54,9 +55,7 @@ ShadowMapLayout layout_of(const LightField& field, const GridLevel& level, bool 
 // Lowers resolution, then distances, until at least kLeastBatch lights (or all) fit the memory limit.
 void fit_to_memory(ShadowMapLayout& layout, std::size_t lights, std::uint64_t limit, int level, Progress& progress) {
     const ShadowMapLayout wish = layout;
-    const auto too_large = [&] {
-        return layout.bytes_per_light() * std::min(lights, kLeastBatch) > limit;
-    };
+    const auto too_large = [&] { return layout.bytes_per_light() * std::min(lights, kLeastBatch) > limit; };
     while (too_large() && layout.resolution > 4)
         layout.resolution /= 2;
     while (too_large() && layout.distances > 2)
@@ -229,7 +228,8 @@ GridLevel bottom_level(const LightField& field) {
     for (std::size_t i = 0; i < field.intensity->size(); ++i)
         if ((*field.intensity)[i] != Rgb(0.0f))
             lit.emplace_back(medium.lattice.first_node(i / BrickLattice::kNodes) +
-                                 BrickLattice::node_in_brick(int(i % BrickLattice::kNodes)), i);
+                                 BrickLattice::node_in_brick(int(i % BrickLattice::kNodes)),
+                             i);
     std::sort(lit.begin(), lit.end(), [](const auto& a, const auto& b) {
         return std::tie(a.first.x, a.first.y, a.first.z) < std::tie(b.first.x, b.first.y, b.first.z);
     });
@@ -256,10 +256,11 @@ Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request,
     const NearField near(medium.local_from_index, field.alpha * medium.spacing,
                          field.settings.shadows != ShadowMethod::None);
     near.gather({&medium.lattice, &medium.extinction, field.intensity, field.directional, request.toward_camera,
-                 request.mean_cosine}, out);
+                 request.mean_cosine},
+                out);
     LevelCost bottom;
-    bottom.lights = std::count_if(field.intensity->begin(), field.intensity->end(),
-                                  [](const Rgb& i) { return i != Rgb(0.0f); });
+    bottom.lights =
+        std::count_if(field.intensity->begin(), field.intensity->end(), [](const Rgb& i) { return i != Rgb(0.0f); });
     bottom.gather_seconds = seconds_since(start);
     bottom.evaluations = near.separations() * nodes;
     costs.push_back(bottom);

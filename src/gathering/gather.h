@@ -1,8 +1,9 @@
 // Gathering: what arrives at points of the medium from all levels of a lighting grid hierarchy.
 //
-//   L(x) = sum_l sum_i I_{l,i} T(p_{l,i}, x) B_l(d) / d^2,   d = |x - p_{l,i}|                     [1] (lighting_grid.h)
-// with r_l = alpha h_l and blends B_l that sum to one over levels at every distance: level 0 fades out over [r_0, 2 r_0],
-// level l in over [r_l / 2, r_l] and out over [r_l, 2 r_l], the top level never out.
+//   L(x) = sum_l sum_i I_{l,i} T(p_{l,i}, x) B_l(d) / d^2,   d = |x - p_{l,i}|                     [1]
+//   (lighting_grid.h)
+// with r_l = alpha h_l and blends B_l that sum to one over levels at every distance: level 0 fades out over [r_0, 2
+// r_0], level l in over [r_l / 2, r_l] and out over [r_l, 2 r_l], the top level never out.
 #pragma once
 
 #include <string>
@@ -21,7 +22,7 @@ namespace brisance {
 struct LevelCost {
     int level = 0;
     std::size_t lights = 0;
-    int resolution = 0;            // of its shadow maps; 0: no maps
+    int resolution = 0;  // of its shadow maps; 0: no maps
     int distances = 0;
     std::uint64_t map_bytes = 0;   // of all its maps; fewer are held at once
     std::uint64_t held_bytes = 0;  // at once
@@ -37,11 +38,11 @@ struct ShadowMapCache {
 
 // Lights of all levels in one medium.
 struct LightField {
-    const ExtinctionPyramid* pyramid;        // of the medium whose nodes carry the lights
-    const std::vector<Rgb>* intensity;       // level 0, per node [W/sr]
-    const std::vector<float>* directional;   // level 0, 24 per node, or null
-    const LightingGrid* grid;                // levels above
-    const std::vector<float>* weight;        // per node: what the grid's centres are weighted by
+    const ExtinctionPyramid* pyramid;       // of the medium whose nodes carry the lights
+    const std::vector<Rgb>* intensity;      // level 0, per node [W/sr]
+    const std::vector<float>* directional;  // level 0, 24 per node, or null
+    const LightingGrid* grid;               // levels above
+    const std::vector<float>* weight;       // per node: what the grid's centres are weighted by
     float alpha;
     LightingSettings settings;
     ShadowMapCache* cache = nullptr;  // used by levels that fit the memory limit as a whole
@@ -49,14 +50,14 @@ struct LightField {
 
 // Which nodes ask, and for what.
 struct LatticeRequest {
-    const std::vector<std::uint8_t>* needed;     // per node
-    const std::vector<vec3>* toward_camera;      // per node, unit, or null
+    const std::vector<std::uint8_t>* needed;  // per node
+    const std::vector<vec3>* toward_camera;   // per node, unit, or null
     bool moments = false;
     float mean_cosine = 0.0f;
 };
 
-// At the nodes of the lights' own lattice: the near field exactly, the levels above with precomputed shadows. Planar over
-// nodes; nodes that did not ask hold part of the sum and must not be used.
+// At the nodes of the lights' own lattice: the near field exactly, the levels above with precomputed shadows. Planar
+// over nodes; nodes that did not ask hold part of the sum and must not be used.
 Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
                          Progress& progress);
 

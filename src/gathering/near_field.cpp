@@ -18,9 +18,7 @@ constexpr int kMaxMargin = 24;  // nodes; beyond, a lattice of needles would wan
 constexpr int kSelfEntries = 129;
 
 struct NodeOrder {
-    bool operator()(const ivec3& a, const ivec3& b) const {
-        return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
-    }
+    bool operator()(const ivec3& a, const ivec3& b) const { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
 };
 
 void add_trilinear(std::map<ivec3, double, NodeOrder>& taps, const dvec3& p, double weight) {
@@ -155,7 +153,7 @@ void NearField::tabulate_self_kernel() {
     parallel_for(kSelfEntries, [&](std::size_t i) {
         const double u = std::min(double(i) / (kSelfEntries - 1), 0.9999);
         const double s = u / (1.0 - u) / h;
-        const double kappa = !nearly_cubic            ? ball_self_kernel(s, volume)
+        const double kappa = !nearly_cubic       ? ball_self_kernel(s, volume)
                              : s * longest < 0.7 ? windowed_self_kernel(s, window, volume, distances)
                                                  : direct_self_kernel(s, volume, distances);
         self_[i] = static_cast<float>(kappa * h * h * (1.0 + s * h));

@@ -2,9 +2,10 @@
 //
 // Receivers and lights are nodes of one lattice, so their separation takes a few hundred values and everything but the
 // extinction is known in advance. For each separation o:
-//  - The optical depth between node x and node x + o is a fixed linear combination of the extinction at nearby nodes: the
-//    line integral of the trilinear interpolant, exact (it is piecewise cubic along the line, and a 2-point Gauss rule per
-//    piece integrates that without error).
+//  - The optical depth between node x and node x + o is a fixed linear combination of the extinction at nearby nodes:
+//  the
+//    line integral of the trilinear interpolant, exact (it is piecewise cubic along the line, and a 2-point Gauss rule
+//    per piece integrates that without error).
 //  - The kernel is the singular 1/d^2 itself. What it leaves out, the node's own light, is the self term
 //      kappa(s) = (1/V) integral exp(-s r) / r^2 dV - sum over o != 0 of exp(-s |o|) / |o|^2,
 //    the correction that makes the punctured lattice sum exact for smooth light in a homogeneous medium (and makes such
@@ -27,10 +28,10 @@ public:
 
     struct Input {
         const BrickLattice* lattice;
-        const std::vector<float>* extinction;   // per node [1/m]
-        const std::vector<Rgb>* intensity;      // per node [W/sr]
-        const std::vector<float>* directional;  // 24 coefficients per node (far_kernels.h), or null
-        const std::vector<vec3>* toward_camera; // per node, or null: no `scattered`
+        const std::vector<float>* extinction;    // per node [1/m]
+        const std::vector<Rgb>* intensity;       // per node [W/sr]
+        const std::vector<float>* directional;   // 24 coefficients per node (far_kernels.h), or null
+        const std::vector<vec3>* toward_camera;  // per node, or null: no `scattered`
         float mean_cosine = 0.0f;
     };
 

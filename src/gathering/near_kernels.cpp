@@ -32,7 +32,8 @@ HWY_INLINE V phase_lanes(D d, float g, V cosine) {
 }
 
 HWY_INLINE bool row_is_dark(D d, const NearBrick& b, const float* light) {
-    const V sum = hn::Add(hn::LoadU(d, light), hn::Add(hn::LoadU(d, light + b.plane), hn::LoadU(d, light + 2 * b.plane)));
+    const V sum =
+        hn::Add(hn::LoadU(d, light), hn::Add(hn::LoadU(d, light + b.plane), hn::LoadU(d, light + 2 * b.plane)));
     return hn::AllTrue(d, hn::Eq(sum, hn::Zero(d)));
 }
 

@@ -31,9 +31,9 @@ struct NearBrick {
     int wide, margin;
     std::size_t plane;
     const float* extinction;
-    const float* intensity;    // 3 planes
-    const float* directional;  // 24 planes or null
-    const vec3* toward_camera; // of the brick's 512 nodes, or null
+    const float* intensity;     // 3 planes
+    const float* directional;   // 24 planes or null
+    const vec3* toward_camera;  // of the brick's 512 nodes, or null
     float mean_cosine;
     std::size_t out_plane;
     float* fluence;

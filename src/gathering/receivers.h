@@ -1,7 +1,7 @@
 // Points that ask for light, packed for vector kernels.
 //
-// Receivers come in groups of 16 (the last of a block padded by repeating its last point) with planar coordinates; groups
-// form blocks that share one interaction list per level. A block is a compact set: the nodes of a brick, say.
+// Receivers come in groups of 16 (the last of a block padded by repeating its last point) with planar coordinates;
+// groups form blocks that share one interaction list per level. A block is a compact set: the nodes of a brick, say.
 #pragma once
 
 #include <cstdint>
@@ -45,15 +45,16 @@ private:
     std::vector<ReceiverBlock> blocks_;
 };
 
-// What arrives, one value per (padded) receiver and channel, planar: value of channel c at receiver i is [c * size + i].
+// What arrives, one value per (padded) receiver and channel, planar: value of channel c at receiver i is [c * size +
+// i].
 struct Gathered {
     // Fluence [W/m^2], channels R G B.
     std::vector<float> fluence;
     // Radiance scattered toward the camera per unit scattering coefficient: integral of p L [W/(m^2 sr)]; R G B; only
     // where receivers have a direction.
     std::vector<float> scattered;
-    // Moments of the incident radiance against the real spherical harmonics of degree 1 and 2 (sh.h), of the direction of
-    // travel: channel 3 * m + c for m = 0..7 and colour c; only when asked for.
+    // Moments of the incident radiance against the real spherical harmonics of degree 1 and 2 (sh.h), of the direction
+    // of travel: channel 3 * m + c for m = 0..7 and colour c; only when asked for.
     std::vector<float> moments;
 
     void resize(std::size_t receivers, bool camera, bool directional);

@@ -17,21 +17,21 @@ enum class GatherMethod {
 };
 
 struct LightingSettings {
-    float alpha = 2.0f;               // blending radius of level l is alpha * spacing of level l; at least 1
-    int levels = 0;                   // hierarchy levels above the voxels; 0: from the volume's extent
+    float alpha = 2.0f;  // blending radius of level l is alpha * spacing of level l; at least 1
+    int levels = 0;      // hierarchy levels above the voxels; 0: from the volume's extent
     ShadowMethod shadows = ShadowMethod::Maps;
-    int shadow_resolution = 20;       // texels along one side of a light's octahedral map
-    int shadow_distances = 12;        // transmittance samples along a texel's ray, levels below the top
+    int shadow_resolution = 20;  // texels along one side of a light's octahedral map
+    int shadow_distances = 12;   // transmittance samples along a texel's ray, levels below the top
     std::uint64_t memory_limit_bytes = std::uint64_t{2} << 30;  // for shadow maps; resolution is lowered to respect it
     GatherMethod gather = GatherMethod::Cache;
-    bool energy_balance = true;       // scale each bounce so that emitted = collided + escaped
+    bool energy_balance = true;  // scale each bounce so that emitted = collided + escaped
 };
 
 struct ScatteringSettings {
-    int bounces = -1;                // scatterings: 0 emission only, 1 single scattering, -1 all orders
-    float remainder = 1e-3f;         // with all orders: stop when the part not yet accounted for is below this
-    int lattice_level = -1;          // orders above one are solved on voxels 2^level wide; -1: from the voxel count
-    float alpha = 1.5f;              // as LightingSettings::alpha, for scattered light
+    int bounces = -1;         // scatterings: 0 emission only, 1 single scattering, -1 all orders
+    float remainder = 1e-3f;  // with all orders: stop when the part not yet accounted for is below this
+    int lattice_level = -1;   // orders above one are solved on voxels 2^level wide; -1: from the voxel count
+    float alpha = 1.5f;       // as LightingSettings::alpha, for scattered light
 };
 
 }  // namespace brisance

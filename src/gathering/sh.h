@@ -17,17 +17,15 @@ constexpr float kSh2c = 0.54627421529603959f;
 
 // Y of degrees 1 (3 values) and 2 (5 values) for a unit direction.
 inline std::array<float, kShMoments> sh_basis(const vec3& w) {
-    return {kSh1 * w.y,
-            kSh1 * w.z,
-            kSh1 * w.x,
-            kSh2a * w.x * w.y,
-            kSh2a * w.y * w.z,
-            kSh2b * (3.0f * w.z * w.z - 1.0f),
-            kSh2a * w.x * w.z,
-            kSh2c * (w.x * w.x - w.y * w.y)};
+    return {kSh1 * w.y,        kSh1 * w.z,
+            kSh1 * w.x,        kSh2a * w.x * w.y,
+            kSh2a * w.y * w.z, kSh2b * (3.0f * w.z * w.z - 1.0f),
+            kSh2a * w.x * w.z, kSh2c * (w.x * w.x - w.y * w.y)};
 }
 
 // Degree l of incident radiance leaves a scattering multiplied by g^l.
-inline float sh_phase_factor(int moment, float g) { return moment < 3 ? g : g * g; }
+inline float sh_phase_factor(int moment, float g) {
+    return moment < 3 ? g : g * g;
+}
 
 }  // namespace brisance

@@ -90,14 +90,17 @@ GridLevel level_from(const Medium& medium, const MomentField& field, int number)
     level.position.resize(n);
     level.intensity.resize(n);
     level.node.resize(n);
-    parallel_for(n, [&](std::size_t k) {
-        const Moments& m = field.nodes[found[k].second];
-        const vec3 mean = m.first / m.weight;
-        level.vertex[k] = found[k].first;
-        level.node[k] = found[k].second;
-        level.position[k] = medium.local_of_node(found[k].first * (1 << number)) + medium.local_from_index * mean;
-        level.intensity[k] = m.intensity;
-    }, 256);
+    parallel_for(
+        n,
+        [&](std::size_t k) {
+            const Moments& m = field.nodes[found[k].second];
+            const vec3 mean = m.first / m.weight;
+            level.vertex[k] = found[k].first;
+            level.node[k] = found[k].second;
+            level.position[k] = medium.local_of_node(found[k].first * (1 << number)) + medium.local_from_index * mean;
+            level.intensity[k] = m.intensity;
+        },
+        256);
     level.index_rows();
     return level;
 }
@@ -121,8 +124,7 @@ void GridLevel::index_rows() {
 }
 
 std::uint64_t GridLevel::bytes() const {
-    return size() * (sizeof(ivec3) + sizeof(vec3) + sizeof(Rgb) + 4) + row_begin.size() * 4 +
-           lattice.bytes();
+    return size() * (sizeof(ivec3) + sizeof(vec3) + sizeof(Rgb) + 4) + row_begin.size() * 4 + lattice.bytes();
 }
 
 void GridLevel::find_in_box(const ivec3& low, const ivec3& high, std::vector<std::uint32_t>& found) const {
@@ -151,12 +153,11 @@ LightingGrid build_lighting_grid(const Medium& medium, const std::vector<Rgb>& i
     LightingGrid grid;
     if (intensity.empty() || levels < 1)
         return grid;
-    MomentField field =
-        coarser(medium.lattice, PointMoments{medium.lattice, intensity, weight}, 1.0f);
+    MomentField field = coarser(medium.lattice, PointMoments{medium.lattice, intensity, weight}, 1.0f);
     grid.levels.push_back(level_from(medium, field, 1));
     for (int l = 2; l <= levels; ++l) {
-        field = coarser(field.lattice, [&](std::int64_t i) -> const Moments& { return field.nodes[i]; },
-                        float(1 << (l - 1)));
+        field = coarser(
+            field.lattice, [&](std::int64_t i) -> const Moments& { return field.nodes[i]; }, float(1 << (l - 1)));
         grid.levels.push_back(level_from(medium, field, l));
     }
     return grid;
@@ -187,13 +188,14 @@ void set_intensity(LightingGrid& grid, const BrickLattice& lattice, const std::v
                    const std::vector<float>* directional) {
     const auto* flat = reinterpret_cast<const float*>(intensity.data());
     splat(grid, lattice, std::vector<float>(flat, flat + intensity.size() * 3), 3,
-          [](GridLevel& level, std::size_t k, const float* v) { level.intensity[k] = {v[0], v[1], v[2]}; });
+          [](GridLevel& level, std::size_t k, const float* v) {
+              level.intensity[k] = {v[0], v[1], v[2]};
+          });
     for (GridLevel& level : grid.levels)
         level.directional.assign(directional ? level.size() * 24 : 0, 0.0f);
     if (directional)
-        splat(grid, lattice, *directional, 24, [](GridLevel& level, std::size_t k, const float* v) {
-            std::copy_n(v, 24, &level.directional[k * 24]);
-        });
+        splat(grid, lattice, *directional, 24,
+              [](GridLevel& level, std::size_t k, const float* v) { std::copy_n(v, 24, &level.directional[k * 24]); });
 }
 
 int automatic_levels(const Medium& medium) {

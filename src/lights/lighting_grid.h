@@ -1,8 +1,8 @@
 // Lighting grid hierarchy: lights splatted to the vertices of ever coarser lattices.
 // [1] C. Yuksel and C. Yuksel, Lighting Grid Hierarchy for Self-illuminating Explosions, SIGGRAPH 2017.
 //
-// Level 0 is the medium's own nodes (voxel_lights.h). Level l >= 1 has vertices at every 2^l-th node, fixed in the world
-// for as long as the volume's transform is: a frame's bounds play no part. Every level is made from level 0:
+// Level 0 is the medium's own nodes (voxel_lights.h). Level l >= 1 has vertices at every 2^l-th node, fixed in the
+// world for as long as the volume's transform is: a frame's bounds play no part. Every level is made from level 0:
 //   I_{l,i} = sum_j w_{l,i}(x_j) I_j                    [1] eq. 1, w the trilinear hat of vertex i
 //   p_{l,i} = sum_j v_j x_j / sum_j v_j,  v_j = w Y_j   [1] eq. 2, Y luminance (or another positive weight)
 // so each level carries the same total intensity and first moment. Trilinear splats nest: a level is made exactly from
@@ -18,16 +18,16 @@ namespace brisance {
 
 struct GridLevel {
     int level = 0;
-    float spacing = 0.0f;          // h_l [m]
-    std::vector<ivec3> vertex;     // in vertices of this level, sorted by (x, y, z)
-    std::vector<vec3> position;    // illumination centre, local [m]
-    std::vector<Rgb> intensity;    // [W/sr]
+    float spacing = 0.0f;        // h_l [m]
+    std::vector<ivec3> vertex;   // in vertices of this level, sorted by (x, y, z)
+    std::vector<vec3> position;  // illumination centre, local [m]
+    std::vector<Rgb> intensity;  // [W/sr]
 
     // Degrees 1 and 2 of a directional intensity, 24 per light ([3 * m + colour], sh.h); empty: isotropic.
     std::vector<float> directional;
 
-    BrickLattice lattice;                // of this level's vertices
-    std::vector<std::uint32_t> node;     // of each light, in fields on `lattice`
+    BrickLattice lattice;             // of this level's vertices
+    std::vector<std::uint32_t> node;  // of each light, in fields on `lattice`
 
     // Vertices with x, y fixed lie together: row (x, y) holds [row_begin[r], row_begin[r + 1]).
     ivec3 min_vertex{0};
@@ -46,8 +46,9 @@ struct LightingGrid {
     std::uint64_t bytes() const;
 };
 
-// Levels 1 .. `levels` of the lights in `intensity` (per node of `lattice`). `weight` (per node, >= 0) takes the place of
-// luminance in the centres where given: positions then do not depend on the intensities, as the scattering operator needs.
+// Levels 1 .. `levels` of the lights in `intensity` (per node of `lattice`). `weight` (per node, >= 0) takes the place
+// of luminance in the centres where given: positions then do not depend on the intensities, as the scattering operator
+// needs.
 LightingGrid build_lighting_grid(const Medium& medium, const std::vector<Rgb>& intensity,
                                  const std::vector<float>* weight, int levels);
 

@@ -13,9 +13,13 @@ namespace {
 constexpr int kWide = BrickLattice::kSize + 2;  // a brick and one node all round
 constexpr int kPlane = kWide * kWide * kWide;
 
-constexpr int at(int x, int y, int z) { return (x * kWide + y) * kWide + z; }
+constexpr int at(int x, int y, int z) {
+    return (x * kWide + y) * kWide + z;
+}
 
-constexpr int corner_offset(int k) { return at(k >> 2, k >> 1 & 1, k & 1); }
+constexpr int corner_offset(int k) {
+    return at(k >> 2, k >> 1 & 1, k & 1);
+}
 
 // Trilinear weights of the eight corners at the eight Gauss points of the unit cell.
 std::array<std::array<float, 8>, 8> gauss_weights() {
@@ -99,8 +103,7 @@ std::vector<Rgb> project(const Medium& medium, const std::vector<Rgb>& factor, c
         for (int n = 0; n < BrickLattice::kNodes; ++n) {
             const ivec3 p = BrickLattice::node_in_brick(n) + 1;
             for (int a = 0; a < 3; ++a)
-                lights[b * BrickLattice::kNodes + n][a] =
-                    medium.voxel_volume * box.sum[a * kPlane + at(p.x, p.y, p.z)];
+                lights[b * BrickLattice::kNodes + n][a] = medium.voxel_volume * box.sum[a * kPlane + at(p.x, p.y, p.z)];
         }
     });
     return lights;

@@ -2,10 +2,10 @@
 //
 // With hat_i the trilinear hat function of node i,
 //   I_i = integral of hat_i(x) j(x) dV,   j = extinction * source + emission,
-// each factor interpolated on its own. Hats sum to one and reproduce linear functions, so the sum of all I_i is the exact
-// integral of j and their first moment is exact too. The integrand is of degree three per axis in each cell: a 2-point
-// Gauss rule per axis integrates it without error. The result is then sharpened (sharpen_lights): the sum stays exact, the
-// first moment wherever the fire is smooth.
+// each factor interpolated on its own. Hats sum to one and reproduce linear functions, so the sum of all I_i is the
+// exact integral of j and their first moment is exact too. The integrand is of degree three per axis in each cell: a
+// 2-point Gauss rule per axis integrates it without error. The result is then sharpened (sharpen_lights): the sum stays
+// exact, the first moment wherever the fire is smooth.
 #pragma once
 
 #include <cstdint>
@@ -20,9 +20,9 @@ namespace brisance {
 std::vector<Rgb> voxel_lights(const Medium& medium);
 
 // Undoes the spread of h^2/6 per axis that the splat to nodes gives the light: a conservative flux of
-// (I_neighbour - I) / 12 from the darker of two neighbours to the brighter. What a node gives away is limited to what it
-// has, so that no light turns negative, and the result stays continuous in the data. Without this, light crosses a voxel
-// that absorbs e-fold about 8 % too easily.
+// (I_neighbour - I) / 12 from the darker of two neighbours to the brighter. What a node gives away is limited to what
+// it has, so that no light turns negative, and the result stays continuous in the data. Without this, light crosses a
+// voxel that absorbs e-fold about 8 % too easily.
 void sharpen_lights(const BrickLattice& lattice, std::vector<Rgb>& intensity);
 
 // Node values whose trilinear interpolant has the averages of the smooth field through `values` (planar, one channel of

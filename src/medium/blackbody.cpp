@@ -18,10 +18,10 @@ double lobe(double nm, double scale, double mean, double below, double above) {
 
 // The 1931 observer as sums of skewed Gaussians, [1] section 2.2.
 dvec3 colour_matching(double nm) {
-    return {lobe(nm, 1.056, 599.8, 37.9, 31.0) + lobe(nm, 0.362, 442.0, 16.0, 26.7) +
-                lobe(nm, -0.065, 501.1, 20.4, 26.2),
-            lobe(nm, 0.821, 568.8, 46.9, 40.5) + lobe(nm, 0.286, 530.9, 16.3, 31.1),
-            lobe(nm, 1.217, 437.0, 11.8, 36.0) + lobe(nm, 0.681, 459.0, 26.0, 13.8)};
+    return {
+        lobe(nm, 1.056, 599.8, 37.9, 31.0) + lobe(nm, 0.362, 442.0, 16.0, 26.7) + lobe(nm, -0.065, 501.1, 20.4, 26.2),
+        lobe(nm, 0.821, 568.8, 46.9, 40.5) + lobe(nm, 0.286, 530.9, 16.3, 31.1),
+        lobe(nm, 1.217, 437.0, 11.8, 36.0) + lobe(nm, 0.681, 459.0, 26.0, 13.8)};
 }
 
 // Planck's spectral radiance [W/(m^2 sr m)].

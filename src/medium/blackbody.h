@@ -12,10 +12,11 @@ enum class BlackbodyScale {
     Normalized  // the spectrum divided by its own maximum: colour and soft brightness without the T^4
 };
 
-// Planck's law integrated against the CIE 1931 observer [1] and converted to linear Rec. 709, tabulated over temperature.
-// Luminance Y is the integral of B y-bar [W/(m^2 sr)] (absolute), or that of B / max B divided by the integral of y-bar
-// (normalised). Colours outside the gamut (reds below some 1900 K) have their negative channels set to 0.
-// [1] Wyman, Sloan, Shirley, Simple Analytic Approximations to the CIE XYZ Color Matching Functions, JCGT 2(2), 2013.
+// Planck's law integrated against the CIE 1931 observer [1] and converted to linear Rec. 709, tabulated over
+// temperature. Luminance Y is the integral of B y-bar [W/(m^2 sr)] (absolute), or that of B / max B divided by the
+// integral of y-bar (normalised). Colours outside the gamut (reds below some 1900 K) have their negative channels set
+// to 0. [1] Wyman, Sloan, Shirley, Simple Analytic Approximations to the CIE XYZ Color Matching Functions, JCGT 2(2),
+// 2013.
 class Blackbody {
 public:
     explicit Blackbody(BlackbodyScale scale);

@@ -98,20 +98,23 @@ BrickLattice coarse_lattice(const BrickLattice& fine) {
 std::vector<ivec3> bricks_around(const BrickLattice& lattice, const std::vector<std::uint8_t>& marked, int radius) {
     // Per brick, the 27 neighbours that a marked node reaches.
     std::vector<std::uint32_t> reached(lattice.brick_count(), 0);
-    parallel_for(lattice.brick_count(), [&](std::size_t b) {
-        for (int n = 0; n < BrickLattice::kNodes; ++n) {
-            if (!marked[b * BrickLattice::kNodes + n])
-                continue;
-            const ivec3 p = BrickLattice::node_in_brick(n);
-            for (int k = 0; k < 27; ++k) {
-                const ivec3 d(k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1);
-                bool reach = true;
-                for (int a = 0; a < 3; ++a)
-                    reach = reach && (d[a] == 0 || (d[a] < 0 ? p[a] - radius < 0 : p[a] + radius > 7));
-                reached[b] |= std::uint32_t{reach} << k;
+    parallel_for(
+        lattice.brick_count(),
+        [&](std::size_t b) {
+            for (int n = 0; n < BrickLattice::kNodes; ++n) {
+                if (!marked[b * BrickLattice::kNodes + n])
+                    continue;
+                const ivec3 p = BrickLattice::node_in_brick(n);
+                for (int k = 0; k < 27; ++k) {
+                    const ivec3 d(k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1);
+                    bool reach = true;
+                    for (int a = 0; a < 3; ++a)
+                        reach = reach && (d[a] == 0 || (d[a] < 0 ? p[a] - radius < 0 : p[a] + radius > 7));
+                    reached[b] |= std::uint32_t{reach} << k;
+                }
             }
-        }
-    }, 16);
+        },
+        16);
     std::vector<ivec3> bricks;
     for (std::size_t b = 0; b < lattice.brick_count(); ++b)
         for (int k = 0; k < 27; ++k)

@@ -1,7 +1,7 @@
 // A sparse lattice of nodes, stored in bricks of 8^3.
 //
-// Nodes are integer points of index space. A brick with coordinate b owns the nodes 8b .. 8b + 7 on each axis; inside it
-// x is the slowest and z the fastest index. Values of a node field lie in one array, brick after brick.
+// Nodes are integer points of index space. A brick with coordinate b owns the nodes 8b .. 8b + 7 on each axis; inside
+// it x is the slowest and z the fastest index. Values of a node field lie in one array, brick after brick.
 #pragma once
 
 #include <cstddef>
@@ -46,9 +46,7 @@ public:
         return b < 0 ? -1 : static_cast<std::int64_t>(b) * kNodes + offset_in_brick(node);
     }
 
-    static int offset_in_brick(const ivec3& node) {
-        return ((node.x & 7) << 6) | ((node.y & 7) << 3) | (node.z & 7);
-    }
+    static int offset_in_brick(const ivec3& node) { return ((node.x & 7) << 6) | ((node.y & 7) << 3) | (node.z & 7); }
     static ivec3 node_in_brick(int offset) { return {offset >> 6, (offset >> 3) & 7, offset & 7}; }
 
     std::uint64_t bytes() const { return bricks_.size() * sizeof(ivec3) + directory_.size() * sizeof(std::int32_t); }
@@ -68,7 +66,8 @@ void copy_box(const BrickLattice& lattice, std::span<const float> field, int cha
 // The lattice of every second node: its bricks are those whose vertices lie within one coarse spacing of a fine node.
 BrickLattice coarse_lattice(const BrickLattice& fine);
 
-// The coordinates of all bricks that hold a node at most `radius` (at most 8) nodes away, per axis, from one of `marked`.
+// The coordinates of all bricks that hold a node at most `radius` (at most 8) nodes away, per axis, from one of
+// `marked`.
 std::vector<ivec3> bricks_around(const BrickLattice& lattice, const std::vector<std::uint8_t>& marked, int radius);
 
 }  // namespace brisance

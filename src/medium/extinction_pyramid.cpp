@@ -31,8 +31,7 @@ void coarsen(const BrickLattice& fine, std::span<const float> values, int channe
                 float sum = 0.0f;
                 for (int k = 0; k < 27; ++k) {
                     const int x = k / 9, y = k / 3 % 3, z = k % 3;
-                    sum += weight[x] * weight[y] * weight[z] *
-                           plane[((p.x + x) * kWide + p.y + y) * kWide + p.z + z];
+                    sum += weight[x] * weight[y] * weight[z] * plane[((p.x + x) * kWide + p.y + y) * kWide + p.z + z];
                 }
                 coarse_values[(b * BrickLattice::kNodes + n) * channels + c] = sum;
             }
@@ -107,15 +106,18 @@ ExtinctionPyramid::ExtinctionPyramid(const Medium& medium, int levels) : medium_
 
 PackedExtinction ExtinctionPyramid::view(int level) const {
     const Packed& p = packed_[level];
-    return {p.directory.data(), p.words.data(), {p.min_brick.x, p.min_brick.y, p.min_brick.z},
-            {p.extent.x, p.extent.y, p.extent.z}, p.scale};
+    return {p.directory.data(),
+            p.words.data(),
+            {p.min_brick.x, p.min_brick.y, p.min_brick.z},
+            {p.extent.x, p.extent.y, p.extent.z},
+            p.scale};
 }
 
 std::uint64_t ExtinctionPyramid::bytes() const {
     std::uint64_t sum = 0;
     for (std::size_t l = 0; l < packed_.size(); ++l)
-        sum += packed_[l].directory.size() * 4 + packed_[l].words.size() * 4 + nodes_[l].size() * 4 +
-               lattices_[l].bytes();
+        sum +=
+            packed_[l].directory.size() * 4 + packed_[l].words.size() * 4 + nodes_[l].size() * 4 + lattices_[l].bytes();
     return sum;
 }
 

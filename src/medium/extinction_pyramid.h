@@ -1,8 +1,8 @@
 // The extinction field and its coarser averages, packed for fast trilinear sampling.
 //
-// Level l has nodes at the index points 2^l k: node values of level l + 1 are (1/4, 1/2, 1/4) averages per axis of level
-// l's, which keeps the integral. Each packed brick of 8^3 cells holds 9 x 9 x 8 words of 32 bits, word (x, y, z) being the
-// half floats of nodes z and z + 1: a trilinear sample is four loads.
+// Level l has nodes at the index points 2^l k: node values of level l + 1 are (1/4, 1/2, 1/4) averages per axis of
+// level l's, which keeps the integral. Each packed brick of 8^3 cells holds 9 x 9 x 8 words of 32 bits, word (x, y, z)
+// being the half floats of nodes z and z + 1: a trilinear sample is four loads.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Trilinear samples of packed extinction, a vector of points at a time. Included once per instruction set by kernels that
-// are compiled through Highway's foreach_target.
+// Trilinear samples of packed extinction, a vector of points at a time. Included once per instruction set by kernels
+// that are compiled through Highway's foreach_target.
 
 #if defined(BRISANCE_MEDIUM_EXTINCTION_SAMPLER_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BRISANCE_MEDIUM_EXTINCTION_SAMPLER_INL_H_

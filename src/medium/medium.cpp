@@ -16,8 +16,8 @@ namespace {
 struct SourceGrid {
     const BlockGrid* grid;
     BrickLattice lattice;
-    dmat4 index_from_target;        // this grid's index space from the medium's
-    std::optional<ivec3> shift;     // set when the two lattices differ by whole nodes: this = target + shift
+    dmat4 index_from_target;     // this grid's index space from the medium's
+    std::optional<ivec3> shift;  // set when the two lattices differ by whole nodes: this = target + shift
 };
 
 dmat4 shifted(const BlockGrid& grid, bool half_voxel_shift) {
@@ -27,8 +27,8 @@ dmat4 shifted(const BlockGrid& grid, bool half_voxel_shift) {
     return m;
 }
 
-// The transform re-indexed so that node 0 is the lattice point nearest the world's origin, up to a multiple of 2^20 nodes
-// that keeps indices small: lattices of every hierarchy level stay where they are in the world.
+// The transform re-indexed so that node 0 is the lattice point nearest the world's origin, up to a multiple of 2^20
+// nodes that keeps indices small: lattices of every hierarchy level stay where they are in the world.
 dmat4 anchored(const dmat4& world_from_index) {
     constexpr double period = 1 << 20;
     const dmat3 linear(world_from_index);
@@ -51,7 +51,8 @@ SourceGrid source_grid(const BlockGrid& grid, bool half_voxel_shift, const dmat4
     const dvec3 whole = glm::round(dvec3(first) - dvec3(target_from_index * glm::dvec4(dvec3(first), 1.0)));
     double deviation = 0.0;
     for (int k = 0; k < 8; ++k) {
-        const dvec3 corner(first + s.lattice.brick_extent() * BrickLattice::kSize * ivec3(k & 1, k >> 1 & 1, k >> 2 & 1));
+        const dvec3 corner(first +
+                           s.lattice.brick_extent() * BrickLattice::kSize * ivec3(k & 1, k >> 1 & 1, k >> 2 & 1));
         const dvec3 target(target_from_index * glm::dvec4(corner, 1.0));
         deviation = std::max(deviation, glm::length(corner - target - whole));
     }
@@ -89,8 +90,7 @@ void add_bricks(const SourceGrid& s, std::vector<ivec3>& bricks) {
     for (std::size_t b = 0; b < s.lattice.brick_count(); ++b) {
         dvec3 low(1e300), high(-1e300);
         for (int k = 0; k < 8; ++k) {
-            const dvec3 corner = dvec3(s.lattice.first_node(b)) +
-                                 dvec3(k & 1 ? 8 : -1, k & 2 ? 8 : -1, k & 4 ? 8 : -1);
+            const dvec3 corner = dvec3(s.lattice.first_node(b)) + dvec3(k & 1 ? 8 : -1, k & 2 ? 8 : -1, k & 4 ? 8 : -1);
             const dvec3 p(target_from_index * glm::dvec4(corner, 1.0));
             low = glm::min(low, p);
             high = glm::max(high, p);
@@ -154,31 +154,35 @@ NodeFields fill_fields(const BrickLattice& lattice, const Sources& sources, cons
     f.extinction.resize(lattice.node_count());
     f.radiance.resize(fire ? lattice.node_count() : 0);
     f.albedo.resize(albedo_grid ? lattice.node_count() : 0);
-    parallel_for(lattice.brick_count(), [&](std::size_t b) {
-        for (int n = 0; n < BrickLattice::kNodes; ++n) {
-            const ivec3 node = lattice.first_node(b) + BrickLattice::node_in_brick(n);
-            const std::size_t i = b * BrickLattice::kNodes + n;
-            if (sources.density)
-                f.extinction[i] = settings.smoke.extinction_per_metre *
-                                  std::max(0.0f, read(*sources.density, node, 0));
-            Rgb colour(1.0f);
-            if (sources.colour)
-                colour = glm::max(Rgb(read(*sources.colour, node, 0), read(*sources.colour, node, 1),
-                                      read(*sources.colour, node, 2)), Rgb(0.0f));
-            if (albedo_grid)
-                f.albedo[i] = glm::min(settings.smoke.albedo * colour, Rgb(1.0f));
-            if (!fire)
-                continue;
-            NodeValues v;
-            if (sources.flame)
-                v.flame = read(*sources.flame, node, 0);
-            if (sources.temperature)
-                v.temperature = read(*sources.temperature, node, 0);
-            if (!albedo_grid)
-                v.colour = colour;
-            f.radiance[i] = source_radiance(v);
-        }
-    }, 4);
+    parallel_for(
+        lattice.brick_count(),
+        [&](std::size_t b) {
+            for (int n = 0; n < BrickLattice::kNodes; ++n) {
+                const ivec3 node = lattice.first_node(b) + BrickLattice::node_in_brick(n);
+                const std::size_t i = b * BrickLattice::kNodes + n;
+                if (sources.density)
+                    f.extinction[i] =
+                        settings.smoke.extinction_per_metre * std::max(0.0f, read(*sources.density, node, 0));
+                Rgb colour(1.0f);
+                if (sources.colour)
+                    colour = glm::max(Rgb(read(*sources.colour, node, 0), read(*sources.colour, node, 1),
+                                          read(*sources.colour, node, 2)),
+                                      Rgb(0.0f));
+                if (albedo_grid)
+                    f.albedo[i] = glm::min(settings.smoke.albedo * colour, Rgb(1.0f));
+                if (!fire)
+                    continue;
+                NodeValues v;
+                if (sources.flame)
+                    v.flame = read(*sources.flame, node, 0);
+                if (sources.temperature)
+                    v.temperature = read(*sources.temperature, node, 0);
+                if (!albedo_grid)
+                    v.colour = colour;
+                f.radiance[i] = source_radiance(v);
+            }
+        },
+        4);
     return f;
 }
 
@@ -223,8 +227,8 @@ void report_odd_values(const MediumGrids& grids, Progress& progress) {
         if (c.nan_voxels)
             progress.warning("nan", name + ": " + std::to_string(c.nan_voxels) + " NaN or infinite voxels read as 0");
         if (c.negative_voxels && g != &grids.temperature)
-            progress.warning("negative", name + ": " + std::to_string(c.negative_voxels) +
-                                             " negative voxels read as 0");
+            progress.warning("negative",
+                             name + ": " + std::to_string(c.negative_voxels) + " negative voxels read as 0");
     }
 }
 

@@ -4,12 +4,12 @@
 // fields are trilinear, outside every brick they are zero. Two products make the light:
 //   emitted    j(x)   = extinction(x) * source(x) + emission(x)     [W/(m^3 sr)]
 //   scattered  s(x)   = extinction(x) * (albedo * fluence / 4 pi)(x)
-// each factor interpolated on its own. Thresholds, ramps and black-body curves act on node values, before interpolation,
-// and lights are integrals of these same fields, so that what the camera sees is what lights the smoke.
+// each factor interpolated on its own. Thresholds, ramps and black-body curves act on node values, before
+// interpolation, and lights are integrals of these same fields, so that what the camera sees is what lights the smoke.
 //
-// Index space is anchored to the world: node (0,0,0) is the lattice point nearest the world's origin, so a moving domain
-// does not move any lattice built on it. Positions "local" are metres from `reference_node`, axes parallel to the
-// world's: small numbers even when the volume is 10^6 m from the origin.
+// Index space is anchored to the world: node (0,0,0) is the lattice point nearest the world's origin, so a moving
+// domain does not move any lattice built on it. Positions "local" are metres from `reference_node`, axes parallel to
+// the world's: small numbers even when the volume is 10^6 m from the origin.
 #pragma once
 
 #include <optional>
@@ -37,8 +37,8 @@ struct Medium {
     ivec3 reference_node{0};
     mat3 local_from_index{1.0f};  // linear part [m per node]
     mat3 index_from_local{1.0f};
-    float voxel_volume = 1.0f;    // [m^3]
-    float spacing = 1.0f;         // cube root of voxel_volume [m]
+    float voxel_volume = 1.0f;  // [m^3]
+    float spacing = 1.0f;       // cube root of voxel_volume [m]
 
     std::vector<float> extinction;  // per node [1/m]
     std::vector<Rgb> source;        // per node, thermal source function (1 - albedo) L_e [W/(m^2 sr)]; empty: none

@@ -11,8 +11,8 @@ constexpr float kPi = 3.14159265358979323846f;
 // p(cos) [1/sr], integrates to 1 over the sphere. Written so that g -> +-1 keeps its peak: the denominator's terms are
 // both non-negative.
 inline float henyey_greenstein(float cosine, float g) {
-    const float denominator = (1.0f - std::abs(g)) * (1.0f - std::abs(g)) +
-                              2.0f * std::abs(g) * (1.0f - (g < 0.0f ? -cosine : cosine));
+    const float denominator =
+        (1.0f - std::abs(g)) * (1.0f - std::abs(g)) + 2.0f * std::abs(g) * (1.0f - (g < 0.0f ? -cosine : cosine));
     return (1.0f - g * g) / (4.0f * kPi * denominator * std::sqrt(denominator));
 }
 

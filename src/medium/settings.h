@@ -11,8 +11,8 @@ namespace brisance {
 
 struct SmokeSettings {
     float extinction_per_metre = 1.0f;  // sigma_t of density 1 [1/m]
-    Rgb albedo{0.8f};                   // sigma_s / sigma_t [1]; multiplied by the colour grid where one is mapped as albedo
-    float mean_cosine = 0.0f;           // Henyey-Greenstein g, forward > 0
+    Rgb albedo{0.8f};          // sigma_s / sigma_t [1]; multiplied by the colour grid where one is mapped as albedo
+    float mean_cosine = 0.0f;  // Henyey-Greenstein g, forward > 0
 };
 
 enum class FireModel {
@@ -38,12 +38,13 @@ struct FireSettings {
     FireModel model = FireModel::Flame;
     EmissionConvention convention = EmissionConvention::TimesAbsorption;
     float strength = 1.0f;
-    float threshold = 0.0f;            // in the emitting grid's own values, before interpolation
-    Rgb colour{1.0f};                  // multiplies everything emitted
-    std::vector<RampStop> ramp;        // empty: white
-    bool modulate_by_flame = false;    // black-body models: multiply by max(0, flame)
-    vec2 temperature_in{0.0f, 1.0f};   // grid values ...
-    vec2 temperature_kelvin{0.0f, 1.0f};  // ... that stand for these temperatures [K]; linear, extrapolated, never below 0
+    float threshold = 0.0f;           // in the emitting grid's own values, before interpolation
+    Rgb colour{1.0f};                 // multiplies everything emitted
+    std::vector<RampStop> ramp;       // empty: white
+    bool modulate_by_flame = false;   // black-body models: multiply by max(0, flame)
+    vec2 temperature_in{0.0f, 1.0f};  // grid values ...
+    vec2 temperature_kelvin{0.0f,
+                            1.0f};  // ... that stand for these temperatures [K]; linear, extrapolated, never below 0
 };
 
 struct MediumSettings {

@@ -65,7 +65,9 @@ Ray Camera::ray(double x, double y) const {
     return {eye_, glm::normalize(forward_ + u * right_ + v * up_)};
 }
 
-dmat4 Camera::camera_from_world() const { return glm::inverse(world_from_camera_); }
+dmat4 Camera::camera_from_world() const {
+    return glm::inverse(world_from_camera_);
+}
 
 CameraSettings framed_camera(const Medium& medium, const CameraSettings& like) {
     CameraSettings s = like;
@@ -73,7 +75,8 @@ CameraSettings framed_camera(const Medium& medium, const CameraSettings& like) {
     for (std::size_t b = 0; b < medium.lattice.brick_count(); ++b) {
         const std::size_t base = b * BrickLattice::kNodes;
         for (int n = 0; n < BrickLattice::kNodes; ++n) {
-            if (medium.extinction[base + n] <= 0.0f && (medium.emission.empty() || medium.emission[base + n] == Rgb(0.0f)))
+            if (medium.extinction[base + n] <= 0.0f &&
+                (medium.emission.empty() || medium.emission[base + n] == Rgb(0.0f)))
                 continue;
             const dvec3 p = medium.world_of_local(
                 medium.local_of_node(medium.lattice.first_node(b) + BrickLattice::node_in_brick(n)));

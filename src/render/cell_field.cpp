@@ -37,7 +37,8 @@ void put(const Medium& medium, const std::vector<Rgb>& field, const ivec3& low, 
     if (field.empty())
         return;
     std::vector<float> box(3 * kRecords);
-    copy_box(medium.lattice, {reinterpret_cast<const float*>(field.data()), field.size() * 3}, 3, low, ivec3(kSide), box);
+    copy_box(medium.lattice, {reinterpret_cast<const float*>(field.data()), field.size() * 3}, 3, low, ivec3(kSide),
+             box);
     for (int i = 0; i < kRecords; ++i)
         for (int c = 0; c < 3; ++c)
             records[i].value[slot + c] = box[c * kRecords + i];

@@ -11,8 +11,8 @@
 
 namespace brisance {
 
-// Per node: extinction [1/m]; for each ledger cell the source function, so that cell c adds extinction * source_c (or, for
-// direct emission, source_V itself as an emission coefficient) per metre.
+// Per node: extinction [1/m]; for each ledger cell the source function, so that cell c adds extinction * source_c (or,
+// for direct emission, source_V itself as an emission coefficient) per metre.
 struct CellRecord {
     enum Slot { Extinction = 0, V = 1, MV = 4, MM = 7, Albedo = 10, Size = 12 };
     float value[Size];

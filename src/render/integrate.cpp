@@ -18,7 +18,9 @@ float sample_place(int part, int parts) {
     return (part + 0.5f) / parts;
 }
 
-Rgb slot(const CellRecord& r, int at) { return {r.value[at], r.value[at + 1], r.value[at + 2]}; }
+Rgb slot(const CellRecord& r, int at) {
+    return {r.value[at], r.value[at + 1], r.value[at + 2]};
+}
 
 vec3 sample_position(const CellSegment& s, double t) {
     return glm::clamp(vec3(s.origin + s.direction * t), vec3(0.0f), vec3(float(BrickLattice::kSize)));
@@ -144,8 +146,8 @@ void add_weighted(RaySum& sum, const RaySum& s, float w) {
 }
 
 // One row of pixels with lighting asked for at the march's own points: collect, light, integrate.
-void marched_row(const CellField& field, const Camera& camera, int y, const std::vector<PixelSample>& samples, int parts,
-                 const LightPoints& light_points, PictureWriter& writer) {
+void marched_row(const CellField& field, const Camera& camera, int y, const std::vector<PixelSample>& samples,
+                 int parts, const LightPoints& light_points, PictureWriter& writer) {
     std::vector<MarchPoint> points;
     const auto for_rays = [&](const auto& body) {
         for (int x = 0; x < camera.settings().width; ++x)

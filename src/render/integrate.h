@@ -17,8 +17,8 @@ namespace brisance {
 // two parts) and the part is integrated in closed form with phi1.
 RaySum integrate(const CellField& field, const Ray& ray, int parts);
 
-// Lighting asked for sample by sample instead of from a field (GatherMethod::RayMarch): fills `lighting` with the source
-// function (albedo times in-scattered radiance) at each point, per scattering cell.
+// Lighting asked for sample by sample instead of from a field (GatherMethod::RayMarch): fills `lighting` with the
+// source function (albedo times in-scattered radiance) at each point, per scattering cell.
 struct MarchPoint {
     vec3 local;
     vec3 toward_camera;

@@ -13,7 +13,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 nlohmann::ordered_json level_table(const std::vector<LevelCost>& costs) {
     auto table = nlohmann::ordered_json::array();
@@ -67,13 +69,16 @@ std::vector<std::uint8_t> nodes_beside_extinction(const Medium& medium) {
 
 std::vector<vec3> directions_to(const Medium& medium, const vec3& eye) {
     std::vector<vec3> directions(medium.lattice.node_count());
-    parallel_for(directions.size(), [&](std::size_t i) {
-        const vec3 p = medium.local_of_node(medium.lattice.first_node(i / BrickLattice::kNodes) +
-                                            BrickLattice::node_in_brick(int(i % BrickLattice::kNodes)));
-        const vec3 way = eye - p;
-        const float d = glm::length(way);
-        directions[i] = d > 0.0f ? way / d : vec3(0.0f, 0.0f, 1.0f);
-    }, 4096);
+    parallel_for(
+        directions.size(),
+        [&](std::size_t i) {
+            const vec3 p = medium.local_of_node(medium.lattice.first_node(i / BrickLattice::kNodes) +
+                                                BrickLattice::node_in_brick(int(i % BrickLattice::kNodes)));
+            const vec3 way = eye - p;
+            const float d = glm::length(way);
+            directions[i] = d > 0.0f ? way / d : vec3(0.0f, 0.0f, 1.0f);
+        },
+        4096);
     return directions;
 }
 
@@ -132,13 +137,16 @@ Lighting::Lighting(const Shot& shot, const Plan& plan, const Medium& medium, con
 std::vector<Rgb> Lighting::source_function(const Gathered& g) const {
     const std::size_t n = needed_.size();
     std::vector<Rgb> source(n, Rgb(0.0f));
-    parallel_for(n, [&](std::size_t i) {
-        if (!needed_[i])
-            return;
-        for (int c = 0; c < 3; ++c)
-            source[i][c] = medium_.albedo_at(i)[c] *
-                           (g.scattered.empty() ? g.fluence[c * n + i] / (4.0f * kPi) : g.scattered[c * n + i]);
-    }, 4096);
+    parallel_for(
+        n,
+        [&](std::size_t i) {
+            if (!needed_[i])
+                return;
+            for (int c = 0; c < 3; ++c)
+                source[i][c] = medium_.albedo_at(i)[c] *
+                               (g.scattered.empty() ? g.fluence[c * n + i] / (4.0f * kPi) : g.scattered[c * n + i]);
+        },
+        4096);
     return source;
 }
 
@@ -147,7 +155,9 @@ void Lighting::light_from_fire() {
     Clock::time_point start = Clock::now();
     HierarchyLights lights = build_hierarchy(medium_, {voxel_lights(medium_), {}}, shot_.lighting.levels);
     const double emitted = luminance(Rgb(total(lights.light.intensity)));
-    statistics_.stages.push_back({"lights and hierarchy", seconds_since(start), lights.grid.bytes(),
+    statistics_.stages.push_back({"lights and hierarchy",
+                                  seconds_since(start),
+                                  lights.grid.bytes(),
                                   {{"intensity_sum", emitted}, {"lattice_and_pyramid_bytes", pyramid_.bytes()}}});
 
     progress_.stage("light from the fire (MV)");

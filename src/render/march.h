@@ -9,7 +9,9 @@
 namespace brisance {
 
 // phi1(tau) = (1 - exp(-tau)) / tau, right to rounding for every tau >= 0: by expm1, and its series near zero.
-inline float phi1(float tau) { return tau < 1e-3f ? 1.0f - tau * (0.5f - tau * (1.0f / 6.0f)) : -std::expm1(-tau) / tau; }
+inline float phi1(float tau) {
+    return tau < 1e-3f ? 1.0f - tau * (0.5f - tau * (1.0f / 6.0f)) : -std::expm1(-tau) / tau;
+}
 
 // Part of a ray inside one cell of a brick.
 struct CellSegment {
@@ -19,8 +21,8 @@ struct CellSegment {
     dvec3 direction;    // nodes per metre
 };
 
-// Calls visit(segment) for every cell with extinction or emission that the ray crosses in front of its origin, in order,
-// until visit returns false. Empty bricks cost one step.
+// Calls visit(segment) for every cell with extinction or emission that the ray crosses in front of its origin, in
+// order, until visit returns false. Empty bricks cost one step.
 template <class Visit>
 void walk_cells(const CellField& field, const Ray& ray, const Visit& visit);
 

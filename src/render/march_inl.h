@@ -26,7 +26,8 @@ public:
     double exit() const { return std::min({crossing_.x, crossing_.y, crossing_.z}); }
 
     void advance() {
-        const int a = crossing_.x <= crossing_.y ? (crossing_.x <= crossing_.z ? 0 : 2) : (crossing_.y <= crossing_.z ? 1 : 2);
+        const int a =
+            crossing_.x <= crossing_.y ? (crossing_.x <= crossing_.z ? 0 : 2) : (crossing_.y <= crossing_.z ? 1 : 2);
         cell[a] += direction_[a] > 0.0 ? 1 : -1;
         crossing_[a] = next_crossing(a);
     }

@@ -10,9 +10,9 @@
 namespace brisance {
 
 struct Plan {
-    bool emission = false;  // V
-    bool single = false;    // MV
-    bool multiple = false;  // MM
+    bool emission = false;     // V
+    bool single = false;       // MV
+    bool multiple = false;     // MM
     bool directional = false;  // anisotropic phase function: directional storage
     std::vector<SkippedPart> skipped;
     std::vector<std::string> cells() const;

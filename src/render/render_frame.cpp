@@ -19,7 +19,9 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::uint64_t kGridMemory = std::uint64_t{16} << 30;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 // Passes everything on and keeps notices and warnings for the statistics.
 class Recorder : public Progress {
@@ -69,7 +71,8 @@ Medium load_medium(const Shot& shot, const std::filesystem::path& volume, Statis
     std::uint64_t bytes = 0;
     for (const auto* g : {&grids.density, &grids.temperature, &grids.flame, &grids.colour})
         bytes += *g ? (*g)->values.size() * sizeof(float) : 0;
-    statistics.stages.push_back({"reading", seconds_since(start), bytes, {{"file", volume.string()}, {"mapping", mapping.describe()}}});
+    statistics.stages.push_back(
+        {"reading", seconds_since(start), bytes, {{"file", volume.string()}, {"mapping", mapping.describe()}}});
 
     progress.stage("medium");
     start = Clock::now();
@@ -77,7 +80,9 @@ Medium load_medium(const Shot& shot, const std::filesystem::path& volume, Statis
     std::size_t nodes = 0;
     for (float e : medium.extinction)
         nodes += e > 0.0f;
-    statistics.stages.push_back({"medium", seconds_since(start), medium.bytes(),
+    statistics.stages.push_back({"medium",
+                                 seconds_since(start),
+                                 medium.bytes(),
                                  {{"bricks", medium.lattice.brick_count()},
                                   {"absorbing_nodes", nodes},
                                   {"voxel_metres", medium.spacing},
@@ -141,8 +146,8 @@ Image draw(const Shot& shot, const Plan& plan, const Medium& medium, const Camer
     else if (shot.output.bounce_layers && lighting)
         add_order_layers(image, field, nodes, medium, camera, settings, progress);
     metadata.samples_per_pixel = double(settings.samples_per_axis) * settings.samples_per_axis;
-    statistics.stages.push_back({"camera", seconds_since(start), field.bytes(),
-                                 {{"samples_per_pixel", metadata.samples_per_pixel}}});
+    statistics.stages.push_back(
+        {"camera", seconds_since(start), field.bytes(), {{"samples_per_pixel", metadata.samples_per_pixel}}});
     return image;
 }
 

@@ -16,8 +16,8 @@ struct RenderedFrame {
     Statistics statistics;
 };
 
-// `volume` is the resolved .vdb file of this frame. Throws Error. The shot may leave camera and exposure to be framed on
-// the volume (camera_given). Same shot, same bits, whatever the number of threads.
+// `volume` is the resolved .vdb file of this frame. Throws Error. The shot may leave camera and exposure to be framed
+// on the volume (camera_given). Same shot, same bits, whatever the number of threads.
 RenderedFrame render_frame(const Shot& shot, const std::filesystem::path& volume, int frame, Progress& progress);
 
 // The plan without the pixels: which cells run, what is left out and why. Reads the volume.

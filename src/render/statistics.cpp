@@ -35,8 +35,9 @@ void list_levels(std::ostringstream& out, const nlohmann::ordered_json& levels) 
             maps = std::to_string(l["resolution"].get<int>()) + "^2 x " + std::to_string(l["distances"].get<int>());
         out << "      " << std::setw(5) << l["level"].get<int>() << std::setw(11) << l["lights"].get<std::size_t>()
             << "   " << std::left << std::setw(13) << maps << std::right << std::setw(10)
-            << l["map_bytes"].get<double>() / (1 << 20) << std::setw(8) << l["map_seconds"].get<double>() << std::setw(11)
-            << l["gather_seconds"].get<double>() << std::setw(14) << l["evaluations"].get<std::uint64_t>() << "\n";
+            << l["map_bytes"].get<double>() / (1 << 20) << std::setw(8) << l["map_seconds"].get<double>()
+            << std::setw(11) << l["gather_seconds"].get<double>() << std::setw(14)
+            << l["evaluations"].get<std::uint64_t>() << "\n";
     }
 }
 
@@ -62,8 +63,8 @@ std::string Statistics::explain() const {
     for (const SkippedPart& s : skipped)
         out << "  left out  " << s.name << ": " << s.reason << "\n";
     for (const StageCost& s : stages) {
-        out << "  " << std::setw(8) << s.seconds << " s" << std::setw(10) << s.bytes / double(1 << 20) << " MiB  " << s.name
-            << "\n";
+        out << "  " << std::setw(8) << s.seconds << " s" << std::setw(10) << s.bytes / double(1 << 20) << " MiB  "
+            << s.name << "\n";
         if (s.detail.contains("levels"))
             list_levels(out, s.detail["levels"]);
         if (s.detail.contains("balance"))

@@ -112,14 +112,18 @@ EscapeEstimate estimate_escape(const ExtinctionPyramid& pyramid, const std::vect
     if (picks.empty())
         return estimate;
     ExitRays exits(pyramid, picks.size());
-    parallel_for(picks.size(), [&](std::size_t r) {
-        const std::size_t i = picks[r];
-        const ivec3 node = medium.lattice.first_node(i / BrickLattice::kNodes) +
-                           BrickLattice::node_in_brick(static_cast<int>(i % BrickLattice::kNodes));
-        // Golden-ratio rotation of consecutive rays: well spread for any run of them.
-        const double u = std::fmod(0.5 + r * 0.7548776662466927, 1.0), v = std::fmod(0.5 + r * 0.5698402909980532, 1.0);
-        exits.set(r, vec3(node - medium.reference_node), sphere_direction(u, v));
-    }, 1024);
+    parallel_for(
+        picks.size(),
+        [&](std::size_t r) {
+            const std::size_t i = picks[r];
+            const ivec3 node = medium.lattice.first_node(i / BrickLattice::kNodes) +
+                               BrickLattice::node_in_brick(static_cast<int>(i % BrickLattice::kNodes));
+            // Golden-ratio rotation of consecutive rays: well spread for any run of them.
+            const double u = std::fmod(0.5 + r * 0.7548776662466927, 1.0),
+                         v = std::fmod(0.5 + r * 0.5698402909980532, 1.0);
+            exits.set(r, vec3(node - medium.reference_node), sphere_direction(u, v));
+        },
+        1024);
     const std::vector<float> transmittance = exits.march(1.0f);
     dvec3 escaped[2] = {dvec3(0.0), dvec3(0.0)}, emitted[2] = {dvec3(0.0), dvec3(0.0)};
     for (std::size_t r = 0; r < picks.size(); ++r) {

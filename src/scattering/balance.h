@@ -8,7 +8,7 @@
 namespace brisance {
 
 struct EscapeEstimate {
-    dvec3 fraction{0.0};  // of the emitted power that leaves the medium without a collision, per colour
+    dvec3 fraction{0.0};          // of the emitted power that leaves the medium without a collision, per colour
     double standard_error = 0.0;  // of the luminance's
     std::size_t rays = 0;
 };
@@ -21,8 +21,8 @@ EscapeEstimate estimate_escape(const ExtinctionPyramid& pyramid, const std::vect
 // Power absorbed and scattered, over 4 pi: the exact integral of extinction * fluence of the two interpolated fields.
 dvec3 collided(const Medium& medium, const std::vector<Rgb>& fluence);
 
-// Escape probability averaged over all directions and over what each vertex stands for: `directions` stratified rays per
-// vertex (of the lattice 2^level coarser than the medium's), each from a node under its hat picked by extinction.
+// Escape probability averaged over all directions and over what each vertex stands for: `directions` stratified rays
+// per vertex (of the lattice 2^level coarser than the medium's), each from a node under its hat picked by extinction.
 std::vector<float> escape_probabilities(const ExtinctionPyramid& pyramid, const std::vector<ivec3>& vertices, int level,
                                         int directions);
 

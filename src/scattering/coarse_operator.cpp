@@ -115,11 +115,14 @@ ScatteredLight scattered_light(const Medium& medium, const Gathered& arriving, c
     const std::size_t n = mask.size();
     const auto projected = [&](const std::vector<float>& field, std::size_t first_plane, float factor) {
         std::vector<Rgb> source(n, Rgb(0.0f));
-        parallel_for(n, [&](std::size_t i) {
-            if (mask[i])
-                for (int c = 0; c < 3; ++c)
-                    source[i][c] = factor * medium.albedo_at(i)[c] * field[(first_plane + c) * n + i];
-        }, 4096);
+        parallel_for(
+            n,
+            [&](std::size_t i) {
+                if (mask[i])
+                    for (int c = 0; c < 3; ++c)
+                        source[i][c] = factor * medium.albedo_at(i)[c] * field[(first_plane + c) * n + i];
+            },
+            4096);
         return project_extinction_times(medium, source);
     };
     ScatteredLight light;
@@ -140,6 +143,7 @@ CoarseOperator::CoarseOperator(const ExtinctionPyramid& fine, int level, const L
     : level_(level), medium_(coarse_medium(fine, level)), lighting_(lighting), alpha_(alpha) {
     pyramid_ = std::make_unique<ExtinctionPyramid>(medium_, ExtinctionPyramid::kMaxLevels);
     unit_ = project_extinction_times(medium_, std::vector<Rgb>(medium_.extinction.size(), Rgb(1.0f)));
+    sharpen_lights(medium_.lattice, unit_);
     weight_.resize(unit_.size());
     mask_.resize(unit_.size());
     for (std::size_t i = 0; i < unit_.size(); ++i) {
@@ -197,8 +201,14 @@ Gathered CoarseOperator::gather(const ScatteredLight& lights, std::vector<LevelC
     }
     const bool directional = !scaled.directional.empty();
     set_intensity(grid_, medium_.lattice, scaled.intensity, directional ? &scaled.directional : nullptr);
-    const LightField field{pyramid_.get(), &scaled.intensity, directional ? &scaled.directional : nullptr, &grid_,
-                           &weight_,       alpha_,            lighting_, &maps_};
+    const LightField field{pyramid_.get(),
+                           &scaled.intensity,
+                           directional ? &scaled.directional : nullptr,
+                           &grid_,
+                           &weight_,
+                           alpha_,
+                           lighting_,
+                           &maps_};
     std::vector<LevelCost> these;
     Gathered out = gather_at_nodes(field, {&mask_, nullptr, directional, medium_.mean_cosine}, these, progress);
     if (costs.empty())
@@ -215,6 +225,7 @@ Gathered CoarseOperator::gather(const ScatteredLight& lights, std::vector<LevelC
 ScatteredLight CoarseOperator::restricted(const ScatteredLight& fine, const BrickLattice& fine_lattice) const {
     ScatteredLight coarse;
     coarse.intensity = as_colours(splat_down(fine_lattice, flattened(fine.intensity), 3, level_));
+    sharpen_lights(medium_.lattice, coarse.intensity);
     if (!fine.directional.empty())
         coarse.directional = splat_down(fine_lattice, fine.directional, 24, level_);
     return coarse;
@@ -223,17 +234,14 @@ ScatteredLight CoarseOperator::restricted(const ScatteredLight& fine, const Bric
 ScatteredLight CoarseOperator::bounce(const ScatteredLight& lights, BounceBalance& balance,
                                       std::vector<LevelCost>& costs, Progress& progress) {
     Gathered arriving = gather(lights, costs, progress);
-    const std::size_t n = mask_.size();
-    dvec3 emitted(0.0), hit(0.0), escaped(0.0);
-    for (std::size_t i = 0; i < n; ++i) {
+    prepare_interpolation(medium_.lattice, mask_, arriving);
+    dvec3 emitted(0.0), escaped(0.0);
+    for (std::size_t i = 0; i < mask_.size(); ++i) {
         emitted += dvec3(lights.intensity[i]);
-        if (!mask_[i])
-            continue;
-        if (!escape_.empty())
+        if (mask_[i] && !escape_.empty())
             escaped += dvec3(lights.intensity[i]) * double(escape_[i]);
-        const Rgb fluence(arriving.fluence[i], arriving.fluence[n + i], arriving.fluence[2 * n + i]);
-        hit += dvec3(fluence) * double(weight_[i] / (4.0f * kPi));
     }
+    const dvec3 hit = collided(medium_, fluence_at_nodes(arriving, mask_));
     const double y = luminance(Rgb(emitted));
     balance.collided = luminance(Rgb(hit)) / y;
     balance.escaped = luminance(Rgb(escaped)) / y;
@@ -245,7 +253,9 @@ ScatteredLight CoarseOperator::bounce(const ScatteredLight& lights, BounceBalanc
         balance.scale = (1.0 - balance.escaped) / balance.collided;
         arriving.scale(scale);
     }
-    return scattered_light(medium_, arriving, mask_);
+    ScatteredLight next = scattered_light(medium_, arriving, mask_);
+    sharpen_lights(medium_.lattice, next.intensity);
+    return next;
 }
 
 ScatteredLight CoarseOperator::spread_to_fine(const ScatteredLight& coarse, const Medium& fine) const {
@@ -253,31 +263,35 @@ ScatteredLight CoarseOperator::spread_to_fine(const ScatteredLight& coarse, cons
     const CoarseSampler sampler{medium_.lattice, level_};
     const bool directional = !coarse.directional.empty();
     const int channels = directional ? 27 : 3;
-    // Source function: light leaving per volume and extinction; where a coarse node has no extinction its neighbours speak.
+    // Source function: light leaving per volume and extinction; where a coarse node has no extinction its neighbours
+    // speak.
     std::vector<std::vector<Rgb>> source(channels / 3, std::vector<Rgb>(n, Rgb(0.0f)));
-    parallel_for(fine.lattice.brick_count(), [&](std::size_t b) {
-        for (int k = 0; k < BrickLattice::kNodes; ++k) {
-            const std::size_t i = b * BrickLattice::kNodes + k;
-            float sum[27] = {}, mass = 0.0f;
-            sampler.at(fine.lattice.first_node(b) + BrickLattice::node_in_brick(k), [&](std::size_t q, float w) {
-                if (!mask_[q])
-                    return;
-                const float per_mass = w / weight_[q];
-                mass += w;
-                for (int c = 0; c < 3; ++c)
-                    sum[c] += per_mass * coarse.intensity[q][c];
-                for (int c = 0; c < channels - 3; ++c)
-                    sum[3 + c] += per_mass * coarse.directional[q * 24 + c];
-            });
-            if (mass > 0.0f)
-                for (int c = 0; c < channels; ++c)
-                    source[c / 3][i][c % 3] = sum[c] / mass;
-        }
-    }, 4);
+    parallel_for(
+        fine.lattice.brick_count(),
+        [&](std::size_t b) {
+            for (int k = 0; k < BrickLattice::kNodes; ++k) {
+                const std::size_t i = b * BrickLattice::kNodes + k;
+                float sum[27] = {}, mass = 0.0f;
+                sampler.at(fine.lattice.first_node(b) + BrickLattice::node_in_brick(k), [&](std::size_t q, float w) {
+                    if (!mask_[q])
+                        return;
+                    const float per_mass = w / weight_[q];
+                    mass += w;
+                    for (int c = 0; c < 3; ++c)
+                        sum[c] += per_mass * coarse.intensity[q][c];
+                    for (int c = 0; c < channels - 3; ++c)
+                        sum[3 + c] += per_mass * coarse.directional[q * 24 + c];
+                });
+                if (mass > 0.0f)
+                    for (int c = 0; c < channels; ++c)
+                        source[c / 3][i][c % 3] = sum[c] / mass;
+            }
+        },
+        4);
     ScatteredLight light;
     light.intensity = project_extinction_times(fine, source[0]);
-    // Extinction and source vary together below the coarse voxel, which the product of averages does not see: the power is
-    // that of the series.
+    // Extinction and source vary together below the coarse voxel, which the product of averages does not see: the power
+    // is that of the series.
     const dvec3 wanted = total(coarse.intensity), found = total(light.intensity);
     Rgb scale(1.0f);
     for (int c = 0; c < 3; ++c)

@@ -17,8 +17,8 @@ struct ScatteredLight {
     void add(const ScatteredLight& other, float factor);
 };
 
-// What the light arriving at the medium's nodes becomes: the exact projection of extinction * albedo * fluence / 4 pi, and
-// of its higher moments times the phase function's. Only nodes with `mask` count.
+// What the light arriving at the medium's nodes becomes: the exact projection of extinction * albedo * fluence / 4 pi,
+// and of its higher moments times the phase function's. Only nodes with `mask` count.
 ScatteredLight scattered_light(const Medium& medium, const Gathered& arriving, const std::vector<std::uint8_t>& mask);
 
 class CoarseOperator {
@@ -35,8 +35,8 @@ public:
     ScatteredLight bounce(const ScatteredLight& lights, BounceBalance& balance, std::vector<LevelCost>& costs,
                           Progress& progress);
 
-    // Scattered light of the coarse nodes as fine lights: the source function is interpolated, the fine extinction decides
-    // where it leaves from.
+    // Scattered light of the coarse nodes as fine lights: the source function is interpolated, the fine extinction
+    // decides where it leaves from.
     ScatteredLight spread_to_fine(const ScatteredLight& coarse, const Medium& fine) const;
 
 private:

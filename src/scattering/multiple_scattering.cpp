@@ -21,7 +21,9 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-double power(const std::vector<Rgb>& lights) { return luminance(Rgb(total(lights))); }
+double power(const std::vector<Rgb>& lights) {
+    return luminance(Rgb(total(lights)));
+}
 
 // Level on which the series is solved: the finest with at most this many nodes that scatter.
 constexpr std::size_t kMostCoarseNodes = 120000;
@@ -40,8 +42,8 @@ int choose_level(const ExtinctionPyramid& pyramid, int wish) {
     return level;
 }
 
-// Runs the series on the coarse lattice and hands every order's light (scattered twice, three times, ...) to `take`, the
-// extrapolated tail last.
+// Runs the series on the coarse lattice and hands every order's light (scattered twice, three times, ...) to `take`,
+// the extrapolated tail last.
 template <class Take>
 void run_series(CoarseOperator& op, const ScatteredLight& first, const ScatteringSettings& settings,
                 ScatteringCosts& costs, Progress& progress, const Take& take) {
@@ -84,10 +86,13 @@ void run_series(CoarseOperator& op, const ScatteredLight& first, const Scatterin
 std::vector<Rgb> fluence_at_nodes(const Gathered& gathered, const std::vector<std::uint8_t>& mask) {
     const std::size_t n = mask.size();
     std::vector<Rgb> fluence(n, Rgb(0.0f));
-    parallel_for(n, [&](std::size_t i) {
-        if (mask[i])
-            fluence[i] = {gathered.fluence[i], gathered.fluence[n + i], gathered.fluence[2 * n + i]};
-    }, 4096);
+    parallel_for(
+        n,
+        [&](std::size_t i) {
+            if (mask[i])
+                fluence[i] = {gathered.fluence[i], gathered.fluence[n + i], gathered.fluence[2 * n + i]};
+        },
+        4096);
     return fluence;
 }
 
@@ -152,9 +157,14 @@ std::vector<ScatteredLight> solve_scattering(const ScatteringInput& input, Scatt
 
 LightField HierarchyLights::field(const ExtinctionPyramid& pyramid, float alpha, const LightingSettings& settings,
                                   ShadowMapCache* cache) const {
-    return {&pyramid, &light.intensity, light.directional.empty() ? nullptr : &light.directional,
-            &grid,    &weight,          alpha,
-            settings, cache};
+    return {&pyramid,
+            &light.intensity,
+            light.directional.empty() ? nullptr : &light.directional,
+            &grid,
+            &weight,
+            alpha,
+            settings,
+            cache};
 }
 
 HierarchyLights build_hierarchy(const Medium& medium, ScatteredLight light, int levels) {

@@ -1,22 +1,22 @@
 // Orders of scattering above the first: the scattered light becomes the lights of the next hierarchy.
 //
 // The series is solved on a coarser medium, voxels 2^m wide (the mean extinction of the pyramid's level m), where one
-// bounce is the same gather as the fire's: near field on the lattice, levels above with shadow maps. Positions and centres
-// are weighted by extinction, not by the light of a bounce, so the bounce is one linear operator K and its shadow maps are
-// made once. Then
+// bounce is the same gather as the fire's: near field on the lattice, levels above with shadow maps. Positions and
+// centres are weighted by extinction, not by the light of a bounce, so the bounce is one linear operator K and its
+// shadow maps are made once. Then
 //   phi_{k+1} = K (V sigma albedo phi_k / 4 pi),  k = 1, 2, ...
-// until what is left is known well enough: successive bounces settle on the operator's first eigenvector, so the tail is
-// the geometric series of their ratio. The last scattering toward the camera is gathered once more on the fine lattice
-// from the sum of all orders.
+// until what is left is known well enough: successive bounces settle on the operator's first eigenvector, so the tail
+// is the geometric series of their ratio. The last scattering toward the camera is gathered once more on the fine
+// lattice from the sum of all orders.
 //
 // Balance. A gather errs by some percent, and bounces multiply it. What is emitted collides or escapes, and escape
-// probabilities are cheap to march exactly; by reciprocity the same number says how bright an isothermal medium is. So K
-// becomes D K D with a positive factor per node, such that a unit source function gives 4 pi (1 - escape) at every node:
-// energy is then conserved for any distribution of light, and Kirchhoff's law holds. What remains is measured against
-// independent escape rays bounce by bounce, reported, and scaled out.
+// probabilities are cheap to march exactly; by reciprocity the same number says how bright an isothermal medium is. So
+// K becomes D K D with a positive factor per node, such that a unit source function gives 4 pi (1 - escape) at every
+// node: energy is then conserved for any distribution of light, and Kirchhoff's law holds. What remains is measured
+// against independent escape rays bounce by bounce, reported, and scaled out.
 //
-// Anisotropic phase functions: radiance arriving is kept as moments up to degree 2 (sh.h), lights are directional, and the
-// last scattering uses the phase function itself.
+// Anisotropic phase functions: radiance arriving is kept as moments up to degree 2 (sh.h), lights are directional, and
+// the last scattering uses the phase function itself.
 #pragma once
 
 #include <string>
@@ -30,12 +30,12 @@ namespace brisance {
 
 // One bounce's energy, as fractions of the power it set out with (luminance).
 struct BounceBalance {
-    int order = 0;                // scatterings before this flight: 0 is the fire's own light
-    double emitted = 0.0;         // power / 4 pi that set out [W/sr], relative to the fire's
-    double collided = 0.0;        // as gathered
-    double escaped = 0.0;         // as marched
-    double escape_error = 0.0;    // standard error of `escaped`
-    double scale = 1.0;           // applied: (1 - escaped) / collided
+    int order = 0;              // scatterings before this flight: 0 is the fire's own light
+    double emitted = 0.0;       // power / 4 pi that set out [W/sr], relative to the fire's
+    double collided = 0.0;      // as gathered
+    double escaped = 0.0;       // as marched
+    double escape_error = 0.0;  // standard error of `escaped`
+    double scale = 1.0;         // applied: (1 - escaped) / collided
     double corrected() const { return collided * scale + escaped; }  // 1 after correction
 };
 
@@ -46,10 +46,10 @@ struct ScatteringCosts {
     double series_seconds = 0.0;
     std::vector<LevelCost> levels;  // of the first bounce
     std::vector<BounceBalance> balances;
-    int bounces = 0;            // computed one by one
-    double tail_ratio = 0.0;    // of successive bounces' power at the end
-    double tail_share = 0.0;    // of the scattered power that the extrapolated tail makes up
-    double remainder = 0.0;     // estimated share still missing
+    int bounces = 0;          // computed one by one
+    double tail_ratio = 0.0;  // of successive bounces' power at the end
+    double tail_share = 0.0;  // of the scattered power that the extrapolated tail makes up
+    double remainder = 0.0;   // estimated share still missing
     std::uint64_t bytes = 0;
 };
 
@@ -62,8 +62,8 @@ struct ScatteringInput {
     bool separate_orders = false;
 };
 
-// Light leaving the medium's nodes after one or more scatterings, ready to be gathered a last time: one entry, or one per
-// order (scattered once, twice, ..., and the tail) where orders are to be kept apart.
+// Light leaving the medium's nodes after one or more scatterings, ready to be gathered a last time: one entry, or one
+// per order (scattered once, twice, ..., and the tail) where orders are to be kept apart.
 std::vector<ScatteredLight> solve_scattering(const ScatteringInput& input, ScatteringCosts& costs, Progress& progress);
 
 // Lights of all levels made from light leaving nodes.

@@ -23,9 +23,9 @@ struct ShadowRays {
     std::size_t count;          // padded
 };
 
-// Marches all rays from `origin` [nodes, relative to the reference]; transmittance of ray r at stored distance k goes to
-// out[r * distances + k], times 65535. Up to the first stored distance, where `near_steps` lead, the transmittance is the
-// mean over kNearRays rays from different places of the light's extent, all converging there.
+// Marches all rays from `origin` [nodes, relative to the reference]; transmittance of ray r at stored distance k goes
+// to out[r * distances + k], times 65535. Up to the first stored distance, where `near_steps` lead, the transmittance
+// is the mean over kNearRays rays from different places of the light's extent, all converging there.
 constexpr int kNearRays = 4;
 constexpr std::size_t kStarts = 64;
 void march_shadow_rays(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,

@@ -12,8 +12,8 @@ namespace brisance {
 
 namespace {
 
-// The smallest step worth taking [m]: the lattice's shortest edge, but no finer than a sixteenth of the mean spacing, so
-// that a lattice of needles does not make marches endless.
+// The smallest step worth taking [m]: the lattice's shortest edge, but no finer than a sixteenth of the mean spacing,
+// so that a lattice of needles does not make marches endless.
 float finest_step(const Medium& medium) {
     float edge = medium.spacing;
     for (int a = 0; a < 3; ++a)
@@ -64,8 +64,8 @@ TexelTable texel_table(const Medium& medium, int resolution) {
     return t;
 }
 
-// Offsets from the light's centre [nodes] to kStarts of the voxels it stands for, in a scattered order; the first 16 stand
-// again at the end for whole-vector loads.
+// Offsets from the light's centre [nodes] to kStarts of the voxels it stands for, in a scattered order; the first 16
+// stand again at the end for whole-vector loads.
 void pick_starts(FootprintPicker& picker, const Medium& medium, const GridLevel& level, std::size_t light,
                  std::array<std::vector<float>, 3>& starts) {
     const vec3 centre = medium.index_from_local * level.position[light];
@@ -82,8 +82,8 @@ void pick_starts(FootprintPicker& picker, const Medium& medium, const GridLevel&
         std::copy_n(s.begin(), 16, s.begin() + kStarts);
 }
 
-// Copies the interior of a map into place and wraps its border: crossing an edge of the square continues on the same edge
-// mirrored about its middle.
+// Copies the interior of a map into place and wraps its border: crossing an edge of the square continues on the same
+// edge mirrored about its middle.
 void place_with_border(const std::uint16_t* interior, const ShadowMapLayout& layout, std::uint16_t* map) {
     const int r = layout.resolution;
     for (int i = -1; i <= r; ++i)
@@ -105,7 +105,8 @@ void place_with_border(const std::uint16_t* interior, const ShadowMapLayout& lay
 }  // namespace
 
 void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const NodeWeights& weights,
-                       const ShadowMapLayout& layout, std::size_t first, std::size_t count, std::vector<std::uint16_t>& maps) {
+                       const ShadowMapLayout& layout, std::size_t first, std::size_t count,
+                       std::vector<std::uint16_t>& maps) {
     const Medium& medium = pyramid.medium();
     const float far = layout.far_distance;
     std::vector<ShadowStep> near_steps, steps;

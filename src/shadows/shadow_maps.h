@@ -5,11 +5,13 @@
 //    medium), so distances are sampled there alone.
 //  - What is stored and interpolated is transmittance, in 16 bits: a light stands for many, and the mean of their
 //    transmittances is what the receiver needs.
-//  - A light stands for a region, and near it the mean transmittance of that region is what counts, more than that of its
+//  - A light stands for a region, and near it the mean transmittance of that region is what counts, more than that of
+//  its
 //    centre (exp is convex, and fire burns where the smoke is dense): up to the nearest distance asked for, each texel
 //    averages several rays that start at voxels the light stands for, picked systematically in proportion to what they
 //    give it, and converge there.
-//  - Rays see density averaged over a sixteenth of the light's spacing near the light, shrinking to single voxels at the
+//  - Rays see density averaged over a sixteenth of the light's spacing near the light, shrinking to single voxels at
+//  the
 //    far end.
 #pragma once
 

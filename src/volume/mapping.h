@@ -27,7 +27,6 @@ struct GridMapping {
 
 // Throws Error BadData when no grid can serve as density, flame or temperature (the message lists every grid and why
 // not), or when the shot names a grid that is absent (the message names those that are there) or unusable.
-GridMapping map_grids(const std::vector<GridInfo>& grids, const VolumeSettings& settings,
-                      const std::string& file);
+GridMapping map_grids(const std::vector<GridInfo>& grids, const VolumeSettings& settings, const std::string& file);
 
 }  // namespace brisance

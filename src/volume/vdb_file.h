@@ -41,8 +41,8 @@ struct GridInfo {
 
 // A grid's voxels as 8^3 blocks aligned to multiples of 8, sorted by (x, y, z) of the block origin.
 // Inside a block x is the slowest and z the fastest index, channels interleaved innermost. Inactive voxels hold 0.
-// Active tiles are expanded, blocks that hold nothing but 0 left out. Non-finite values have become 0 and are counted in
-// `census`; negative ones are counted and kept: whoever reads them clamps.
+// Active tiles are expanded, blocks that hold nothing but 0 left out. Non-finite values have become 0 and are counted
+// in `census`; negative ones are counted and kept: whoever reads them clamps.
 struct BlockGrid {
     static constexpr int kBlock = 8;
     GridInfo info;

@@ -1,5 +1,5 @@
-// An isothermal ball that emits, absorbs and scatters: the closed problem nearest to a fireball, solved here through all
-// orders of scattering. Values of the centre pixel from the integral equation
+// An isothermal ball that emits, absorbs and scatters: the closed problem nearest to a fireball, solved here through
+// all orders of scattering. Values of the centre pixel from the integral equation
 //   f(x) = (1 - a) x + a/2 integral over [-R, R] of E1|x - y| f(y) dy,  f = x S(x).
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Pictures of real volumes against another renderer's unbiased ones. Each reference comes as two independent halves A and
-// B: sum (m - A)(m - B) / sum A B estimates the squared relative error of m free of the references' own noise.
+// Pictures of real volumes against another renderer's unbiased ones. Each reference comes as two independent halves A
+// and B: sum (m - A)(m - B) / sum A B estimates the squared relative error of m free of the references' own noise.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-dvec3 triple(const nlohmann::json& j) { return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()}; }
+dvec3 triple(const nlohmann::json& j) {
+    return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()};
+}
 
 Shot shot_of(const fs::path& file) {
     const auto json = nlohmann::json::parse(std::ifstream(file));
@@ -74,13 +76,15 @@ TEST_P(References, AreMetByTheFinalPreset) {
     const Image image =
         render_frame(shot, fs::path(data) / "volumes" / json["volume"]["file"].get<std::string>(), 0, silent).image;
     const std::string reference = (folder / GetParam()).string();
-    const auto expect = [&](const std::vector<std::string>& cells, const std::string& order, double error, double mean) {
+    const auto expect = [&](const std::vector<std::string>& cells, const std::string& order, double error,
+                            double mean) {
         const Difference d = difference(image, cells, reference + "." + order);
         EXPECT_LT(d.error, error) << order;
         EXPECT_LT(std::abs(d.mean), mean) << order;
         RecordProperty(order + "_error_percent", std::to_string(100.0 * d.error));
         RecordProperty(order + "_mean_percent", std::to_string(100.0 * d.mean));
-        std::printf("%s %s: error %.3f %%, mean %+.3f %%\n", GetParam(), order.c_str(), 100.0 * d.error, 100.0 * d.mean);
+        std::printf("%s %s: error %.3f %%, mean %+.3f %%\n", GetParam(), order.c_str(), 100.0 * d.error,
+                    100.0 * d.mean);
     };
     expect({"V"}, "V", 0.010, 0.003);
     expect({"V", "MV"}, "V+MV", 0.013, 0.013);
