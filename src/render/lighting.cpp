@@ -216,13 +216,12 @@ Gathered Lighting::gather_last_flight(const HierarchyLights& lights, int order, 
     return g;
 }
 
-void Lighting::light_from_smoke(const Gathered& first) {
+std::vector<ScatteredLight> Lighting::orders_of_scattering(const Gathered& first) {
     progress_.stage("orders of scattering");
-    Clock::time_point start = Clock::now();
+    const Clock::time_point start = Clock::now();
     ScatteringCosts costs;
-    const bool apart = shot_.output.bounce_layers && !marching();
-    std::vector<ScatteredLight> orders =
-        solve_scattering({&pyramid_, &first, &needed_, shot_.lighting, shot_.scattering, apart}, costs, progress_);
+    std::vector<ScatteredLight> orders = solve_scattering(
+        {&pyramid_, &first, &needed_, shot_.lighting, shot_.scattering, orders_apart()}, costs, progress_);
     StageCost series{"orders of scattering on the coarse lattice", seconds_since(start), costs.bytes, {}};
     series.detail = {{"lattice_level", costs.lattice_level},
                      {"nodes", costs.coarse_nodes},
@@ -240,33 +239,33 @@ void Lighting::light_from_smoke(const Gathered& first) {
         progress_.warning("series", "multiple scattering stopped after " + std::to_string(costs.bounces) +
                                         " bounces with an estimated " + std::to_string(100.0 * costs.remainder) +
                                         " % of its light missing");
+    return orders;
+}
 
+void Lighting::light_from_smoke(const Gathered& first) {
+    std::vector<ScatteredLight> orders = orders_of_scattering(first);
     progress_.stage("light from the smoke (MM)");
-    start = Clock::now();
+    const Clock::time_point start = Clock::now();
     StageCost last{"light from the smoke (MM)", 0.0, 0, {}};
-    last.detail["balance"] = nlohmann::ordered_json::array();
+    auto balances = nlohmann::ordered_json::array();
     std::vector<LevelCost> levels;
     Gathered sum;
+    sum.resize(needed_.size(), plan_.directional, false);
+    if (marching())
+        smoke_ = std::make_unique<PointLights>();
     for (std::size_t k = 0; k < orders.size(); ++k) {
         sharpen_lights(medium_.lattice, orders[k].intensity);
         HierarchyLights lights = build_hierarchy(medium_, std::move(orders[k]), shot_.lighting.levels);
-        if (marching()) {
-            smoke_ = std::make_unique<PointLights>();
-            if (!shot_.lighting.energy_balance) {
-                smoke_->lights = std::move(lights);
-                break;
-            }
-        }
-        std::vector<LevelCost> these;
-        const Gathered g = gather_last_flight(lights, apart ? int(k) + 1 : -1, last.detail["balance"], these);
-        if (levels.empty())
-            levels = these;
-        if (apart)
-            nodes_.orders.push_back(source_function(g));
-        if (sum.fluence.empty())
-            sum = g;
-        else
+        // Marching gathers at the points later; the nodes then serve the balance alone.
+        if (!marching() || shot_.lighting.energy_balance) {
+            std::vector<LevelCost> these;
+            const Gathered g = gather_last_flight(lights, orders_apart() ? int(k) + 1 : -1, balances, these);
+            if (levels.empty())
+                levels = these;
+            if (orders_apart())
+                nodes_.orders.push_back(source_function(g));
             sum.add(g);
+        }
         if (marching())
             smoke_->lights = std::move(lights);
     }
@@ -279,8 +278,8 @@ void Lighting::light_from_smoke(const Gathered& first) {
     last.seconds = seconds_since(start);
     last.bytes = most_held(levels) + (sum.fluence.size() + sum.scattered.size()) * 4;
     last.detail["levels"] = level_table(levels);
-    if (last.detail["balance"].empty())
-        last.detail.erase("balance");
+    if (!balances.empty())
+        last.detail["balance"] = balances;
     statistics_.stages.push_back(last);
 }
 
