@@ -254,7 +254,7 @@ void Lighting::light_from_smoke(const Gathered& first) {
     if (marching())
         smoke_ = std::make_unique<PointLights>();
     for (std::size_t k = 0; k < orders.size(); ++k) {
-        sharpen_lights(medium_.lattice, orders[k].intensity);
+        orders[k].sharpen(medium_.lattice);
         HierarchyLights lights = build_hierarchy(medium_, std::move(orders[k]), shot_.lighting.levels);
         // Marching gathers at the points later; the nodes then serve the balance alone.
         if (!marching() || shot_.lighting.energy_balance) {

@@ -111,6 +111,16 @@ void ScatteredLight::add(const ScatteredLight& other, float factor) {
         directional[i] += factor * other.directional[i];
 }
 
+void ScatteredLight::sharpen(const BrickLattice& lattice) {
+    const std::vector<Rgb> before = intensity;
+    sharpen_lights(lattice, intensity);
+    for (std::size_t i = 0; i < intensity.size() && !directional.empty(); ++i)
+        for (int k = 0; k < 24; ++k) {
+            const float from = before[i][k % 3];
+            directional[i * 24 + k] *= from > 0.0f ? intensity[i][k % 3] / from : 0.0f;
+        }
+}
+
 ScatteredLight scattered_light(const Medium& medium, const Gathered& arriving, const std::vector<std::uint8_t>& mask) {
     const std::size_t n = mask.size();
     const auto projected = [&](const std::vector<float>& field, std::size_t first_plane, float factor) {
@@ -225,9 +235,9 @@ Gathered CoarseOperator::gather(const ScatteredLight& lights, std::vector<LevelC
 ScatteredLight CoarseOperator::restricted(const ScatteredLight& fine, const BrickLattice& fine_lattice) const {
     ScatteredLight coarse;
     coarse.intensity = as_colours(splat_down(fine_lattice, flattened(fine.intensity), 3, level_));
-    sharpen_lights(medium_.lattice, coarse.intensity);
     if (!fine.directional.empty())
         coarse.directional = splat_down(fine_lattice, fine.directional, 24, level_);
+    coarse.sharpen(medium_.lattice);
     return coarse;
 }
 
@@ -254,7 +264,7 @@ ScatteredLight CoarseOperator::bounce(const ScatteredLight& lights, BounceBalanc
         arriving.scale(scale);
     }
     ScatteredLight next = scattered_light(medium_, arriving, mask_);
-    sharpen_lights(medium_.lattice, next.intensity);
+    next.sharpen(medium_.lattice);
     return next;
 }
 

@@ -15,6 +15,8 @@ struct ScatteredLight {
     std::vector<Rgb> intensity;      // mean over directions [W/sr]
     std::vector<float> directional;  // degrees 1 and 2, 24 per node (sh.h); empty: isotropic
     void add(const ScatteredLight& other, float factor);
+    // sharpen_lights; the directional part keeps its proportion to the mean at every node.
+    void sharpen(const BrickLattice& lattice);
 };
 
 // What the light arriving at the medium's nodes becomes: the exact projection of extinction * albedo * fluence / 4 pi,
