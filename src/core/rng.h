@@ -6,7 +6,7 @@
 namespace brisance {
 
 // One name per independent source of randomness. Append only: the value seeds the stream.
-enum class Stream : std::uint32_t { ShadowRayStart, EscapeRay };
+enum class Stream : std::uint32_t { ShadowRayStart, EscapeRay, Path, PathRotation, Certificate };
 
 // SplitMix64 (Steele, Lea, Flood 2014), keyed by identity.
 class Rng {
@@ -18,6 +18,7 @@ public:
 
     // Uniform in [0, 1).
     float next() { return static_cast<float>(mix(state_ += kGolden) >> 40) * 0x1p-24f; }
+    double next_double() { return static_cast<double>(mix(state_ += kGolden) >> 11) * 0x1p-53; }
 
 private:
     static constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15;

@@ -1,15 +1,10 @@
 // A pinhole camera: pixels to rays in the medium's local space.
 #pragma once
 
-#include "medium/medium.h"
+#include "medium/cell_walk.h"
 #include "render/camera_settings.h"
 
 namespace brisance {
-
-struct Ray {
-    dvec3 origin{0.0};     // local [m]
-    dvec3 direction{0.0};  // unit
-};
 
 class Camera {
 public:

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/parallel.h"
+#include "medium/cell_walk.h"
 
 namespace brisance {
 
@@ -10,28 +11,6 @@ namespace {
 
 constexpr int kSide = BrickLattice::kSize + 1;
 constexpr int kRecords = kSide * kSide * kSide;
-
-// Bricks whose cells touch a node that absorbs or emits.
-BrickLattice lit_cells(const Medium& medium) {
-    std::vector<ivec3> bricks;
-    for (std::size_t b = 0; b < medium.lattice.brick_count(); ++b) {
-        bool lower[3] = {};  // a node of the lowest plane of an axis is not empty
-        bool any = false;
-        for (int n = 0; n < BrickLattice::kNodes; ++n) {
-            const std::size_t i = b * BrickLattice::kNodes + n;
-            if (medium.extinction[i] == 0.0f && (medium.emission.empty() || medium.emission[i] == Rgb(0.0f)))
-                continue;
-            any = true;
-            const ivec3 p = BrickLattice::node_in_brick(n);
-            for (int a = 0; a < 3; ++a)
-                lower[a] = lower[a] || p[a] == 0;
-        }
-        for (int k = 0; any && k < 8; ++k)
-            if ((!(k & 1) || lower[0]) && (!(k & 2) || lower[1]) && (!(k & 4) || lower[2]))
-                bricks.push_back(medium.lattice.brick(b) - ivec3(k & 1, k >> 1 & 1, k >> 2 & 1));
-    }
-    return BrickLattice(std::move(bricks));
-}
 
 void put(const Medium& medium, const std::vector<Rgb>& field, const ivec3& low, int slot, CellRecord* records) {
     if (field.empty())
@@ -47,7 +26,7 @@ void put(const Medium& medium, const std::vector<Rgb>& field, const ivec3& low, 
 }  // namespace
 
 CellField::CellField(const Medium& medium, const std::vector<Rgb>& single, const std::vector<Rgb>& multiple)
-    : medium_(&medium), direct_(!medium.emission.empty()), bricks_(lit_cells(medium)) {
+    : medium_(&medium), direct_(!medium.emission.empty()), bricks_(cell_lattice(medium)) {
     records_.resize(bricks_.brick_count() * kRecords, CellRecord{});
     minimum_.resize(bricks_.brick_count());
     majorant_.resize(bricks_.brick_count());

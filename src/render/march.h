@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "render/camera.h"
+#include "medium/cell_walk.h"
 #include "render/cell_field.h"
 
 namespace brisance {
@@ -13,18 +13,13 @@ inline float phi1(float tau) {
     return tau < 1e-3f ? 1.0f - tau * (0.5f - tau * (1.0f / 6.0f)) : -std::expm1(-tau) / tau;
 }
 
-// Part of a ray inside one cell of a brick.
-struct CellSegment {
-    std::size_t brick;
-    double begin, end;  // distances along the ray [m]
-    dvec3 origin;       // the ray's origin in nodes from the brick's first node
-    dvec3 direction;    // nodes per metre
-};
-
 // Calls visit(segment) for every cell with extinction or emission that the ray crosses in front of its origin, in
-// order, until visit returns false. Empty bricks cost one step.
+// order, until visit returns false.
 template <class Visit>
-void walk_cells(const CellField& field, const Ray& ray, const Visit& visit);
+void walk_cells(const CellField& field, const Ray& ray, const Visit& visit) {
+    walk_bricks(field.bricks(), lattice_ray(field.bricks(), field.medium(), ray),
+                [&](const CellSegment& brick) { return walk_cubes<1>(brick, visit); });
+}
 
 // What one ray sees. Radiance per ledger cell [W/(m^2 sr)].
 struct RaySum {
@@ -40,5 +35,3 @@ struct RaySum {
 constexpr float kOpaqueDepth = 11.5f;
 
 }  // namespace brisance
-
-#include "render/march_inl.h"

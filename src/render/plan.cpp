@@ -41,6 +41,7 @@ Plan plan_cells(const Shot& shot, const Medium& medium) {
         skip("lights, hierarchy, shadow maps", "nothing emits");
         return plan;
     }
+    const bool lit_by_grid = shot.method == RenderMethod::LightingGrid;
     const int bounces = shot.scattering.bounces;
     const bool scatters = medium.scatters();
     const std::string dark = medium.max_extinction <= 0.0f ? "there is no smoke to scatter" : "the albedo is zero";
@@ -50,12 +51,12 @@ Plan plan_cells(const Shot& shot, const Medium& medium) {
         skip("MV", scatters ? "scattering.bounces is 0" : dark);
     if (!plan.multiple)
         skip("MM", scatters ? "scattering.bounces is " + std::to_string(bounces) : dark);
-    if (!plan.single)
-        skip("lights, hierarchy, shadow maps", "no cell asks for them");
+    if (!plan.single || !lit_by_grid)
+        skip("lights, hierarchy, shadow maps", lit_by_grid ? "no cell asks for them" : "method is path");
     else if (!plan.multiple)
         skip("scattered hierarchies", "one scattering only");
-    plan.directional = plan.single && medium.mean_cosine != 0.0f;
-    if (plan.single && !plan.directional)
+    plan.directional = lit_by_grid && plan.single && medium.mean_cosine != 0.0f;
+    if (lit_by_grid && plan.single && !plan.directional)
         skip("directional storage", "the phase function is isotropic");
     return plan;
 }

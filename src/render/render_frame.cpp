@@ -2,26 +2,19 @@
 
 #include <sys/resource.h>
 
-#include <chrono>
-
+#include "core/stopwatch.h"
 #include "render/camera.h"
 #include "render/cell_field.h"
 #include "render/integrate.h"
 #include "render/lighting.h"
+#include "render/load_medium.h"
 #include "render/plan.h"
-#include "volume/mapping.h"
+#include "render/trace_picture.h"
+#include "shot/write_shot.h"
 
 namespace brisance {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-constexpr std::uint64_t kGridMemory = std::uint64_t{16} << 30;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 // Passes everything on and keeps notices and warnings for the statistics.
 class Recorder : public Progress {
@@ -42,55 +35,6 @@ private:
     Progress& to_;
     Statistics& statistics_;
 };
-
-Medium load_medium(const Shot& shot, const std::filesystem::path& volume, Statistics& statistics, Progress& progress) {
-    progress.stage("reading " + volume.filename().string());
-    Clock::time_point start = Clock::now();
-    const GridMapping mapping = map_grids(list_grids(volume), shot.volume, volume.string());
-    progress.notice("grids: " + mapping.describe());
-    for (const std::string& note : mapping.notes)
-        progress.notice(note);
-    const FireModel fire = shot.medium.fire.model;
-    const bool black_body = fire == FireModel::Blackbody || fire == FireModel::NormalizedBlackbody;
-    const auto read = [&](const std::optional<GridChoice>& choice, bool used) -> std::optional<BlockGrid> {
-        if (!choice || !used)
-            return std::nullopt;
-        return read_grid(volume, choice->name, choice->index, kGridMemory);
-    };
-    MediumGrids grids;
-    grids.density = read(mapping.density, true);
-    grids.temperature = read(mapping.temperature, black_body);
-    grids.flame = read(mapping.flame, fire == FireModel::Flame || (black_body && shot.medium.fire.modulate_by_flame));
-    grids.colour = read(mapping.colour, true);
-    if (!mapping.density)
-        progress.notice("no density grid: nothing absorbs or scatters");
-    if (black_body && !mapping.temperature)
-        progress.warning("no-temperature", "fire.model asks for a temperature grid and none is mapped: nothing emits");
-    if (fire == FireModel::Flame && !mapping.flame)
-        progress.warning("no-flame", "fire.model is flame and no flame grid is mapped: nothing emits");
-    std::uint64_t bytes = 0;
-    for (const auto* g : {&grids.density, &grids.temperature, &grids.flame, &grids.colour})
-        bytes += *g ? (*g)->values.size() * sizeof(float) : 0;
-    statistics.stages.push_back(
-        {"reading", seconds_since(start), bytes, {{"file", volume.string()}, {"mapping", mapping.describe()}}});
-
-    progress.stage("medium");
-    start = Clock::now();
-    Medium medium = build_medium(grids, shot.medium, shot.volume.half_voxel_shift, progress);
-    std::size_t nodes = 0;
-    for (float e : medium.extinction)
-        nodes += e > 0.0f;
-    statistics.stages.push_back({"medium",
-                                 seconds_since(start),
-                                 medium.bytes(),
-                                 {{"bricks", medium.lattice.brick_count()},
-                                  {"absorbing_nodes", nodes},
-                                  {"voxel_metres", medium.spacing},
-                                  {"largest_extinction_per_metre", medium.max_extinction}}});
-    if (medium.lattice.empty())
-        progress.notice("the volume is empty: a black frame");
-    return medium;
-}
 
 void add_order_layers(Image& image, const CellField& field, const NodeLighting& lighting, const Medium& medium,
                       const Camera& camera, const PictureSettings& settings, Progress& progress) {
@@ -126,7 +70,7 @@ Image draw(const Shot& shot, const Plan& plan, const Medium& medium, const Camer
     if (plan.single)
         lighting = std::make_unique<Lighting>(shot, plan, medium, camera, statistics, progress);
     progress.stage("camera");
-    const Clock::time_point start = Clock::now();
+    const Stopwatch watch;
     const bool marching = shot.lighting.gather == GatherMethod::RayMarch;
     const NodeLighting none;
     const NodeLighting& nodes = lighting && !marching ? lighting->at_nodes() : none;
@@ -147,34 +91,74 @@ Image draw(const Shot& shot, const Plan& plan, const Medium& medium, const Camer
         add_order_layers(image, field, nodes, medium, camera, settings, progress);
     metadata.samples_per_pixel = double(settings.samples_per_axis) * settings.samples_per_axis;
     statistics.stages.push_back(
-        {"camera", seconds_since(start), field.bytes(), {{"samples_per_pixel", metadata.samples_per_pixel}}});
+        {"camera", watch.seconds(), field.bytes(), {{"samples_per_pixel", metadata.samples_per_pixel}}});
     return image;
 }
 
-}  // namespace
+// All that decides a path tracer's bits, but for when it stops and what becomes of them.
+std::string checkpoint_key(Shot shot, const std::filesystem::path& volume, int frame) {
+    const TracingSettings given = shot.tracing;
+    shot.tracing = TracingSettings{};
+    shot.tracing.emission = given.emission;
+    shot.tracing.light_sampling = given.light_sampling;
+    shot.tracing.free_flight = given.free_flight;
+    shot.tracing.transmittance = given.transmittance;
+    const bool bounces = shot.output.bounce_layers;
+    shot.output = OutputSettings{};
+    shot.output.bounce_layers = bounces;
+    std::error_code ignored;
+    return to_json(shot) + volume.filename().string() + " " +
+           std::to_string(std::filesystem::file_size(volume, ignored)) + " " + std::to_string(frame);
+}
 
-RenderedFrame render_frame(const Shot& shot, const std::filesystem::path& volume, int frame, Progress& to) {
-    const Clock::time_point start = Clock::now();
-    RenderedFrame out;
-    Recorder progress(to, out.statistics);
-    const Medium medium = load_medium(shot, volume, out.statistics, progress);
+std::string joined(const std::vector<std::string>& names) {
+    std::string all;
+    for (const std::string& name : names)
+        all += (all.empty() ? "" : "+") + name;
+    return all;
+}
+
+void render_into(RenderedFrame& out, const Shot& shot, const Medium& medium, const Checkpoint& checkpoint,
+                 Progress& progress) {
     const Plan plan = plan_cells(shot, medium);
     out.statistics.cells = plan.cells();
     out.statistics.skipped = plan.skipped;
     const CameraSettings camera_settings = shot.camera_given ? shot.camera : framed_camera(medium, shot.camera);
     const Camera camera(camera_settings, medium);
-    out.image = draw(shot, plan, medium, camera, out.statistics, out.metadata, progress);
-    out.metadata.frame = frame;
+    if (shot.method == RenderMethod::Path) {
+        TracedPicture traced = trace_picture(shot, plan, medium, camera, checkpoint, out.statistics, progress);
+        out.image = std::move(traced.image);
+        out.halves = {std::move(traced.halves[0]), std::move(traced.halves[1])};
+        out.metadata.samples_per_pixel = traced.samples_per_pixel;
+    } else {
+        out.image = draw(shot, plan, medium, camera, out.statistics, out.metadata, progress);
+    }
     out.metadata.camera_from_world = camera.camera_from_world();
     out.metadata.vertical_fov_degrees = camera_settings.vertical_fov_degrees;
-    out.metadata.text["brisance/cells"] = [&] {
-        std::string names;
-        for (const std::string& c : plan.cells())
-            names += (names.empty() ? "" : "+") + c;
-        return names;
-    }();
-    out.statistics.seconds = out.metadata.render_seconds = seconds_since(start);
+    out.metadata.text["brisance/cells"] = joined(plan.cells());
     out.statistics.peak_resident_bytes = peak_resident_bytes();
+}
+
+}  // namespace
+
+RenderedFrame render_frame(const Shot& shot, const std::filesystem::path& volume, int frame, Progress& to,
+                           const std::filesystem::path& checkpoint) {
+    const Stopwatch watch;
+    RenderedFrame out;
+    Recorder progress(to, out.statistics);
+    const Medium medium = load_medium(shot, volume, out.statistics, progress);
+    render_into(out, shot, medium, {checkpoint, checkpoint_key(shot, volume, frame)}, progress);
+    out.metadata.frame = frame;
+    out.statistics.seconds = out.metadata.render_seconds = watch.seconds();
+    return out;
+}
+
+RenderedFrame render_medium(const Shot& shot, const Medium& medium, Progress& to) {
+    const Stopwatch watch;
+    RenderedFrame out;
+    Recorder progress(to, out.statistics);
+    render_into(out, shot, medium, {}, progress);
+    out.statistics.seconds = out.metadata.render_seconds = watch.seconds();
     return out;
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/progress.h"
 #include "film/image.h"
+#include "medium/medium.h"
 #include "render/statistics.h"
 #include "shot/shot.h"
 
@@ -12,13 +13,19 @@ namespace brisance {
 
 struct RenderedFrame {
     Image image;
+    std::vector<Image> halves;  // method path: two independent ones, whose mean is `image`
     ImageMetadata metadata;
     Statistics statistics;
 };
 
 // `volume` is the resolved .vdb file of this frame. Throws Error. The shot may leave camera and exposure to be framed
 // on the volume (camera_given). Same shot, same bits, whatever the number of threads.
-RenderedFrame render_frame(const Shot& shot, const std::filesystem::path& volume, int frame, Progress& progress);
+// `checkpoint` (method path): the file that keeps the state of a long render, and that it goes on from; empty: none.
+RenderedFrame render_frame(const Shot& shot, const std::filesystem::path& volume, int frame, Progress& progress,
+                           const std::filesystem::path& checkpoint = {});
+
+// The same from a medium that is already there.
+RenderedFrame render_medium(const Shot& shot, const Medium& medium, Progress& progress);
 
 // The plan without the pixels: which cells run, what is left out and why. Reads the volume.
 Statistics plan_frame(const Shot& shot, const std::filesystem::path& volume, Progress& progress);

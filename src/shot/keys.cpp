@@ -21,11 +21,27 @@ std::vector<Key> all_keys() {
     add_medium_keys(keys);
     add_camera_keys(keys);
     add_lighting_keys(keys);
+    add_tracing_keys(keys);
     add_output_keys(keys);
+    for (Key& key : keys)
+        key.affects = affected_by(key.path);
     return keys;
 }
 
 }  // namespace
+
+Affects affected_by(const std::string& path) {
+    // Leaving out orders of scattering changes what is true.
+    if (path == "scattering.bounces")
+        return Affects::Picture;
+    for (const char* section : {"lighting.", "scattering.", "tracing.", "output."})
+        if (path.starts_with(section))
+            return Affects::Method;
+    for (const char* key : {"$schema", "name", "method", "camera.samples_per_axis"})
+        if (path == key)
+            return Affects::Method;
+    return Affects::Picture;
+}
 
 const std::vector<Key>& shot_keys() {
     static const std::vector<Key> keys = all_keys();
@@ -41,6 +57,7 @@ const std::vector<std::pair<std::string, std::string>>& shot_sections() {
         {"camera", "the pinhole camera; without eye and target, or world_from_camera, it is framed on the volume"},
         {"lighting", "how the fire's light reaches the smoke"},
         {"scattering", "light scattered more than once"},
+        {"tracing", "the reference path tracer (method path)"},
         {"output", "what is written"},
         {"output.layers", "layers of the EXR besides the beauty"},
     };

@@ -12,6 +12,9 @@
 
 namespace brisance {
 
+// What a key decides: the true picture, which every method must come to, or how that is computed and written down.
+enum class Affects { Picture, Method };
+
 struct Key {
     std::string path;  // dotted: "smoke.albedo"
     std::string help;  // one line, with the unit
@@ -19,7 +22,10 @@ struct Key {
     Json schema;
     std::function<bool(Shot&, const Json&)> set;          // false: not accepted, the shot is unchanged
     std::function<std::optional<Json>(const Shot&)> get;  // absent: the shot leaves it open
+    Affects affects = Affects::Picture;                   // set for all keys by their paths
 };
+
+Affects affected_by(const std::string& path);
 
 // A value that lives at `at(shot)`.
 template <class T, class At>
@@ -61,6 +67,7 @@ void add_volume_keys(std::vector<Key>& keys);
 void add_medium_keys(std::vector<Key>& keys);
 void add_camera_keys(std::vector<Key>& keys);
 void add_lighting_keys(std::vector<Key>& keys);
+void add_tracing_keys(std::vector<Key>& keys);
 void add_output_keys(std::vector<Key>& keys);
 
 // All of them, in the order they are written.

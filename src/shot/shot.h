@@ -8,9 +8,15 @@
 #include "gathering/settings.h"
 #include "medium/settings.h"
 #include "render/camera_settings.h"
+#include "tracing/settings.h"
 #include "volume/settings.h"
 
 namespace brisance {
+
+enum class RenderMethod {
+    LightingGrid,  // many lights, lighting grid hierarchies
+    Path           // the reference path tracer
+};
 
 struct Shot {
     std::string name;
@@ -20,8 +26,10 @@ struct Shot {
     CameraSettings camera;
     bool camera_given = false;    // false: framed on the volume
     bool exposure_given = false;  // false: chosen from the picture
+    RenderMethod method = RenderMethod::LightingGrid;
     LightingSettings lighting;
     ScatteringSettings scattering;
+    TracingSettings tracing;
     OutputSettings output;
 };
 

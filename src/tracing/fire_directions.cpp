@@ -1,0 +1,88 @@
+#include "tracing/fire_directions.h"
+
+#include <algorithm>
+
+#include "core/parallel.h"
+
+namespace brisance {
+
+namespace {
+
+// A number that is above zero wherever the cell glows at all: products of means, not means of products.
+double glow_of_cell(const TrackingField& field, std::size_t brick, const ivec3& cell) {
+    const vec3 middle = vec3(cell) + 0.5f;
+    double glow = 0.0;
+    if (field.has_source())
+        glow += double(field.extinction(brick, middle)) * luminance(field.source(brick, middle));
+    if (field.has_emission())
+        glow += luminance(field.emission(brick, middle));
+    return glow;
+}
+
+}  // namespace
+
+FireDirections::FireDirections(const TrackingField& field)
+    : field_(&field), burning_of_(field.bricks().brick_count(), -1) {
+    for (std::size_t b = 0; b < burning_of_.size(); ++b)
+        if (field.burns(b)) {
+            burning_of_[b] = static_cast<std::int32_t>(brick_of_.size());
+            brick_of_.push_back(static_cast<std::int32_t>(b));
+        }
+    std::vector<double> glow(brick_of_.size() * kCubes);
+    parallel_for(brick_of_.size(), [&](std::size_t i) {
+        for (int c = 0; c < BrickLattice::kNodes; ++c) {
+            const ivec3 cell = BrickLattice::node_in_brick(c), cube = cell / kCube;
+            glow[i * kCubes + (cube.x * 2 + cube.y) * 2 + cube.z] += glow_of_cell(field, brick_of_[i], cell);
+        }
+    });
+    double total = 0.0;
+    for (double g : glow)
+        total += g;
+    if (!(total > 0.0))
+        return;
+    const Medium& medium = field.medium();
+    local_from_index_ = dmat3(medium.world_from_index);
+    origin_ = local_from_index_ * dvec3(field.bricks().min_brick() * BrickLattice::kSize - medium.reference_node);
+    const double cube_volume = std::abs(glm::determinant(local_from_index_)) * kCube * kCube * kCube;
+    double sum = 0.0;
+    for (double g : glow) {
+        density_.push_back(g / total / cube_volume);
+        cumulative_.push_back((sum += g) / total);
+    }
+}
+
+dvec3 FireDirections::sample(const dvec3& point, Rng& rng) const {
+    for (;;) {
+        const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), rng.next_double());
+        const std::size_t i = std::min<std::size_t>(found - cumulative_.begin(), cumulative_.size() - 1);
+        const int cube = static_cast<int>(i % kCubes);
+        const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
+        const dvec3 node = dvec3(field_->bricks().brick(brick_of_[i / kCubes]) - field_->bricks().min_brick()) *
+                               double(BrickLattice::kSize) +
+                           double(kCube) * (dvec3(cube >> 2, cube >> 1 & 1, cube & 1) + dvec3(x, y, z));
+        const dvec3 way = origin_ + local_from_index_ * node - point;
+        const double distance = glm::length(way);
+        if (distance > 0.0)
+            return way / distance;
+    }
+}
+
+double FireDirections::pdf(const Ray& ray) const {
+    double sum = 0.0;
+    walk_bricks(field_->bricks(), field_->enter(ray), [&](const CellSegment& s) {
+        const std::int32_t burning = burning_of_[s.brick];
+        if (burning >= 0)
+            walk_cubes<kCube>(s, [&](const CellSegment& part) {
+                const vec3 middle = point_in_brick(part, 0.5 * (part.begin + part.end));
+                const ivec3 cube = glm::min(ivec3(middle) / kCube, ivec3(1));
+                const double b = part.begin, e = part.end;
+                sum += density_[burning * kCubes + (cube.x * 2 + cube.y) * 2 + cube.z] * (e - b) *
+                       (e * e + e * b + b * b) / 3.0;
+                return true;
+            });
+        return true;
+    });
+    return sum;
+}
+
+}  // namespace brisance

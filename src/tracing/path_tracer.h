@@ -1,0 +1,59 @@
+// The reference: unbiased paths through the medium, filed by the number of their scatterings.
+//
+// A path leaves the camera, and at each of its vertices asks two lines what glows along them: one toward the fire,
+// drawn by solid angle, and one drawn by the phase function, on which the path also goes on. The two share every
+// direction by the balance heuristic. Emission is integrated along the whole of every line, so that it belongs to the
+// scatterings before it: none V, one MV, more MM.
+//
+// Surfaces and analytic lights will be further kinds of vertices and of lines; the ledger's cells for them are further
+// sums beside these.
+#pragma once
+
+#include <array>
+
+#include "tracing/fire_directions.h"
+#include "tracing/line.h"
+
+namespace brisance {
+
+// What one path brings, by its number of scatterings [W/(m^2 sr)]; the last holds all that scattered as often or more.
+constexpr int kPathOrders = 10;
+using PathSum = std::array<Rgb, kPathOrders>;
+
+struct PathStatistics {
+    std::uint64_t paths = 0;
+    std::uint64_t scatterings = 0;
+};
+
+class PathTracer {
+public:
+    // Keeps a reference to the medium. `bounces`: the most scatterings of a path; -1: all.
+    PathTracer(const Medium& medium, const TracingSettings& settings, int bounces);
+
+    // Adds one path along `ray` to `sum`. `place` in [0, 1) chooses where the first scattering lies; it may come from a
+    // stratified sequence.
+    void trace(const Ray& ray, double place, Rng& rng, PathSum& sum, PathStatistics& statistics) const;
+
+    const TrackingField& field() const { return field_; }
+    std::uint64_t bytes() const { return field_.bytes() + fire_.bytes(); }
+
+private:
+    struct Vertex;
+    void trace_lines(const Ray& ray, double place, Rng& rng, PathSum& sum, PathStatistics& statistics) const;
+    void trace_plain(Ray ray, Rng& rng, PathSum& sum, PathStatistics& statistics) const;
+    Rgb light_from_fire(const Vertex& vertex, Rng& rng) const;
+    dvec3 local_of(const Ray& ray, const Collision& collision) const {
+        return ray.origin + ray.direction * collision.distance;
+    }
+
+    TracingSettings settings_;
+    int bounces_;
+    TrackingField field_;
+    FireDirections fire_;
+    LineTracker lines_;
+};
+
+// A direction drawn in proportion to the Henyey-Greenstein phase function about `forward`.
+dvec3 sample_henyey_greenstein(const dvec3& forward, float mean_cosine, Rng& rng);
+
+}  // namespace brisance
