@@ -1,7 +1,10 @@
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTestFile.h>
 #include <fmt/format.h>
 
@@ -122,9 +125,22 @@ Image read_layers(const std::filesystem::path& file) {
     return image;
 }
 
-}  // namespace
+ExrMetadata read_header(const std::filesystem::path& file) {
+    const Imf::InputFile input(file.c_str());
+    ExrMetadata metadata;
+    for (auto at = input.header().begin(); at != input.header().end(); ++at)
+        if (const auto* const text = dynamic_cast<const Imf::StringAttribute*>(&at.attribute()))
+            metadata.text[at.name()] = text->value();
+    if (const auto* const frame = input.header().findTypedAttribute<Imf::IntAttribute>("imageCounter"))
+        metadata.frame = frame->value();
+    if (const auto* const seconds = input.header().findTypedAttribute<Imf::FloatAttribute>("renderTimeSeconds"))
+        metadata.render_seconds = seconds->value();
+    return metadata;
+}
 
-Image read_exr(const std::filesystem::path& file) {
+// Calls `read` for a file that is there and of a kind that can be read; what OpenEXR throws becomes an Error.
+template <class Read>
+auto read_checked(const std::filesystem::path& file, const Read& read) {
     std::error_code error;
     if (!std::filesystem::exists(file, error))
         throw Error(ExitCode::MissingInput, fmt::format("{}: no such file", file.string()));
@@ -135,10 +151,20 @@ Image read_exr(const std::filesystem::path& file) {
         reject(file,
                fmt::format("{} files are not supported; convert it to one flat part", deep ? "deep" : "multi-part"));
     try {
-        return read_layers(file);
+        return read(file);
     } catch (const Iex::BaseExc& damage) {
         reject(file, fmt::format("truncated or damaged: {}", damage.what()));
     }
+}
+
+}  // namespace
+
+Image read_exr(const std::filesystem::path& file) {
+    return read_checked(file, read_layers);
+}
+
+ExrMetadata read_exr_metadata(const std::filesystem::path& file) {
+    return read_checked(file, read_header);
 }
 
 }  // namespace brisance

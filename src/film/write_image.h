@@ -3,7 +3,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "film/image.h"
 #include "film/settings.h"
@@ -27,6 +30,9 @@ ExrReport write_exr(const std::filesystem::path& file, const Image& image, const
 // 8-bit PNG of the beauty under a view transform at `exposure_stops`; alpha is dropped over black.
 void write_png(const std::filesystem::path& file, const Image& image, float exposure_stops, ViewTransform view);
 
+// The same of finished pixels: display-encoded, three numbers per pixel, rows from the top.
+void write_png(const std::filesystem::path& file, int width, int height, const std::vector<std::uint8_t>& rgb);
+
 // Writes text as a whole file, by temporary file and rename.
 void write_text(const std::filesystem::path& file, const std::string& text);
 
@@ -34,6 +40,16 @@ void write_text(const std::filesystem::path& file, const std::string& text);
 // name. Pixels of the display window that lie outside the data window are 0.
 // Throws Error MissingInput or BadData.
 Image read_exr(const std::filesystem::path& file);
+
+// What the header of an EXR tells, whoever wrote it; absent where it says nothing.
+struct ExrMetadata {
+    std::optional<int> frame;                 // imageCounter
+    std::optional<double> render_seconds;     // renderTimeSeconds
+    std::map<std::string, std::string> text;  // every text attribute by its name: "brisance/shot", "comments", ...
+};
+
+// Reads no pixels. Throws Error MissingInput or BadData, as read_exr.
+ExrMetadata read_exr_metadata(const std::filesystem::path& file);
 
 // The exposure [stops] that brings the image's bright parts (a high percentile of luminance) just below white.
 float automatic_exposure(const Image& image);

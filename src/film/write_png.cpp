@@ -60,8 +60,13 @@ void write_png(const std::filesystem::path& file, const Image& image, float expo
     if (beauty.channels.size() < 3 || beauty.pixels.size() != pixel_count * beauty.channels.size())
         throw Error(ExitCode::RenderFailed,
                     fmt::format("cannot write {}: the beauty is no RGB picture", file.string()));
-    const std::vector<unsigned char> encoded =
-        encode_png(file, image.width, image.height, display_pixels(image, beauty, exposure_stops, view));
+    write_png(file, image.width, image.height, display_pixels(image, beauty, exposure_stops, view));
+}
+
+void write_png(const std::filesystem::path& file, int width, int height, const std::vector<std::uint8_t>& rgb) {
+    if (width < 1 || height < 1 || rgb.size() != 3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
+        throw Error(ExitCode::RenderFailed, fmt::format("cannot write {}: the pixels do not fill it", file.string()));
+    const std::vector<unsigned char> encoded = encode_png(file, width, height, rgb);
     write_whole_file(file, {reinterpret_cast<const char*>(encoded.data()), encoded.size()});
 }
 

@@ -12,8 +12,8 @@ struct Ray {
     dvec3 direction{0.0};  // unit
 };
 
-// A ray counted in nodes from the first node of a lattice's lowest brick, clipped to the bricks' bounding box. Distances
-// along it are metres.
+// A ray counted in nodes from the first node of a lattice's lowest brick, clipped to the bricks' bounding box.
+// Distances along it are metres.
 struct LatticeRay {
     dvec3 origin{0.0};
     dvec3 direction{0.0};  // nodes per metre
@@ -35,6 +35,7 @@ struct CellSegment {
     double begin, end;  // distances along the ray [m]
     dvec3 origin;       // the ray's origin in nodes from the brick's first node
     dvec3 direction;    // nodes per metre
+    ivec3 cube{0};      // in cubes from the brick's first node; 0 for a whole brick
 };
 
 // Calls visit(segment) for every brick of the lattice that the ray crosses, in order, until visit returns false. Absent

@@ -81,7 +81,7 @@ bool walk_cubes(const CellSegment& s, const Visit& visit) {
     detail::Walker walker(s.origin, s.direction, s.begin, size, ivec3(0), ivec3(kCount - 1));
     for (double t = s.begin; t < s.end;) {
         const double next = std::min(walker.exit(), s.end);
-        if (next > t && !visit(CellSegment{s.brick, t, next, s.origin, s.direction}))
+        if (next > t && !visit(CellSegment{s.brick, t, next, s.origin, s.direction, walker.cell}))
             return false;
         t = std::max(t, next);
         walker.advance();

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <ctime>
 #include <fstream>
 #include <iterator>
 #include <mutex>
@@ -12,13 +13,14 @@
 #include "film/whole_file.h"
 #include "render/cell_field.h"
 #include "render/integrate.h"
+#include "render/pixel_filter.h"
 
 namespace brisance {
 
 namespace {
 
-constexpr int kRowsAtOnce = 32;      // between two looks at the clock
-constexpr int kPixelsAtOnce = 32;    // of a row, to a task
+constexpr int kRowsAtOnce = 32;    // between two looks at the clock
+constexpr int kPixelsAtOnce = 32;  // of a row, to a task
 const std::vector<std::string> kColour = {"R", "G", "B"};
 
 // The three-dimensional sequence of Roberts (generalised golden ratio): place k of a half, shifted at random.
@@ -38,13 +40,11 @@ Place place_of(std::size_t pixel, std::uint64_t sample) {
     return {x, y, at(g3)};
 }
 
-// Weight of a path at an offset from the pixel's centre in filter widths, with mean one over the filter's square.
-float filter_weight(PixelFilter filter, double x, double y) {
-    if (filter == PixelFilter::Box)
-        return 1.0f;
-    // Standard deviation a quarter of the width; sqrt(2 pi) erf(sqrt 2) / 4 is the mean along one axis.
-    constexpr double mean = 0.5981440;
-    return static_cast<float>(std::exp(-8.0 * (x * x + y * y)) / (mean * mean));
+Ray ray_at(const Camera& camera, std::size_t pixel, const Place& place) {
+    const CameraSettings& s = camera.settings();
+    const double column = static_cast<double>(pixel % s.width) + 0.5, row = static_cast<double>(pixel / s.width) + 0.5;
+    const double size = s.filter_width_pixels;
+    return camera.ray(column + (place.x - 0.5) * size, row + (place.y - 0.5) * size);
 }
 
 class Tracing {
@@ -83,7 +83,7 @@ private:
                         checkpoint_.file.string() + ": " + trouble + "; delete it, or name another --checkpoint");
         restored_passes_ = film_.work.passes;
         progress_.notice("going on from " + checkpoint_.file.string() + " after " +
-                         std::to_string(2 * film_.work.passes) + " paths per pixel");
+                         std::to_string(2 * film_.work.passes) + " samples per pixel");
     }
 
     bool enough() {
@@ -119,6 +119,7 @@ private:
                 for (int half = 0; half < 2; ++half)
                     trace_pixel(std::size_t(y) * width + x, half, statistics);
             const std::lock_guard lock(mutex_);
+            film_.work.paths += statistics.paths;
             film_.work.scatterings += statistics.scatterings;
         });
     }
@@ -303,26 +304,29 @@ void report_bad_samples(const PathFilm& film, Progress& progress) {
     const PathFilm::Work& w = film.work;
     if (w.not_finite == 0)
         return;
-    progress.warning("not-finite", std::to_string(w.not_finite) + " paths were not finite and are left out of the "
-                                   "picture; see the first: brisance trace-path SHOT " +
+    progress.warning("not-finite", std::to_string(w.not_finite) +
+                                       " paths were not finite and are left out of the "
+                                       "picture; see the first: brisance trace-path SHOT " +
                                        std::to_string(w.bad_pixel % film.width()) + " " +
                                        std::to_string(w.bad_pixel / film.width()) + " " + std::to_string(w.bad_sample));
 }
 
 }  // namespace
 
+Ray sample_ray(const Camera& camera, std::size_t pixel, std::uint64_t sample) {
+    return ray_at(camera, pixel, place_of(pixel, sample));
+}
+
 PathSum trace_sample(const PathTracer& tracer, const Camera& camera, std::size_t pixel, std::uint64_t sample,
                      PathStatistics& statistics) {
-    const CameraSettings& s = camera.settings();
     const Place place = place_of(pixel, sample);
-    const double x = place.x - 0.5, y = place.y - 0.5, size = s.filter_width_pixels;
-    const double column = static_cast<double>(pixel % s.width) + 0.5, row = static_cast<double>(pixel / s.width) + 0.5;
     Rng rng(Stream::Path, pixel, sample);
     PathSum sum{};
-    tracer.trace(camera.ray(column + x * size, row + y * size), place.first_collision, rng, sum, statistics);
-    if (s.filter != PixelFilter::Box)
+    tracer.trace(ray_at(camera, pixel, place), place.first_collision, rng, sum, statistics);
+    const PixelFilter filter = camera.settings().filter;
+    if (filter != PixelFilter::Box)
         for (Rgb& order : sum)
-            order *= filter_weight(s.filter, x, y);
+            order *= filter_weight(filter, place.x - 0.5, place.y - 0.5);
     return sum;
 }
 
@@ -330,21 +334,23 @@ TracedPicture trace_picture(const Shot& shot, const Plan& plan, const Medium& me
                             const Checkpoint& checkpoint, Statistics& statistics, Progress& progress) {
     progress.stage("path tracing");
     const Stopwatch watch;
+    const std::clock_t cpu = std::clock();
     Tracing tracing(shot, medium, camera, checkpoint, progress);
     tracing.run();
     const PathFilm& film = tracing.film();
     report_bad_samples(film, progress);
-    const std::uint64_t paths = 2 * film.work.passes * film.width() * film.height();
-    statistics.stages.push_back({"path tracing",
-                                 watch.seconds(),
-                                 tracing.tracer().bytes(),
-                                 {{"samples_per_pixel", 2 * film.work.passes},
-                                  {"paths", paths},
-                                  {"scatterings_per_path", double(film.work.scatterings) / double(paths)},
-                                  {"seconds_in_all", film.work.seconds},
-                                  {"relative_standard_error", Tracing::relative_standard_error(film)},
-                                  {"relative_standard_error_of_mean", relative_error_of_mean(film)},
-                                  {"not_finite_paths", film.work.not_finite}}});
+    statistics.stages.push_back(
+        {"path tracing",
+         watch.seconds(),
+         tracing.tracer().bytes(),
+         {{"samples_per_pixel", 2 * film.work.passes},
+          {"paths", film.work.paths},
+          {"scatterings_per_path", double(film.work.scatterings) / double(std::max<std::uint64_t>(film.work.paths, 1))},
+          {"cpu_seconds", double(std::clock() - cpu) / CLOCKS_PER_SEC},
+          {"seconds_in_all", film.work.seconds},
+          {"relative_standard_error", Tracing::relative_standard_error(film)},
+          {"relative_standard_error_of_mean", relative_error_of_mean(film)},
+          {"not_finite_paths", film.work.not_finite}}});
     const Image sampled = sampled_layers(medium, camera);
     const Developer developer(film, sampled, plan, shot.output);
     TracedPicture out{developer.picture(-1), {developer.picture(0), developer.picture(1)}, 2.0 * film.work.passes};

@@ -43,6 +43,12 @@ FireDirections::FireDirections(const TrackingField& field)
     const Medium& medium = field.medium();
     local_from_index_ = dmat3(medium.world_from_index);
     origin_ = local_from_index_ * dvec3(field.bricks().min_brick() * BrickLattice::kSize - medium.reference_node);
+    ivec3 low(brick_of_.empty() ? ivec3(0) : field.bricks().brick(brick_of_[0])), high = low;
+    for (const std::int32_t b : brick_of_) {
+        low = glm::min(low, field.bricks().brick(b));
+        high = glm::max(high, field.bricks().brick(b));
+    }
+    radius_ = static_cast<float>(0.5 * glm::length(local_from_index_ * dvec3((high - low + 1) * BrickLattice::kSize)));
     const double cube_volume = std::abs(glm::determinant(local_from_index_)) * kCube * kCube * kCube;
     double sum = 0.0;
     for (double g : glow) {
@@ -73,10 +79,8 @@ double FireDirections::pdf(const Ray& ray) const {
         const std::int32_t burning = burning_of_[s.brick];
         if (burning >= 0)
             walk_cubes<kCube>(s, [&](const CellSegment& part) {
-                const vec3 middle = point_in_brick(part, 0.5 * (part.begin + part.end));
-                const ivec3 cube = glm::min(ivec3(middle) / kCube, ivec3(1));
                 const double b = part.begin, e = part.end;
-                sum += density_[burning * kCubes + (cube.x * 2 + cube.y) * 2 + cube.z] * (e - b) *
+                sum += density_[burning * kCubes + (part.cube.x * 2 + part.cube.y) * 2 + part.cube.z] * (e - b) *
                        (e * e + e * b + b * b) / 3.0;
                 return true;
             });

@@ -1,6 +1,6 @@
-// Directions toward the fire, by solid angle: a point is drawn in proportion to what glows there, and only its direction
-// is kept, because the whole line is integrated (Simon, Hanika, Zirr, Dachsbacher, Line Integration for Rendering
-// Heterogeneous Emissive Volumes, EGSR 2017).
+// Directions toward the fire, by solid angle: a point is drawn in proportion to what glows there, and only its
+// direction is kept, because the whole line is integrated (Simon, Hanika, Zirr, Dachsbacher, Line Integration for
+// Rendering Heterogeneous Emissive Volumes, EGSR 2017).
 #pragma once
 
 #include <vector>
@@ -21,19 +21,23 @@ public:
     // Of a ray's direction, [1/sr]: the integral of the points' density times distance squared along the whole ray.
     double pdf(const Ray& ray) const;
 
+    // Half the diagonal of the box of all that burns [m].
+    float radius() const { return radius_; }
+
     std::uint64_t bytes() const { return (cumulative_.size() + density_.size()) * sizeof(double); }
 
 private:
     static constexpr int kCube = 4;  // cells along a side within which the density is constant
-    static constexpr int kCubes = (BrickLattice::kSize / kCube) * (BrickLattice::kSize / kCube) *
-                                  (BrickLattice::kSize / kCube);
+    static constexpr int kCubes =
+        (BrickLattice::kSize / kCube) * (BrickLattice::kSize / kCube) * (BrickLattice::kSize / kCube);
 
     const TrackingField* field_;
-    std::vector<std::int32_t> brick_of_;   // of the field, per burning brick
-    std::vector<std::int32_t> burning_of_; // and back, or -1
-    std::vector<double> density_;          // per cube [1/m^3]
-    std::vector<double> cumulative_;       // probability, inclusive
-    dvec3 origin_{0.0};                    // local position of the lattice's first node [m]
+    std::vector<std::int32_t> brick_of_;    // of the field, per burning brick
+    std::vector<std::int32_t> burning_of_;  // and back, or -1
+    std::vector<double> density_;           // per cube [1/m^3]
+    std::vector<double> cumulative_;        // probability, inclusive
+    float radius_ = 0.0f;
+    dvec3 origin_{0.0};  // local position of the lattice's first node [m]
     dmat3 local_from_index_{1.0};
 };
 

@@ -100,15 +100,31 @@ private:
     double stop_ = std::numeric_limits<double>::infinity();
 };
 
-struct PassedCell {
-    CellSegment segment;
-    double depth;  // optical depth at its end
-};
-
-Collision collision_in(const TrackingField& field, const CellSegment& cell, double depth) {
+Collision collision_in(const Cubic& extinction, const CellSegment& cell, double depth) {
     const double metres = cell.end - cell.begin;
-    const double t = cell.begin + metres * invert_depth(field.extinction_along(cell), metres, depth);
+    const double t = cell.begin + metres * invert_depth(extinction, metres, depth);
     return {t, cell.brick, point_in_brick(cell, t)};
+}
+
+// Where null collisions are neither so rare that they miss the fire nor so many that walking cells is cheaper.
+bool crowded(const TrackingField& field, const CellSegment& brick) {
+    const double per_cell = field.majorant(brick.brick) / glm::length(brick.direction);
+    return !field.has_emission() && per_cell > 0.05 && per_cell < 8.0;
+}
+
+// A flight through a brick that gathers what glows at its tentative collisions. False: it collided.
+bool meet_in_brick(const TrackingField& field, const CellSegment& brick, LineResult& out, Rng& rng) {
+    const double majorant = field.majorant(brick.brick);
+    for (double t = brick.begin + exponential(rng) / majorant; t < brick.end; t += exponential(rng) / majorant) {
+        const vec3 p = point_in_brick(brick, t);
+        const float real = field.extinction(brick.brick, p) / float(majorant);
+        out.radiance += real * field.source(brick.brick, p);
+        if (rng.next_double() < real) {
+            out.collision = Collision{t, brick.brick, p};
+            return false;
+        }
+    }
+    return true;
 }
 
 }  // namespace
@@ -140,52 +156,62 @@ double LineTracker::end_of_fire(const LatticeRay& ray) const {
     return begin < end ? end : ray.begin;
 }
 
-LineResult LineTracker::follow(const Ray& ray, bool with_collision, Rng& rng) const {
+LineResult LineTracker::follow_path(const Ray& ray, Rng& rng) const {
     LineResult out;
-    const LatticeRay way = field_.enter(ray);
-    const bool apart = settings_.transmittance != TransmittanceEstimator::Exact;
-    if (with_collision && (apart || settings_.free_flight == FreeFlight::NullCollision)) {
-        out.collision = settings_.free_flight == FreeFlight::NullCollision
-                            ? null_collision_flight(field_, ray, way.end, rng)
-                            : exact_flight(field_, ray, way.end, rng);
-        with_collision = false;
-    }
-    if (apart) {
-        out.radiance = radiance_by_estimates(way, rng);
-        return out;
-    }
-    const double fire_end = end_of_fire(way);
-    const double collision_depth = with_collision ? exponential(rng) : -1.0;
-    Visibility visibility(kRouletteDepth);
     Places places(rng);
-    double depth = 0.0;
-    const auto wanted = [&](double t) {
-        return depth <= collision_depth || (t < fire_end && !visibility.ended(depth));
-    };
-    if (!wanted(way.begin))
-        return out;
-    walk_bricks(field_.bricks(), way, [&](const CellSegment& brick) {
+    const bool exact = settings_.free_flight == FreeFlight::Exact;
+    walk_bricks(field_.bricks(), field_.enter(ray), [&](const CellSegment& brick) {
         const bool burns = field_.burns(brick.brick);
+        if (!burns && !exact) {
+            out.collision = null_collision_in_brick(field_, brick, rng);
+            return !out.collision;
+        }
+        if (!exact && crowded(field_, brick))
+            return meet_in_brick(field_, brick, out, rng);
+        // The exponential forgets where it began: every brick draws anew.
+        double left = exponential(rng);
         return walk_cubes<1>(brick, [&](const CellSegment& cell) {
             const Cubic sigma = field_.extinction_along(cell);
             const double tau = std::max(0.0, sigma.integral(1.0) * (cell.end - cell.begin));
-            if (burns && field_.cell_burns(cell) && !visibility.ended(depth))
-                out.radiance += float(visibility.of(depth)) *
-                                CellEmission(field_, cell, sigma, tau).estimate(places.next());
-            if (depth <= collision_depth && depth + tau > collision_depth)
-                out.collision = collision_in(field_, cell, collision_depth - depth);
-            depth += tau;
-            visibility.pass(depth, rng);
-            return wanted(cell.end);
+            if (burns && field_.cell_burns(cell))
+                out.radiance += CellEmission(field_, cell, sigma, tau).estimate(places.next());
+            if (tau > left)
+                out.collision = collision_in(sigma, cell, left);
+            left -= tau;
+            return !out.collision;
         });
     });
     return out;
 }
 
-LineResult LineTracker::follow_camera(const Ray& ray, double place, Rng& rng) const {
-    LineResult out;
-    thread_local std::vector<PassedCell> passed;
-    passed.clear();
+Rgb LineTracker::follow_line(const Ray& ray, Rng& rng) const {
+    LatticeRay way = field_.enter(ray);
+    way.end = end_of_fire(way);
+    if (settings_.transmittance != TransmittanceEstimator::Exact)
+        return radiance_by_estimates(way, rng);
+    Rgb radiance(0.0f);
+    Visibility visibility(kRouletteDepth);
+    Places places(rng);
+    double depth = 0.0;
+    walk_bricks(field_.bricks(), way, [&](const CellSegment& brick) {
+        const bool burns = field_.burns(brick.brick);
+        return walk_cubes<1>(brick, [&](const CellSegment& cell) {
+            const Cubic sigma = field_.extinction_along(cell);
+            const double tau = std::max(0.0, sigma.integral(1.0) * (cell.end - cell.begin));
+            if (burns && field_.cell_burns(cell))
+                radiance +=
+                    float(visibility.of(depth)) * CellEmission(field_, cell, sigma, tau).estimate(places.next());
+            depth += tau;
+            visibility.pass(depth, rng);
+            return !visibility.ended(depth);
+        });
+    });
+    return radiance;
+}
+
+void LineTracker::follow_camera(const Ray& ray, Rng& rng, CameraLine& line) const {
+    line.radiance = Rgb(0.0f);
+    line.cells.clear();
     Visibility visibility(kCameraRouletteDepth);
     Places places(rng);
     double depth = 0.0;
@@ -195,27 +221,24 @@ LineResult LineTracker::follow_camera(const Ray& ray, double place, Rng& rng) co
             const Cubic sigma = field_.extinction_along(cell);
             const double tau = std::max(0.0, sigma.integral(1.0) * (cell.end - cell.begin));
             if (burns && field_.cell_burns(cell))
-                out.radiance += float(visibility.of(depth)) *
-                                CellEmission(field_, cell, sigma, tau).estimate(places.next());
-            depth += tau;
+                line.radiance +=
+                    float(visibility.of(depth)) * CellEmission(field_, cell, sigma, tau).estimate(places.next());
             if (tau > 0.0)
-                passed.push_back({cell, depth});
+                line.cells.push_back({cell, depth, depth + tau});
+            depth += tau;
             visibility.pass(depth, rng);
             return !visibility.ended(depth);
         });
     });
-    if (passed.empty())
-        return out;
-    // Where roulette ended the walk, less than e^-16 of the ray's collisions lie beyond: below single precision.
-    out.weight = -std::expm1(-depth);
-    const double target = std::min(-std::log1p(-place * out.weight), depth);
-    auto cell = std::upper_bound(passed.begin(), passed.end(), target,
-                                 [](double t, const PassedCell& c) { return t < c.depth; });
-    if (cell == passed.end())
-        --cell;
-    const double before = cell == passed.begin() ? 0.0 : (cell - 1)->depth;
-    out.collision = collision_in(field_, cell->segment, std::max(0.0, target - before));
-    return out;
+}
+
+// Where roulette ended the walk, less than e^-16 of the ray's collisions lie beyond: below single precision.
+Collision LineTracker::choose(const CameraLine& line, double place) const {
+    const double depth = std::min(-std::log1p(-place * line.opacity()), line.cells.back().end_depth);
+    const auto cell = std::upper_bound(line.cells.begin(), line.cells.end() - 1, depth,
+                                       [](double d, const PassedCell& c) { return d < c.end_depth; });
+    const double inside = std::clamp(depth - cell->begin_depth, 0.0, cell->end_depth - cell->begin_depth);
+    return collision_in(field_.extinction_along(cell->segment), cell->segment, inside);
 }
 
 // The whole line in runs of bricks that burn, which are integrated cell by cell, and gaps between them, whose
@@ -224,9 +247,7 @@ Rgb LineTracker::radiance_by_estimates(const LatticeRay& ray, Rng& rng) const {
     Rgb radiance(0.0f);
     Places places(rng);
     double seen = 1.0, gap_begin = ray.begin;
-    LatticeRay way = ray;
-    way.end = end_of_fire(ray);
-    walk_bricks(field_.bricks(), way, [&](const CellSegment& brick) {
+    walk_bricks(field_.bricks(), ray, [&](const CellSegment& brick) {
         if (!field_.burns(brick.brick))
             return true;
         LatticeRay gap = ray;
@@ -235,7 +256,7 @@ Rgb LineTracker::radiance_by_estimates(const LatticeRay& ray, Rng& rng) const {
         gap_begin = brick.end;
         if (!gap.empty())
             seen *= settings_.transmittance == TransmittanceEstimator::Ratio ? ratio_tracking(field_, gap, rng)
-                                                                              : unbiased_ray_march(field_, gap, rng);
+                                                                             : unbiased_ray_march(field_, gap, rng);
         if (std::abs(seen) < 0.1) {
             if (rng.next_double() < 0.5)
                 return false;

@@ -1,7 +1,9 @@
 // Emission along a whole line, and the next collision on it.
 #pragma once
 
+#include <cmath>
 #include <optional>
+#include <vector>
 
 #include "tracing/settings.h"
 #include "tracing/trackers.h"
@@ -11,20 +13,38 @@ namespace brisance {
 struct LineResult {
     Rgb radiance{0.0f};                  // what glows along the line, seen from its origin [W/(m^2 sr)]
     std::optional<Collision> collision;  // where a path along the line collides next
-    double weight = 1.0;                 // of what follows from the collision
+};
+
+struct PassedCell {
+    CellSegment segment;
+    double begin_depth, end_depth;  // optical depth
+};
+
+// A ray of the camera and all cells on it, to choose collisions from.
+struct CameraLine {
+    Rgb radiance{0.0f};
+    std::vector<PassedCell> cells;
+    // The chance that a flight along the ray collides, 1 - T.
+    double opacity() const { return cells.empty() ? 0.0 : -std::expm1(-cells.back().end_depth); }
 };
 
 class LineTracker {
 public:
     LineTracker(const TrackingField& field, const TracingSettings& settings);
 
-    // For rays inside the path: radiance exact near the origin and followed with Russian roulette deeper in the smoke;
-    // the collision is that of an analog flight, and absent when the ray escapes.
-    LineResult follow(const Ray& ray, bool with_collision, Rng& rng) const;
+    // A path's next segment: a free flight, and an estimate of the emission along the whole line by what lies before
+    // its end: cell by cell, or at the null collisions where those are many. No collision: the ray escapes.
+    LineResult follow_path(const Ray& ray, Rng& rng) const;
 
-    // For the camera's rays: the whole line, and a collision that is forced to happen on it, `place` in [0, 1) of the
-    // way through its distribution; its weight is the chance 1 - T.
-    LineResult follow_camera(const Ray& ray, double place, Rng& rng) const;
+    // The emission along the whole line. Russian roulette ends it deep in the smoke.
+    Rgb follow_line(const Ray& ray, Rng& rng) const;
+
+    // The emission along the whole line without roulette, and its cells. `line` is overwritten; keep it for its memory.
+    void follow_camera(const Ray& ray, Rng& rng, CameraLine& line) const;
+
+    // A collision that is forced to happen on the line, whose opacity must be above 0: `place` in [0, 1) of the way
+    // through the distribution of flights that collide.
+    Collision choose(const CameraLine& line, double place) const;
 
 private:
     double end_of_fire(const LatticeRay& ray) const;

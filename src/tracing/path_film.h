@@ -15,7 +15,7 @@ public:
     // With `orders` every order of scattering is kept apart, otherwise the ledger's cells V, MV, MM.
     PathFilm(int width, int height, bool orders);
 
-    // Adds one path to a pixel's half (0 or 1). Not for two threads on one pixel. False: not finite, and left out.
+    // Adds what one camera ray brought to a pixel's half (0 or 1). Not for two threads on one pixel. False: not finite, and left out.
     bool add(std::size_t pixel, int half, const PathSum& path);
 
     int width() const { return width_; }
@@ -32,10 +32,11 @@ public:
     // Takes over what `bytes` hold. Empty when all is well, else why they cannot be used; the film is then unchanged.
     std::string restore(const std::string& bytes, const std::string& key);
 
-    // Progress: passes finished (one path in each half of each pixel), rows finished of the pass under way.
+    // Progress: passes finished (one camera ray in each half of each pixel), rows finished of the pass under way.
     struct Work {
         std::uint64_t passes = 0;
         std::uint64_t rows = 0;
+        std::uint64_t paths = 0;
         std::uint64_t scatterings = 0;
         std::uint64_t not_finite = 0;
         std::uint64_t bad_pixel = 0;  // of the first path that was not finite, ...

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "medium/phase.h"
 
@@ -9,8 +10,17 @@ namespace brisance {
 
 namespace {
 
-// Paths that carry less than this are ended by roulette.
-constexpr float kRouletteBelow = 0.25f;
+// First scatterings drawn on one ray of the camera: the ray itself, integrated cell by cell, costs as much as several.
+constexpr int kFirstCollisions = 16;
+
+// Lines toward the fire at a vertex, where the smoke around it lets them get there: its optical depth across the fire's
+// radius is less than this. Deeper in the smoke they cost more than they bring (measured), and what they would find is
+// found along the path's own segments.
+constexpr float kLightLines = 0.25f;
+constexpr float kThickToFire = 1.0f;
+
+// Paths that carry less than this part of what they began with are ended by roulette.
+constexpr float kRouletteBelow = 0.5f;
 
 double exponential(Rng& rng) {
     return -std::log1p(-rng.next_double());
@@ -25,13 +35,13 @@ void add(PathSum& sum, int order, const Rgb& radiance) {
 }
 
 // Ends the path, or makes up for those that ended. False: ended.
-bool survives(Rgb& throughput, Rng& rng) {
-    const float most = largest(throughput);
-    if (most >= kRouletteBelow)
+bool survives(Rgb& throughput, float begin, Rng& rng) {
+    const float part = largest(throughput) / begin;
+    if (part >= kRouletteBelow)
         return true;
-    if (!(rng.next_double() * kRouletteBelow < most))
+    if (!(rng.next() < part))
         return false;
-    throughput *= kRouletteBelow / most;
+    throughput /= part;
     return true;
 }
 
@@ -56,15 +66,17 @@ dvec3 sample_henyey_greenstein(const dvec3& forward, float mean_cosine, Rng& rng
 }
 
 struct PathTracer::Vertex {
-    dvec3 position;
-    dvec3 arriving;  // the path's direction of travel
+    dvec3 position;     // local [m]
+    dvec3 arriving;     // the path's direction of travel
+    Rgb throughput;     // with the albedo of this scattering
+    float light_lines;  // how many are drawn toward the fire: a probability
+    int order;          // scatterings with this one
 };
 
 PathTracer::PathTracer(const Medium& medium, const TracingSettings& settings, int bounces)
     : settings_(settings), bounces_(bounces), field_(medium), fire_(field_), lines_(field_, settings_) {}
 
 void PathTracer::trace(const Ray& ray, double place, Rng& rng, PathSum& sum, PathStatistics& statistics) const {
-    ++statistics.paths;
     if (fire_.empty())
         return;
     if (settings_.emission == EmissionEstimator::Collision)
@@ -76,45 +88,69 @@ void PathTracer::trace(const Ray& ray, double place, Rng& rng, PathSum& sum, Pat
 // The line toward the fire; with the balance heuristic its weight cancels all but both densities in the denominator.
 Rgb PathTracer::light_from_fire(const Vertex& vertex, Rng& rng) const {
     const Ray line{vertex.position, fire_.sample(vertex.position, rng)};
-    const Rgb seen = lines_.follow(line, false, rng).radiance;
+    const Rgb seen = lines_.follow_line(line, rng);
     if (seen == Rgb(0.0f))
         return seen;
     const double phase =
         henyey_greenstein(static_cast<float>(glm::dot(vertex.arriving, line.direction)), field_.mean_cosine());
-    return float(phase / (fire_.pdf(line) + phase)) * seen;
+    return float(phase / (vertex.light_lines * fire_.pdf(line) + phase)) * seen;
 }
 
 void PathTracer::trace_lines(const Ray& camera_ray, double place, Rng& rng, PathSum& sum,
                              PathStatistics& statistics) const {
-    Ray ray = camera_ray;
-    LineResult line = lines_.follow_camera(ray, place, rng);
-    add(sum, 0, line.radiance);
-    Rgb throughput(static_cast<float>(line.weight));
-    for (int order = 1; line.collision && (bounces_ < 0 || order <= bounces_); ++order) {
-        throughput *= field_.albedo(line.collision->brick, line.collision->position);
-        if (!survives(throughput, rng))
-            return;
-        ++statistics.scatterings;
-        const Vertex vertex{local_of(ray, *line.collision), ray.direction};
-        if (settings_.light_sampling)
-            add(sum, order, throughput * light_from_fire(vertex, rng));
-        ray = {vertex.position, sample_henyey_greenstein(vertex.arriving, field_.mean_cosine(), rng)};
-        line = lines_.follow(ray, bounces_ < 0 || order < bounces_, rng);
-        if (line.radiance == Rgb(0.0f))
-            continue;
-        float share = 1.0f;
-        if (settings_.light_sampling) {
-            const double phase =
-                henyey_greenstein(static_cast<float>(glm::dot(vertex.arriving, ray.direction)), field_.mean_cosine());
-            share = static_cast<float>(phase / (fire_.pdf(ray) + phase));
-        }
-        add(sum, order, share * throughput * line.radiance);
+    thread_local CameraLine seen;
+    lines_.follow_camera(camera_ray, rng, seen);
+    add(sum, 0, seen.radiance);
+    if (bounces_ == 0 || !(seen.opacity() > 0.0))
+        return;
+    const Rgb arriving(static_cast<float>(seen.opacity() / kFirstCollisions));
+    for (int i = 0; i < kFirstCollisions; ++i) {
+        ++statistics.paths;
+        const Collision first = lines_.choose(seen, (i + place) / kFirstCollisions);
+        trace_from(vertex_at(camera_ray, first, arriving, 1), rng, sum, statistics);
     }
+}
+
+void PathTracer::trace_from(Vertex vertex, Rng& rng, PathSum& sum, PathStatistics& statistics) const {
+    const float begin = largest(vertex.throughput);
+    while (survives(vertex.throughput, begin, rng)) {
+        ++statistics.scatterings;
+        if (vertex.light_lines > 0.0f && rng.next() < vertex.light_lines)
+            add(sum, vertex.order, vertex.throughput * light_from_fire(vertex, rng));
+        const Ray ray{vertex.position, sample_henyey_greenstein(vertex.arriving, field_.mean_cosine(), rng)};
+        LineResult line;
+        if (bounces_ < 0 || vertex.order < bounces_)
+            line = lines_.follow_path(ray, rng);
+        else
+            line.radiance = lines_.follow_line(ray, rng);
+        if (line.radiance != Rgb(0.0f))
+            add(sum, vertex.order, share_of_phase(vertex, ray) * vertex.throughput * line.radiance);
+        if (!line.collision)
+            return;
+        vertex = vertex_at(ray, *line.collision, vertex.throughput, vertex.order + 1);
+    }
+}
+
+PathTracer::Vertex PathTracer::vertex_at(const Ray& ray, const Collision& c, const Rgb& arriving, int order) const {
+    Vertex v{ray.origin + ray.direction * c.distance, ray.direction, arriving * field_.albedo(c.brick, c.position),
+             0.0f, order};
+    if (settings_.light_sampling && field_.extinction(c.brick, c.position) * fire_.radius() < kThickToFire)
+        v.light_lines = kLightLines;
+    return v;
+}
+
+float PathTracer::share_of_phase(const Vertex& vertex, const Ray& ray) const {
+    if (vertex.light_lines == 0.0f)
+        return 1.0f;
+    const double phase =
+        henyey_greenstein(static_cast<float>(glm::dot(vertex.arriving, ray.direction)), field_.mean_cosine());
+    return static_cast<float>(phase / (vertex.light_lines * fire_.pdf(ray) + phase));
 }
 
 // The plain tracker: emission at every tentative collision, absorption or scattering at real ones. Where only emission
 // is, tentative collisions must be made.
 void PathTracer::trace_plain(Ray ray, Rng& rng, PathSum& sum, PathStatistics& statistics) const {
+    ++statistics.paths;
     Rgb throughput(1.0f);
     for (int order = 0;; ++order) {
         std::optional<Collision> collision;
@@ -149,7 +185,8 @@ void PathTracer::trace_plain(Ray ray, Rng& rng, PathSum& sum, PathStatistics& st
             return;
         throughput *= albedo / scatter;
         ++statistics.scatterings;
-        ray = {local_of(ray, *collision), sample_henyey_greenstein(ray.direction, field_.mean_cosine(), rng)};
+        ray = {ray.origin + ray.direction * collision->distance,
+               sample_henyey_greenstein(ray.direction, field_.mean_cosine(), rng)};
     }
 }
 

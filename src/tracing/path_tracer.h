@@ -1,15 +1,16 @@
 // The reference: unbiased paths through the medium, filed by the number of their scatterings.
 //
-// A path leaves the camera, and at each of its vertices asks two lines what glows along them: one toward the fire,
-// drawn by solid angle, and one drawn by the phase function, on which the path also goes on. The two share every
-// direction by the balance heuristic. Emission is integrated along the whole of every line, so that it belongs to the
-// scatterings before it: none V, one MV, more MM.
+// A ray of the camera is integrated whole, and several first scatterings are drawn on it, each the start of a path. A
+// path goes on by the phase function, and gathers what glows along every segment; where the smoke around a vertex is
+// thin it also asks a whole line toward the fire, drawn by solid angle, and the two share every direction by the
+// balance heuristic. What is gathered belongs to the scatterings before it: none V, one MV, more MM.
 //
 // Surfaces and analytic lights will be further kinds of vertices and of lines; the ledger's cells for them are further
 // sums beside these.
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "tracing/fire_directions.h"
 #include "tracing/line.h"
@@ -40,11 +41,11 @@ public:
 private:
     struct Vertex;
     void trace_lines(const Ray& ray, double place, Rng& rng, PathSum& sum, PathStatistics& statistics) const;
+    void trace_from(Vertex vertex, Rng& rng, PathSum& sum, PathStatistics& statistics) const;
     void trace_plain(Ray ray, Rng& rng, PathSum& sum, PathStatistics& statistics) const;
     Rgb light_from_fire(const Vertex& vertex, Rng& rng) const;
-    dvec3 local_of(const Ray& ray, const Collision& collision) const {
-        return ray.origin + ray.direction * collision.distance;
-    }
+    Vertex vertex_at(const Ray& ray, const Collision& collision, const Rgb& throughput, int order) const;
+    float share_of_phase(const Vertex& vertex, const Ray& ray) const;
 
     TracingSettings settings_;
     int bounces_;

@@ -20,13 +20,13 @@ enum class TransmittanceEstimator {
 };
 
 struct TracingSettings {
-    int samples = 64;              // paths per pixel; 0: until `seconds` or `error`
-    double seconds = 0.0;          // stop after this time, at the end of a pass; 0: no limit
-    double error = 0.0;            // stop at this relative standard error (rRMSE) of the picture; 0: never
+    int samples = 64;                  // camera rays per pixel, each with its paths; 0: until `seconds` or `error`
+    double seconds = 0.0;              // stop after this time, at the end of a pass; 0: no limit
+    double error = 0.0;                // stop at this relative standard error (rRMSE) of the picture; 0: never
     double checkpoint_seconds = 30.0;  // between checkpoints, where one is kept
     EmissionEstimator emission = EmissionEstimator::Line;
-    bool light_sampling = true;    // rays toward the fire at every scattering, besides the phase function's
-    FreeFlight free_flight = FreeFlight::Exact;
+    bool light_sampling = true;  // lines toward the fire where smoke is thin, besides those of the phase function
+    FreeFlight free_flight = FreeFlight::NullCollision;
     TransmittanceEstimator transmittance = TransmittanceEstimator::Exact;  // where nothing burns along a segment
 };
 

@@ -170,16 +170,18 @@ std::optional<Collision> exact_flight(const TrackingField& field, const Ray& ray
     return found;
 }
 
+// The exponential forgets where it began: every brick may draw anew.
+std::optional<Collision> null_collision_in_brick(const TrackingField& field, const CellSegment& brick, Rng& rng) {
+    if (!stiff(field, brick))
+        return woodcock_in_brick(field, brick, rng);
+    double depth = exponential(rng);
+    return flight_in_brick(field, brick, depth);
+}
+
 std::optional<Collision> null_collision_flight(const TrackingField& field, const Ray& ray, double end, Rng& rng) {
     std::optional<Collision> found;
     walk_bricks(field.bricks(), field.enter(ray, end), [&](const CellSegment& s) {
-        // The exponential forgets where it began: every brick may draw anew.
-        if (stiff(field, s)) {
-            double depth = exponential(rng);
-            found = flight_in_brick(field, s, depth);
-        } else {
-            found = woodcock_in_brick(field, s, rng);
-        }
+        found = null_collision_in_brick(field, s, rng);
         return !found;
     });
     return found;

@@ -27,6 +27,7 @@ std::optional<Collision> exact_flight(const TrackingField& field, const Ray& ray
 
 // ... or by Woodcock's null collisions against each brick's majorant (Woodcock et al. 1965). Bricks so uneven that
 // null collisions would outnumber their cells many times are walked exactly.
+std::optional<Collision> null_collision_in_brick(const TrackingField& field, const CellSegment& brick, Rng& rng);
 std::optional<Collision> null_collision_flight(const TrackingField& field, const Ray& ray, double end, Rng& rng);
 
 // Ratio tracking (Cramer 1978; Novak, Selle, Jarosz 2014): the product of 1 - extinction / majorant over tentative

@@ -30,11 +30,6 @@ T trilinear(const T* v, const vec3& f) {
     return low + f.x * (plane(kSide * kSide) - low);
 }
 
-ivec3 cell_of(const CellSegment& s) {
-    const dvec3 middle = s.origin + s.direction * (0.5 * (s.begin + s.end));
-    return glm::clamp(ivec3(glm::floor(middle)), ivec3(0), ivec3(BrickLattice::kSize - 1));
-}
-
 void copy_rgb(const Medium& medium, const std::vector<Rgb>& field, const ivec3& low, Rgb* out) {
     std::vector<float> box(3 * kRecords);
     copy_box(medium.lattice, {reinterpret_cast<const float*>(field.data()), field.size() * 3}, 3, low, ivec3(kSide),
@@ -131,7 +126,7 @@ Rgb TrackingField::emission(std::size_t brick, const vec3& p) const {
 
 // The trilinear polynomial a + bx + cy + dz + exy + fxz + gyz + hxyz of the cell, along p(u) = q + u w.
 Cubic TrackingField::extinction_along(const CellSegment& s) const {
-    const ivec3 cell = cell_of(s);
+    const ivec3& cell = s.cube;
     const float* v = &extinction_[s.brick * kRecords + (cell.x * kSide + cell.y) * kSide + cell.z];
     const double v000 = v[0], v001 = v[1], v010 = v[kSide], v011 = v[kSide + 1];
     const float* x = v + kSide * kSide;
@@ -151,8 +146,7 @@ Cubic TrackingField::extinction_along(const CellSegment& s) const {
 
 bool TrackingField::cell_burns(const CellSegment& s) const {
     const std::int32_t fire = fire_index_[s.brick];
-    return fire >= 0 &&
-           burning_cell_[fire * std::size_t(BrickLattice::kNodes) + BrickLattice::offset_in_brick(cell_of(s))];
+    return fire >= 0 && burning_cell_[fire * std::size_t(BrickLattice::kNodes) + BrickLattice::offset_in_brick(s.cube)];
 }
 
 std::uint64_t TrackingField::bytes() const {

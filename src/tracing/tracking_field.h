@@ -58,10 +58,10 @@ private:
     dmat3 index_from_local_{1.0};
     BrickLattice bricks_;
     std::vector<float> extinction_;
-    std::vector<Rgb> albedo_;                // empty: the medium's one albedo
-    std::vector<std::int32_t> fire_index_;   // position of a brick's records in source_ and emission_, or -1
-    std::vector<Rgb> source_, emission_;     // empty: none
-    std::vector<std::uint8_t> burning_cell_; // 8^3 to a burning brick
+    std::vector<Rgb> albedo_;                 // empty: the medium's one albedo
+    std::vector<std::int32_t> fire_index_;    // position of a brick's records in source_ and emission_, or -1
+    std::vector<Rgb> source_, emission_;      // empty: none
+    std::vector<std::uint8_t> burning_cell_;  // 8^3 to a burning brick
     std::vector<float> minimum_, majorant_;
 };
 

@@ -1,9 +1,11 @@
 // What an EXR says about itself.
 
+#include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFloatAttribute.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <gtest/gtest.h>
 
@@ -105,6 +107,50 @@ TEST(ExrHeader, UnknownRateAndNoRemarkAreLeftOut) {
     EXPECT_FALSE(Imf::hasFramesPerSecond(header));
     EXPECT_FALSE(Imf::hasComments(header));
     EXPECT_FALSE(Imf::hasWorldToNDC(header));  // no field of view given
+}
+
+TEST(ExrHeader, IsReadBackWithoutThePixels) {
+    const TemporaryFolder folder;
+    ImageMetadata metadata;
+    metadata.frame = -7;
+    metadata.render_seconds = 12.5;
+    metadata.comments = "a remark";
+    metadata.text = {{"brisance/shot", "{\n  \"name\": \"n\u00e4me\"\n}"}, {"brisance/version", "1.2.3"}};
+    write_exr(folder / "a.exr", gray_image(4, 4, 1.0f), metadata);
+    const ExrMetadata read = read_exr_metadata(folder / "a.exr");
+    EXPECT_EQ(read.frame, -7);
+    EXPECT_EQ(read.render_seconds, 12.5);
+    EXPECT_EQ(read.text.at("brisance/shot"), metadata.text.at("brisance/shot"));
+    EXPECT_EQ(read.text.at("brisance/version"), "1.2.3");
+    EXPECT_EQ(read.text.at("comments"), "a remark");
+    EXPECT_EQ(read.text.count("brisance/volume"), 0u);
+}
+
+TEST(ExrHeader, WhatIsNotThereIsNotReadBack) {
+    const TemporaryFolder folder;
+    Imf::Header header(4, 4);  // as another program writes it
+    header.channels().insert("Y", Imf::Channel());
+    Imf::OutputFile((folder / "a.exr").c_str(), header);
+    const ExrMetadata read = read_exr_metadata(folder / "a.exr");
+    EXPECT_FALSE(read.frame.has_value());
+    EXPECT_FALSE(read.render_seconds.has_value());
+    EXPECT_TRUE(read.text.empty());
+}
+
+TEST(ExrHeader, OfUnusableFilesIsAnError) {
+    const TemporaryFolder folder;
+    const auto code = [](const std::filesystem::path& file) {
+        try {
+            read_exr_metadata(file);
+        } catch (const Error& error) {
+            return error.code();
+        }
+        return ExitCode::Success;
+    };
+    EXPECT_EQ(code(folder / "absent.exr"), ExitCode::MissingInput);
+    EXPECT_EQ(code(folder.path()), ExitCode::BadData);
+    std::ofstream(folder / "text.exr") << "no picture";
+    EXPECT_EQ(code(folder / "text.exr"), ExitCode::BadData);
 }
 
 TEST(ExrHeader, FixedTimeMakesFilesIdentical) {

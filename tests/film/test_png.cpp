@@ -70,6 +70,18 @@ TEST(Png, PremultipliedColourIsShownOverBlackWhateverItsAlpha) {
     EXPECT_EQ(read_png(folder / "a.png").at(0, 0, 0), 188);
 }
 
+TEST(Png, FinishedPixelsAreWrittenAsTheyAre) {
+    const TemporaryFolder folder;
+    std::vector<std::uint8_t> pixels;
+    for (int i = 0; i < 3 * 5 * 2; ++i)
+        pixels.push_back(static_cast<std::uint8_t>(8 * i));
+    write_png(folder / "a.png", 5, 2, pixels);
+    EXPECT_EQ(read_png(folder / "a.png").bytes, pixels);
+    EXPECT_THROW(write_png(folder / "b.png", 5, 3, pixels), Error);
+    EXPECT_THROW(write_png(folder / "b.png", 0, 0, {}), Error);
+    EXPECT_EQ(folder.names().size(), 1u);
+}
+
 TEST(Png, ABeautyWithoutColourIsRefused) {
     const TemporaryFolder folder;
     const Image depth{1, 1, {make_layer("Z", {"Z"}, 1, 1, [](int, int, int) { return 1.0f; })}};

@@ -1,0 +1,79 @@
+#include "medium/similar_medium.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+
+namespace brisance {
+
+namespace {
+
+// Optical depth of a voxel at most: isothermal half-spaces then come out right to 3 % for albedos up to 0.95; they are
+// too dim below, too bright above.
+constexpr double kMostDepth = 4.0;
+constexpr double kMostAbsorption = 0.05;  // share of extinction beyond which absorption is no longer raised
+
+// What a node becomes.
+struct Similar {
+    double extinction;
+    dvec3 albedo;
+    dvec3 source_factor;  // of the thermal source function
+    dvec3 emission_factor;
+};
+
+// Forward scattering taken out. The share is that of the colour that scatters least, so that no albedo turns negative.
+Similar without_forward(double extinction, const dvec3& albedo, double share) {
+    const double left = 1.0 - std::min({albedo.x, albedo.y, albedo.z}) * share;
+    return {extinction * left, dvec3(1.0) - (dvec3(1.0) - albedo) / left, dvec3(1.0 / left), dvec3(1.0)};
+}
+
+void hold_down(Similar& s, double most) {
+    const double x = s.extinction / most;
+    if (!(x > 1.0))
+        return;
+    for (int c = 0; c < 3; ++c) {
+        const double absorbed = 1.0 - s.albedo[c];
+        const double raised = std::clamp(x * x * absorbed, absorbed, std::max(absorbed, kMostAbsorption));
+        // j' / j, which is also (sigma' S') / (sigma S).
+        const double gain = absorbed > 0.0 ? std::sqrt(raised / absorbed) / x : 1.0;
+        s.albedo[c] = 1.0 - raised;
+        s.source_factor[c] *= gain * x;
+        s.emission_factor[c] *= gain;
+    }
+    s.extinction = most;
+}
+
+}  // namespace
+
+float forward_share(float mean_cosine) {
+    const float t = std::clamp((mean_cosine - 0.5f) / 0.35f, 0.0f, 1.0f);
+    return mean_cosine * mean_cosine * mean_cosine * t * t * (3.0f - 2.0f * t);
+}
+
+std::optional<Medium> similar_medium(const Medium& medium, bool all_orders) {
+    const double share = all_orders ? forward_share(medium.mean_cosine) : 0.0;
+    const double most = kMostDepth / medium.spacing;
+    if (share == 0.0 && medium.max_extinction <= most)
+        return std::nullopt;
+    Medium m = medium;
+    m.mean_cosine = static_cast<float>((medium.mean_cosine - share) / (1.0 - share));
+    m.albedo_nodes.resize(m.extinction.size());
+    parallel_for(
+        m.extinction.size(),
+        [&](std::size_t i) {
+            Similar s = without_forward(medium.extinction[i], dvec3(medium.albedo_at(i)), share);
+            hold_down(s, most);
+            m.extinction[i] = static_cast<float>(s.extinction);
+            m.albedo_nodes[i] = Rgb(s.albedo);
+            if (!m.source.empty())
+                m.source[i] = Rgb(dvec3(m.source[i]) * s.source_factor);
+            if (!m.emission.empty())
+                m.emission[i] = Rgb(dvec3(m.emission[i]) * s.emission_factor);
+        },
+        4096);
+    m.max_extinction = *std::max_element(m.extinction.begin(), m.extinction.end());
+    return m;
+}
+
+}  // namespace brisance

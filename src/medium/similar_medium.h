@@ -1,0 +1,33 @@
+// The medium that scattered light is followed through, where the medium itself is too stiff for lights on a lattice.
+//
+// A lattice cannot tell where in a voxel light comes from. That matters in two cases, and in both there is a milder
+// medium from which nearly the same light comes:
+//  - Many mean free paths to a voxel. What is seen of such smoke comes from a skin far thinner than a voxel. Layers of
+//    constant albedo look the same however optical depth is laid out in them, so extinction is held down until a voxel
+//    is about as thick as the skin. Smoke that scatters nearly all light is no skin: light diffuses through many
+//    voxels, and what comes out must not change. With extinction sigma = x sigma' and 1 - albedo = e, albedo and
+//    emission j are changed so that the flux out of the diffusing medium stays the same,
+//      j' / (sigma' sqrt(e')) = j / (sigma sqrt(e)),     e <= e' <= x^2 e:
+//    e' = x^2 e keeps power and diffusion, e' = e keeps the source function. The first is taken as far as e' = 0.05,
+//    beyond which light dies within a voxel or two anyway.
+//  - A phase function with a forward peak narrower than the angles between a lattice's lights. Light that scatters into
+//    the peak has hardly scattered: a share f of all scattering counts as none (delta scaling: Joseph, Wiscombe,
+//    Weinman, The delta-Eddington approximation for radiative flux transfer, J. Atmos. Sci. 33, 1976; Wiscombe, The
+//    delta-M method, 34, 1977), with f = g^3, so that moments 0 to 2 are kept by the rest.
+// The camera still sees emission through the medium itself.
+#pragma once
+
+#include <optional>
+
+#include "medium/medium.h"
+
+namespace brisance {
+
+// The share of scattering in Henyey-Greenstein's forward peak that counts as none: 0 up to g = 0.5, g^3 from 0.85.
+float forward_share(float mean_cosine);
+
+// Empty where the medium will do. `all_orders`: light scattered more than once is followed too; otherwise forward
+// scattering counts as what it is.
+std::optional<Medium> similar_medium(const Medium& medium, bool all_orders);
+
+}  // namespace brisance

@@ -1,0 +1,33 @@
+// HDR-FLIP: FLIP over all exposures at which the reference shows something, each pixel at its worst.
+#pragma once
+
+#include <vector>
+
+#include "metrics/flip.h"
+#include "metrics/picture.h"
+
+namespace brisance {
+
+// Evenly spaced, both ends included [stops].
+struct Exposures {
+    double start = 0.0;
+    double stop = 0.0;
+    int count = 2;
+    double at(int index) const { return start + (stop - start) * index / (count - 1); }
+};
+
+// From where the largest luminance of the reference is shown near white to where its median is. Unit by unit: a
+// reference twice as bright is exposed one stop less. A reference without light has no exposures: 0, twice.
+Exposures hdr_flip_exposures(const Picture& reference);
+
+struct HdrFlip {
+    Exposures exposures;
+    Plane errors;                      // in [0, 1]
+    std::vector<int> worst_exposures;  // per pixel, of which exposure its error is
+    double mean = 0.0;
+};
+
+// Both in linear Rec. 709 of any unit. NaN and negative values are shown black. Throws Error as flip_errors.
+HdrFlip hdr_flip(const Picture& image, const Picture& reference, double pixels_per_degree = kPixelsPerDegree);
+
+}  // namespace brisance
