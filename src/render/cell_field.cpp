@@ -12,7 +12,8 @@ namespace {
 constexpr int kSide = BrickLattice::kSize + 1;
 constexpr int kRecords = kSide * kSide * kSide;
 
-void put(const Medium& medium, const std::vector<Rgb>& field, const ivec3& low, int slot, CellRecord* records) {
+template <class Record>
+void put(const Medium& medium, const std::vector<Rgb>& field, const ivec3& low, int slot, Record* records) {
     if (field.empty())
         return;
     std::vector<float> box(3 * kRecords);
@@ -23,26 +24,53 @@ void put(const Medium& medium, const std::vector<Rgb>& field, const ivec3& low, 
             records[i].value[slot + c] = box[c * kRecords + i];
 }
 
+template <class Record>
+void put_extinction(const Medium& medium, const ivec3& low, Record* records) {
+    std::vector<float> box(kRecords);
+    copy_box(medium.lattice, medium.extinction, 1, low, ivec3(kSide), box);
+    for (int i = 0; i < kRecords; ++i)
+        records[i].value[Record::Extinction] = box[i];
+}
+
+template <class Record>
+Record interpolated(const Record* records, const vec3& p) {
+    const ivec3 base = glm::min(ivec3(p), ivec3(BrickLattice::kSize - 1));
+    const vec3 f = p - vec3(base);
+    const Record* r = records + (base.x * kSide + base.y) * kSide + base.z;
+    Record out{};
+    for (int k = 0; k < 8; ++k) {
+        const float w = (k & 4 ? f.x : 1 - f.x) * (k & 2 ? f.y : 1 - f.y) * (k & 1 ? f.z : 1 - f.z);
+        const Record& corner = r[((k >> 2) * kSide + (k >> 1 & 1)) * kSide + (k & 1)];
+        for (int i = 0; i < Record::Size; ++i)
+            out.value[i] += w * corner.value[i];
+    }
+    return out;
+}
+
 }  // namespace
 
-CellField::CellField(const Medium& medium, const std::vector<Rgb>& single, const std::vector<Rgb>& multiple)
+CellField::CellField(const Medium& medium, const std::vector<Rgb>& single, const std::vector<Rgb>& multiple,
+                     const Medium* similar)
     : medium_(&medium), direct_(!medium.emission.empty()), bricks_(cell_lattice(medium)) {
     records_.resize(bricks_.brick_count() * kRecords, CellRecord{});
+    similar_.resize(similar ? records_.size() : 0, SimilarRecord{});
     minimum_.resize(bricks_.brick_count());
     majorant_.resize(bricks_.brick_count());
     parallel_for(bricks_.brick_count(), [&](std::size_t b) {
         CellRecord* records = &records_[b * kRecords];
         const ivec3 low = bricks_.first_node(b);
-        std::vector<float> box(kRecords);
-        copy_box(medium.lattice, medium.extinction, 1, low, ivec3(kSide), box);
-        for (int i = 0; i < kRecords; ++i)
-            records[i].value[CellRecord::Extinction] = box[i];
-        const auto [least, greatest] = std::minmax_element(box.begin(), box.end());
-        minimum_[b] = *least;
-        majorant_[b] = *greatest;
+        put_extinction(medium, low, records);
+        const auto by_extinction = [](const CellRecord& p, const CellRecord& q) { return p.value[0] < q.value[0]; };
+        const auto [least, greatest] = std::minmax_element(records, records + kRecords, by_extinction);
+        minimum_[b] = least->value[CellRecord::Extinction];
+        majorant_[b] = greatest->value[CellRecord::Extinction];
         put(medium, direct_ ? medium.emission : medium.source, low, CellRecord::V, records);
         put(medium, single, low, CellRecord::MV, records);
         put(medium, multiple, low, CellRecord::MM, records);
+        if (similar) {
+            put_extinction(*similar, low, &similar_[b * kRecords]);
+            put(*similar, direct_ ? similar->emission : similar->source, low, SimilarRecord::V, &similar_[b * kRecords]);
+        }
         for (int i = 0; i < kRecords; ++i) {
             const ivec3 node = low + ivec3(i / (kSide * kSide), i / kSide % kSide, i % kSide);
             const std::int64_t n = medium.lattice.find_node(node);
@@ -52,17 +80,11 @@ CellField::CellField(const Medium& medium, const std::vector<Rgb>& single, const
 }
 
 CellRecord CellField::sample(std::size_t brick, const vec3& p) const {
-    const ivec3 base = glm::min(ivec3(p), ivec3(BrickLattice::kSize - 1));
-    const vec3 f = p - vec3(base);
-    const CellRecord* r = &records_[brick * kRecords + (base.x * kSide + base.y) * kSide + base.z];
-    CellRecord out{};
-    for (int k = 0; k < 8; ++k) {
-        const float w = (k & 4 ? f.x : 1 - f.x) * (k & 2 ? f.y : 1 - f.y) * (k & 1 ? f.z : 1 - f.z);
-        const CellRecord& corner = r[((k >> 2) * kSide + (k >> 1 & 1)) * kSide + (k & 1)];
-        for (int i = 0; i < CellRecord::Size; ++i)
-            out.value[i] += w * corner.value[i];
-    }
-    return out;
+    return interpolated(&records_[brick * kRecords], p);
+}
+
+SimilarRecord CellField::sample_similar(std::size_t brick, const vec3& p) const {
+    return interpolated(&similar_[brick * kRecords], p);
 }
 
 }  // namespace brisance

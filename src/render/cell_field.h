@@ -18,26 +18,39 @@ struct CellRecord {
     float value[Size];
 };
 
+// Where scattered light was followed through a similar medium (similar_medium.h): its extinction, and its own V.
+struct SimilarRecord {
+    enum Slot { Extinction = 0, V = 1, Size = 4 };
+    float value[Size];
+};
+
 class CellField {
 public:
-    // Source functions per node of the medium's lattice; an empty one is left out.
-    CellField(const Medium& medium, const std::vector<Rgb>& single, const std::vector<Rgb>& multiple);
+    // Source functions per node of the medium's lattice; an empty one is left out. `similar`: what they belong to, if
+    // it is not the medium itself.
+    CellField(const Medium& medium, const std::vector<Rgb>& single, const std::vector<Rgb>& multiple,
+              const Medium* similar = nullptr);
 
     const Medium& medium() const { return *medium_; }
     const BrickLattice& bricks() const { return bricks_; }  // of cells
     bool direct_emission() const { return direct_; }
     float minimum(std::size_t brick) const { return minimum_[brick]; }  // of extinction over the brick's cells
     float majorant(std::size_t brick) const { return majorant_[brick]; }
-    std::uint64_t bytes() const { return records_.size() * sizeof(CellRecord) + bricks_.bytes(); }
+    bool has_similar() const { return !similar_.empty(); }
+    std::uint64_t bytes() const {
+        return records_.size() * sizeof(CellRecord) + similar_.size() * sizeof(SimilarRecord) + bricks_.bytes();
+    }
 
-    // Trilinear sample at p, in nodes from the brick's first node, each coordinate in [0, 8].
+    // Trilinear samples at p, in nodes from the brick's first node, each coordinate in [0, 8].
     CellRecord sample(std::size_t brick, const vec3& p) const;
+    SimilarRecord sample_similar(std::size_t brick, const vec3& p) const;
 
 private:
     const Medium* medium_;
     bool direct_;
     BrickLattice bricks_;
     std::vector<CellRecord> records_;
+    std::vector<SimilarRecord> similar_;  // empty: the medium itself
     std::vector<float> minimum_, majorant_;
 };
 

@@ -18,38 +18,73 @@ float sample_place(int part, int parts) {
     return (part + 0.5f) / parts;
 }
 
-Rgb slot(const CellRecord& r, int at) {
-    return {r.value[at], r.value[at + 1], r.value[at + 2]};
+// What is seen of a thick cell is its near end: sources that vary along it want more parts than extinction does.
+constexpr double kThickCell = 1.0;
+constexpr int kThickCellParts = 8;
+
+Rgb slot(const float* record, int at) {
+    return {record[at], record[at + 1], record[at + 2]};
 }
 
 vec3 sample_position(const CellSegment& s, double t) {
     return glm::clamp(vec3(s.origin + s.direction * t), vec3(0.0f), vec3(float(BrickLattice::kSize)));
 }
 
-// Adds one part of constant coefficients, `length` metres long at `distance`.
-void add_part(RaySum& sum, const CellRecord& r, bool direct, float length, float distance) {
-    const float sigma = r.value[CellRecord::Extinction];
-    const float tau = sigma * length;
-    const float path = std::exp(-sum.depth) * length * phi1(tau);  // integral of T along the part [m]
-    const float opacity = path * sigma;
-    sum.v += slot(r, CellRecord::V) * (direct ? path : opacity);
-    sum.mv += slot(r, CellRecord::MV) * opacity;
-    sum.mm += slot(r, CellRecord::MM) * opacity;
-    sum.albedo_sum += opacity * r.value[CellRecord::Albedo];
-    sum.distance_weight += opacity;
-    sum.distance_sum += opacity * distance;
-    sum.depth += tau;
+// A part of a cell's segment: constant coefficients, `length` metres at `distance`.
+struct Part {
+    CellRecord record;
+    SimilarRecord similar;  // where the field has one
+    float length, distance;
+};
+
+// What such a part shows: the integral of transmittance along it [m], and that times its extinction.
+struct Shown {
+    float path, opacity;
+};
+
+Shown shown(float extinction, float length, float& depth) {
+    const float tau = extinction * length;
+    const float path = std::exp(-depth) * length * phi1(tau);
+    depth += tau;
+    return {path, path * extinction};
 }
 
-// Visits every part of every cell: visit(record, length, distance, direction) until it returns false.
+void add_part(RaySum& sum, const CellField& field, const Part& p) {
+    const float* r = p.record.value;
+    const Shown own = shown(r[CellRecord::Extinction], p.length, sum.depth);
+    const Rgb v = slot(r, CellRecord::V) * (field.direct_emission() ? own.path : own.opacity);
+    Shown scattering = own;
+    if (field.has_similar()) {
+        const float* s = p.similar.value;
+        scattering = shown(s[SimilarRecord::Extinction], p.length, sum.similar_depth);
+        // The similar medium shows more of the fire by what counts as not scattered there.
+        sum.mv +=
+            slot(s, SimilarRecord::V) * (field.direct_emission() ? scattering.path : scattering.opacity) - v;
+    } else {
+        sum.similar_depth = sum.depth;
+    }
+    sum.v += v;
+    sum.mv += slot(r, CellRecord::MV) * scattering.opacity;
+    sum.mm += slot(r, CellRecord::MM) * scattering.opacity;
+    sum.albedo_sum += own.opacity * r[CellRecord::Albedo];
+    sum.distance_weight += own.opacity;
+    sum.distance_sum += own.opacity * p.distance;
+}
+
+// Visits every part of every cell until visit(part) returns false.
 template <class Visit>
 void walk_parts(const CellField& field, const Ray& ray, int parts, const Visit& visit) {
     walk_cells(field, ray, [&](const CellSegment& s) {
         const double length = s.end - s.begin;
-        for (int k = 0; k < parts; ++k) {
-            const double t = s.begin + length * sample_place(k, parts);
-            const CellRecord r = field.sample(s.brick, sample_position(s, t));
-            if (!visit(r, static_cast<float>(length / parts), t))
+        const bool thick = field.majorant(s.brick) * length > kThickCell;
+        const int n = thick ? std::max(parts, kThickCellParts) : parts;
+        for (int k = 0; k < n; ++k) {
+            const double t = s.begin + length * sample_place(k, n);
+            const vec3 p = sample_position(s, t);
+            Part part{field.sample(s.brick, p), {}, static_cast<float>(length / n), static_cast<float>(t)};
+            if (field.has_similar())
+                part.similar = field.sample_similar(s.brick, p);
+            if (!visit(part))
                 return false;
         }
         return true;
@@ -155,11 +190,11 @@ void marched_row(const CellField& field, const Camera& camera, int y, const std:
                 body(x, s, camera.ray(x + 0.5 + s.x, y + 0.5 + s.y));
     };
     for_rays([&](int, const PixelSample&, const Ray& ray) {
-        float depth = 0.0f;
-        walk_parts(field, ray, parts, [&](const CellRecord& r, float length, double t) {
-            points.push_back({vec3(ray.origin + ray.direction * t), -vec3(ray.direction)});
-            depth += r.value[CellRecord::Extinction] * length;
-            return depth < kOpaqueDepth;
+        RaySum sum;
+        walk_parts(field, ray, parts, [&](const Part& part) {
+            points.push_back({vec3(ray.origin + ray.direction * double(part.distance)), -vec3(ray.direction)});
+            add_part(sum, field, part);
+            return sum.similar_depth < kOpaqueDepth;
         });
     });
     std::vector<PointLighting> lighting(points.size());
@@ -168,14 +203,14 @@ void marched_row(const CellField& field, const Camera& camera, int y, const std:
     std::vector<RaySum> row(camera.settings().width);
     for_rays([&](int x, const PixelSample& s, const Ray& ray) {
         RaySum sum;
-        walk_parts(field, ray, parts, [&](CellRecord r, float length, double t) {
+        walk_parts(field, ray, parts, [&](Part part) {
             const PointLighting& l = lighting[next++];
             for (int c = 0; c < 3; ++c) {
-                r.value[CellRecord::MV + c] = l.single[c];
-                r.value[CellRecord::MM + c] = l.multiple[c];
+                part.record.value[CellRecord::MV + c] = l.single[c];
+                part.record.value[CellRecord::MM + c] = l.multiple[c];
             }
-            add_part(sum, r, field.direct_emission(), length, static_cast<float>(t));
-            return sum.depth < kOpaqueDepth;
+            add_part(sum, field, part);
+            return sum.similar_depth < kOpaqueDepth;
         });
         sum.alpha = -std::expm1(-sum.depth);
         add_weighted(row[x], sum, s.weight);
@@ -188,9 +223,9 @@ void marched_row(const CellField& field, const Camera& camera, int y, const std:
 
 RaySum integrate(const CellField& field, const Ray& ray, int parts) {
     RaySum sum;
-    walk_parts(field, ray, parts, [&](const CellRecord& r, float length, double t) {
-        add_part(sum, r, field.direct_emission(), length, static_cast<float>(t));
-        return sum.depth < kOpaqueDepth;
+    walk_parts(field, ray, parts, [&](const Part& part) {
+        add_part(sum, field, part);
+        return sum.similar_depth < kOpaqueDepth;
     });
     sum.alpha = -std::expm1(-sum.depth);
     return sum;

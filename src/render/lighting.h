@@ -34,10 +34,11 @@ public:
 
 private:
     void light_from_fire();
-    std::vector<ScatteredLight> orders_of_scattering(const Gathered& first);
+    ScatteringSolution orders_of_scattering(const Gathered& first);
     void light_from_smoke(const Gathered& first);
-    Gathered gather_last_flight(const HierarchyLights& lights, int order, nlohmann::ordered_json& balances,
-                                std::vector<LevelCost>& costs);
+    void gather_last_flights(ScatteringSolution& solution);
+    Gathered gather_last_flight(const HierarchyLights& lights, const std::vector<float>& node_scale, int order,
+                                nlohmann::ordered_json& balances, std::vector<LevelCost>& costs);
     std::vector<Rgb> source_function(const Gathered& gathered) const;
     bool orders_apart() const { return shot_.output.bounce_layers && !marching(); }
     bool marching() const { return shot_.lighting.gather == GatherMethod::RayMarch; }

@@ -24,7 +24,8 @@ void walk_cells(const CellField& field, const Ray& ray, const Visit& visit) {
 // What one ray sees. Radiance per ledger cell [W/(m^2 sr)].
 struct RaySum {
     Rgb v{0.0f}, mv{0.0f}, mm{0.0f};
-    float depth = 0.0f;            // optical depth of the ray so far
+    float depth = 0.0f;            // optical depth of the ray so far, ...
+    float similar_depth = 0.0f;    // ... in the medium that scattered light was followed through
     float alpha = 0.0f;            // 1 - exp(-depth), set when the ray is done
     float distance_weight = 0.0f;  // opacity gathered, ...
     float distance_sum = 0.0f;     // ... times the distance along the ray [m]

@@ -3,8 +3,10 @@
 #include <sys/resource.h>
 
 #include "core/stopwatch.h"
+#include "medium/similar_medium.h"
 #include "render/camera.h"
 #include "render/cell_field.h"
+#include "render/certify.h"
 #include "render/integrate.h"
 #include "render/lighting.h"
 #include "render/load_medium.h"
@@ -37,7 +39,7 @@ private:
 };
 
 void add_order_layers(Image& image, const CellField& field, const NodeLighting& lighting, const Medium& medium,
-                      const Camera& camera, const PictureSettings& settings, Progress& progress) {
+                      const Medium* similar, const Camera& camera, const PictureSettings& settings, Progress& progress) {
     const auto add = [&](const std::string& name, const Layer& from) {
         Layer layer = from;
         layer.name = name;
@@ -50,7 +52,7 @@ void add_order_layers(Image& image, const CellField& field, const NodeLighting& 
         add("bounce1", settings.cells ? Layer(image.layer("MV")) : picture.layer("MV"));
     }
     for (std::size_t k = 0; k < lighting.orders.size(); ++k) {
-        const CellField order(medium, {}, lighting.orders[k]);
+        const CellField order(medium, {}, lighting.orders[k], similar);
         one.has_single = false;
         const Image picture = render_picture(order, camera, one, {}, progress);
         const bool tail = k + 1 == lighting.orders.size() && k > 0;
@@ -67,14 +69,17 @@ std::uint64_t peak_resident_bytes() {
 Image draw(const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera, Statistics& statistics,
            ImageMetadata& metadata, Progress& progress) {
     std::unique_ptr<Lighting> lighting;
-    if (plan.single)
-        lighting = std::make_unique<Lighting>(shot, plan, medium, camera, statistics, progress);
+    std::optional<Medium> similar;
+    if (plan.single) {
+        similar = similar_medium(medium, shot.scattering.bounces < 0);
+        lighting = std::make_unique<Lighting>(shot, plan, similar ? *similar : medium, camera, statistics, progress);
+    }
     progress.stage("camera");
     const Stopwatch watch;
     const bool marching = shot.lighting.gather == GatherMethod::RayMarch;
     const NodeLighting none;
     const NodeLighting& nodes = lighting && !marching ? lighting->at_nodes() : none;
-    const CellField field(medium, nodes.single, nodes.multiple);
+    const CellField field(medium, nodes.single, nodes.multiple, similar ? &*similar : nullptr);
     PictureSettings settings;
     settings.samples_per_axis =
         camera.settings().samples_per_axis > 0 ? camera.settings().samples_per_axis : automatic_samples(camera, field);
@@ -88,7 +93,7 @@ Image draw(const Shot& shot, const Plan& plan, const Medium& medium, const Camer
     if (shot.output.bounce_layers && marching)
         progress.warning("bounce-layers", "output.layers.bounces needs lighting.gather = cache; left out");
     else if (shot.output.bounce_layers && lighting)
-        add_order_layers(image, field, nodes, medium, camera, settings, progress);
+        add_order_layers(image, field, nodes, medium, similar ? &*similar : nullptr, camera, settings, progress);
     metadata.samples_per_pixel = double(settings.samples_per_axis) * settings.samples_per_axis;
     statistics.stages.push_back(
         {"camera", watch.seconds(), field.bytes(), {{"samples_per_pixel", metadata.samples_per_pixel}}});
@@ -104,6 +109,7 @@ std::string checkpoint_key(Shot shot, const std::filesystem::path& volume, int f
     shot.tracing.free_flight = given.free_flight;
     shot.tracing.transmittance = given.transmittance;
     const bool bounces = shot.output.bounce_layers;
+    shot.certify = CertifySettings{};
     shot.output = OutputSettings{};
     shot.output.bounce_layers = bounces;
     std::error_code ignored;
@@ -116,6 +122,16 @@ std::string joined(const std::vector<std::string>& names) {
     for (const std::string& name : names)
         all += (all.empty() ? "" : "+") + name;
     return all;
+}
+
+void add_certificate(RenderedFrame& out, const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera,
+                     Progress& progress) {
+    const Stopwatch watch;
+    const Certificate certificate = certify(out.image, shot, plan, medium, camera, shot.certify, progress);
+    out.statistics.certificate = certificate.to_json();
+    out.statistics.stages.push_back({"certificate", watch.seconds(), 0, {{"paths", certificate.paths}}});
+    out.metadata.text["brisance/certificate"] = certificate.to_json().dump();
+    progress.notice("certificate: " + certificate.line());
 }
 
 void render_into(RenderedFrame& out, const Shot& shot, const Medium& medium, const Checkpoint& checkpoint,
@@ -133,6 +149,8 @@ void render_into(RenderedFrame& out, const Shot& shot, const Medium& medium, con
     } else {
         out.image = draw(shot, plan, medium, camera, out.statistics, out.metadata, progress);
     }
+    if (shot.certify.enabled)
+        add_certificate(out, shot, plan, medium, camera, progress);
     out.metadata.camera_from_world = camera.camera_from_world();
     out.metadata.vertical_fov_degrees = camera_settings.vertical_fov_degrees;
     out.metadata.text["brisance/cells"] = joined(plan.cells());

@@ -18,6 +18,8 @@ nlohmann::ordered_json Statistics::to_json() const {
             stage["detail"] = s.detail;
         json["stages"].push_back(std::move(stage));
     }
+    if (!certificate.is_null())
+        json["certificate"] = certificate;
     json["warnings"] = warnings;
     json["notices"] = notices;
     json["seconds"] = seconds;

@@ -60,6 +60,12 @@ void check_fire(const Given& given, const FireSettings& fire) {
         reject(given, "fire.modulate_by_flame", "works with fire.model blackbody or blackbody_normalized only");
 }
 
+void check_tracing(const Given& given, const Shot& shot) {
+    const TracingSettings& t = shot.tracing;
+    if (shot.method == RenderMethod::Path && t.samples == 0 && t.seconds <= 0.0 && t.error <= 0.0)
+        reject(given, "tracing.samples", "is none: the render would never end; give tracing.seconds or tracing.error");
+}
+
 }  // namespace
 
 void check_shot(const Shot& shot, const Given& given, const std::string& source) {
@@ -70,6 +76,7 @@ void check_shot(const Shot& shot, const Given& given, const std::string& source)
     else
         check_look_at(given, shot.camera);
     check_fire(given, shot.medium.fire);
+    check_tracing(given, shot);
 }
 
 }  // namespace brisance

@@ -22,6 +22,7 @@ std::vector<Key> all_keys() {
     add_camera_keys(keys);
     add_lighting_keys(keys);
     add_tracing_keys(keys);
+    add_certify_keys(keys);
     add_output_keys(keys);
     for (Key& key : keys)
         key.affects = affected_by(key.path);
@@ -34,7 +35,7 @@ Affects affected_by(const std::string& path) {
     // Leaving out orders of scattering changes what is true.
     if (path == "scattering.bounces")
         return Affects::Picture;
-    for (const char* section : {"lighting.", "scattering.", "tracing.", "output."})
+    for (const char* section : {"lighting.", "scattering.", "tracing.", "certify.", "output."})
         if (path.starts_with(section))
             return Affects::Method;
     for (const char* key : {"$schema", "name", "method", "camera.samples_per_axis"})
@@ -58,6 +59,7 @@ const std::vector<std::pair<std::string, std::string>>& shot_sections() {
         {"lighting", "how the fire's light reaches the smoke"},
         {"scattering", "light scattered more than once"},
         {"tracing", "the reference path tracer (method path)"},
+        {"certify", "how far the finished frame is from the truth"},
         {"output", "what is written"},
         {"output.layers", "layers of the EXR besides the beauty"},
     };

@@ -68,6 +68,7 @@ void add_medium_keys(std::vector<Key>& keys);
 void add_camera_keys(std::vector<Key>& keys);
 void add_lighting_keys(std::vector<Key>& keys);
 void add_tracing_keys(std::vector<Key>& keys);
+void add_certify_keys(std::vector<Key>& keys);
 void add_output_keys(std::vector<Key>& keys);
 
 // All of them, in the order they are written.

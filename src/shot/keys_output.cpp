@@ -34,6 +34,9 @@ void add_output_keys(std::vector<Key>& keys) {
         "output.statistics", "costs and counts as JSON beside the EXR", flag(),
         [](Shot & s) -> auto& { return s.output.statistics; }));
     keys.push_back(make_key(
+        "output.halves", "the path tracer's two independent halves as STEM.A.exr and STEM.B.exr beside the EXR", flag(),
+        [](Shot & s) -> auto& { return s.output.halves; }));
+    keys.push_back(make_key(
         "output.layers.cells", "one layer per kind of light path: V, MV, MM", flag(),
         [](Shot & s) -> auto& { return s.output.cell_layers; }));
     keys.push_back(make_key(

@@ -8,7 +8,8 @@ void add_tracing_keys(std::vector<Key>& keys) {
         choice<RenderMethod>({{"lighting_grid", RenderMethod::LightingGrid}, {"path", RenderMethod::Path}}),
         [](Shot & s) -> auto& { return s.method; }));
     keys.push_back(make_key(
-        "tracing.samples", "paths per pixel; none: until tracing.seconds or tracing.error stops them",
+        "tracing.samples",
+        "camera rays per pixel, each the start of several paths; none: until tracing.seconds or tracing.error",
         or_word(whole(2, 1 << 30), "none", 0), [](Shot & s) -> auto& { return s.tracing.samples; }));
     keys.push_back(make_key(
         "tracing.seconds", "stops after this time, when every pixel has had equally many paths [s]",
@@ -24,8 +25,8 @@ void add_tracing_keys(std::vector<Key>& keys) {
         choice<EmissionEstimator>({{"line", EmissionEstimator::Line}, {"collision", EmissionEstimator::Collision}}),
         [](Shot & s) -> auto& { return s.tracing.emission; }));
     keys.push_back(make_key(
-        "tracing.light_sampling", "rays toward the fire at every scattering", flag(),
-        [](Shot & s) -> auto& { return s.tracing.light_sampling; }));
+        "tracing.light_sampling", "lines toward the fire where the smoke is thin, with multiple importance sampling",
+        flag(), [](Shot & s) -> auto& { return s.tracing.light_sampling; }));
     keys.push_back(make_key(
         "tracing.free_flight", "how the next scattering is found",
         choice<FreeFlight>({{"exact", FreeFlight::Exact}, {"null_collision", FreeFlight::NullCollision}}),

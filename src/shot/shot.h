@@ -8,6 +8,7 @@
 #include "gathering/settings.h"
 #include "medium/settings.h"
 #include "render/camera_settings.h"
+#include "render/certify_settings.h"
 #include "tracing/settings.h"
 #include "volume/settings.h"
 
@@ -30,6 +31,7 @@ struct Shot {
     LightingSettings lighting;
     ScatteringSettings scattering;
     TracingSettings tracing;
+    CertifySettings certify;
     OutputSettings output;
 };
 

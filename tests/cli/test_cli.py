@@ -10,6 +10,7 @@ import pty
 import resource
 import shutil
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -101,7 +102,10 @@ class CommandLine(Case):
                           ["render", "a.json", "b.json"], ["render", "a.json", "--preset", "fast"],
                           ["render", "a.json", "--progress", "loud"],
                           ["render", "a.json", "--threads", "-1"], ["render", "a.json", "--threads", "two"],
-                          ["inspect"], ["schema", "extra"]):
+                          ["inspect"], ["schema", "extra"], ["compare"], ["compare", "a.exr"],
+                          ["compare", "a.exr", "b.exr", "c.exr", "d.exr"],
+                          ["compare", "a.exr", "b.exr", "--cells", "--layers", "V"],
+                          ["compare", "a.exr", "b.exr", "--pixels-per-degree", "0"]):
             self.expect(2, *arguments)
 
     def test_schema_is_the_committed_one(self):
@@ -317,6 +321,170 @@ class Rendering(VolumeCase):
                 process.communicate(timeout=60)
             self.assertEqual(process.returncode, code)
             self.assertEqual(self.outputs(), [])
+
+
+def write_exr(path, width, height, **channels):
+    """An uncompressed float EXR, as another renderer writes it; channels are functions of x and y."""
+    def attribute(name, kind, value):
+        return name.encode() + b"\0" + kind.encode() + b"\0" + struct.pack("<i", len(value)) + value
+
+    names = sorted(channels)
+    kinds = b"".join(name.encode() + b"\0" + struct.pack("<iBxxxii", 2, 0, 1, 1) for name in names) + b"\0"
+    window = struct.pack("<iiii", 0, 0, width - 1, height - 1)
+    header = struct.pack("<ii", 20000630, 2) + b"".join([
+        attribute("channels", "chlist", kinds), attribute("compression", "compression", b"\0"),
+        attribute("dataWindow", "box2i", window), attribute("displayWindow", "box2i", window),
+        attribute("lineOrder", "lineOrder", b"\0"), attribute("pixelAspectRatio", "float", struct.pack("<f", 1)),
+        attribute("screenWindowCenter", "v2f", struct.pack("<ff", 0, 0)),
+        attribute("screenWindowWidth", "float", struct.pack("<f", 1))]) + b"\0"
+    line = 8 + 4 * width * len(names)
+    offsets = struct.pack(f"<{height}Q", *(len(header) + 8 * height + line * y for y in range(height)))
+    lines = b"".join(
+        struct.pack("<ii", y, line - 8) +
+        b"".join(struct.pack(f"<{width}f", *(channels[name](x, y) for x in range(width))) for name in names)
+        for y in range(height))
+    path.write_bytes(header + offsets + lines)
+
+
+class Compare(VolumeCase):
+    SIZE = (24, 16)
+
+    def gray(self, name, value):
+        write_exr(self.folder / name, *self.SIZE, Y=value)
+        return name
+
+    def numbers(self, *arguments, code=0):
+        """Standard output as JSON."""
+        return json.loads(self.expect(code, "compare", *arguments, "--json").stdout)
+
+    def layers(self, *arguments):
+        frame, = self.numbers(*arguments)["frames"]
+        return {layer["layer"]: layer for layer in frame["layers"]}
+
+    def render(self, name, *options, look=SMALL):
+        self.expect(0, "render", self.volume, *look, "--set", "output.png=false", "--set", "output.statistics=false",
+                    "-o", self.folder / name, *options)
+        return name
+
+    def test_an_image_is_itself(self):
+        image = self.render("a.exr", look=LIT)
+        for layer in self.layers(image, image, "--cells").values():
+            for measure in ("rrmse", "relmse", "mape", "mean", "flip"):
+                self.assertEqual(layer[measure], 0)
+        self.assertIn("flip", self.expect(0, "compare", image, image).stdout)
+
+    def test_other_methods_compare_and_other_scenes_do_not(self):
+        image = self.render("a.exr", look=LIT)
+        other_method = self.render("b.exr", "--set", "lighting.shadows=none", "--set", "name=b", look=LIT)
+        layers = self.layers(image, other_method, "--cells", "--fail-above", "rrmse=1000")
+        self.assertGreater(layers["MV"]["rrmse"], 0.01)
+        self.assertEqual(layers["V"]["rrmse"], 0)
+        other_scene = self.render("c.exr", "--set", "smoke.mean_cosine=0.25", "--set", "fire.strength=7", look=LIT)
+        self.expect(65, "compare", image, other_scene,
+                    says=["a.exr and c.exr show different shots", "smoke.mean_cosine: ", " against 0.25; ",
+                          "fire.strength: ", "--force"])
+        forced = self.expect(0, "compare", image, other_scene, "--force", "--json", says="notice: a.exr and c.exr")
+        self.assertIn("smoke.mean_cosine", json.loads(forced.stdout)["overruled_differences"][0])
+
+    def test_frames_are_told_apart(self):
+        pattern = self.make_sequence([1, 2])
+        for frame in (1, 2):
+            self.expect(0, "render", pattern, *SMALL, "-f", frame, "-o", f"{frame}.exr")
+        self.expect(65, "compare", "1.exr", "2.exr", says="frame: 1 against 2")
+        self.expect(0, "compare", "1.exr", "2.exr", "--force")
+
+    def test_layers(self):
+        image = self.render("a.exr", look=LIT)
+        self.assertEqual(self.layers(image, image, "--layers", "V+MV")["V+MV"]["rrmse"], 0)
+        self.expect(65, "compare", image, image, "--layers", "V+MM", says="a.exr has no layer MM; it has beauty, ")
+        reference = self.gray("y.exr", lambda x, y: 1)
+        self.expect(65, "compare", reference, reference, "--cells", says="no layers besides the beauty")
+
+    def test_sizes_and_shots_are_complained_of_in_one_line(self):
+        image = self.render("a.exr")
+        larger = self.render("b.exr", "--set", "camera.width=20", "--set", "smoke.mean_cosine=0.25")
+        done = self.expect(65, "compare", image, larger,
+                           says=["a.exr is 16 x 12 pixels, b.exr 20 x 12; ", "smoke.mean_cosine", "camera.width"])
+        self.assertEqual(done.stderr.count("\n"), 1)
+        self.expect(65, "compare", image, larger, "--force", says="16 x 12")
+
+    def test_gray_halves_of_another_renderer(self):
+        # Checkerboards of +-10 %, one of columns and one of rows: independent of each other and of the image.
+        image = self.folder / "image.exr"
+        write_exr(image, *self.SIZE, R=lambda x, y: 1.02, G=lambda x, y: 1.02, B=lambda x, y: 1.02)
+        halves = [self.gray("a.exr", lambda x, y: 1.1 if x % 2 else 0.9),
+                  self.gray("b.exr", lambda x, y: 1.1 if y % 2 else 0.9)]
+        layer = self.layers(image, *halves)["beauty"]
+        self.assertAlmostEqual(layer["noise_free"], 0.02, places=4)
+        self.assertAlmostEqual(layer["mean"], 0.02, places=5)
+        self.assertAlmostEqual(layer["reference_noise"], 0.1 / 2**0.5, places=3)
+        self.assertGreater(layer["rrmse"], 0.07)
+        self.assertTrue(layer["below_noise"])
+        done = self.expect(0, "compare", image, *halves, says="without a shot of Brisance")
+        self.assertIn("below 2 times the reference's noise", done.stdout)
+        self.expect(65, "compare", image, halves[0], halves[0], says="no independent halves")
+
+    def test_pixels_that_are_no_numbers_never_pass(self):
+        reference = self.gray("a.exr", lambda x, y: 1)
+        image = self.gray("b.exr", lambda x, y: float("nan") if x == 3 and y < 2 else 1)
+        done = self.expect(1, "compare", image, reference, "--fail-above", "rrmse=0.5",
+                           says="2 pixels that are not finite")
+        self.assertIn("NOT FINITE: 2 pixels of the image and 0 of the reference", done.stdout)
+        layer = self.layers(image, reference)["beauty"]
+        self.assertEqual(layer["not_finite_pixels"], {"image": 2, "reference": 0})
+        self.assertEqual(layer["rrmse"], 0)
+        self.assertGreaterEqual(layer["flip"], 2 / (24 * 16))
+
+    def test_limits(self):
+        reference = self.gray("a.exr", lambda x, y: 1)
+        image = self.gray("b.exr", lambda x, y: 0.9)
+        self.expect(0, "compare", image, reference, "--fail-above", "rrmse=0.11", "--fail-above", "mean=0.11")
+        self.expect(1, "compare", image, reference, "--fail-above", "mean=0.09",
+                    says="mean of beauty is -0.1, above 0.09")
+        result = self.numbers(image, reference, "--fail-above", "rrmse=0.09", "--fail-above", "flip=1", code=1)
+        self.assertEqual(len(result["exceeded"]), 1)
+        black = self.gray("c.exr", lambda x, y: 0)
+        self.expect(1, "compare", image, black, "--fail-above", "rrmse=1e300", says="is inf")
+        self.assertIsNone(self.layers(image, black)["beauty"]["rrmse"])
+        for wrong in ("rrmse", "rmse=1", "rrmse=x", "rrmse=-1", "rrmse=0.1x", "temporal=1", "noise_free=1"):
+            self.expect(2, "compare", image, reference, "--fail-above", wrong, says=f"--fail-above {wrong}: ")
+
+    def test_map_of_errors(self):
+        reference = self.gray("a.exr", lambda x, y: 1)
+        image = self.gray("b.exr", lambda x, y: 0.5 if x < 12 else 1)
+        self.expect(0, "compare", image, reference, "--flip-map", "map.png")
+        self.assertEqual((self.folder / "map.png").read_bytes()[:4], b"\x89PNG")
+        self.expect(2, "compare", image, reference, "--flip-map", "map.exr", says=".png")
+        self.expect(73, "compare", image, reference, "--flip-map", "absent/map.png", says="absent")
+
+    def test_sequences(self):
+        for frame in (1, 2, 3):
+            self.gray(f"r.{frame:02}.exr", lambda x, y, t=frame: 1 + 0.1 * t * x)
+            self.gray(f"frozen.{frame:02}.exr", lambda x, y: 1.5)
+            self.gray(f"offset.{frame:02}.exr", lambda x, y, t=frame: 1.5 + 0.1 * t * x)
+        frozen = self.numbers("frozen.##.exr", "r.##.exr")
+        self.assertEqual([frame["frame"] for frame in frozen["frames"]], [1, 2, 3])
+        self.assertEqual([(c["from"], c["to"]) for c in frozen["changes"]], [(1, 2), (2, 3)])
+        for change in frozen["changes"]:
+            self.assertAlmostEqual(change["layers"][0]["temporal"], 1)
+        offset = self.numbers("offset.##.exr", "r.##.exr", "-f", "1-3x2", "--flip-map", "map.#.png")
+        self.assertLess(offset["changes"][0]["layers"][0]["temporal"], 1e-5)
+        self.assertGreater(offset["frames"][0]["layers"][0]["rrmse"], 0.1)
+        self.assertEqual([name for name in self.names() if name.endswith("png")], ["map.1.png", "map.3.png"])
+        self.assertIn("1-2", self.expect(0, "compare", "frozen.##.exr", "r.##.exr").stdout)
+        self.expect(1, "compare", "frozen.##.exr", "r.##.exr", "--fail-above", "temporal=0.5",
+                    says="temporal of beauty from frame 1 to 2 is 1, above 0.5")
+        self.expect(2, "compare", "frozen.##.exr", "r.01.exr", says="####")
+        self.expect(2, "compare", "frozen.##.exr", "r.##.exr", "--flip-map", "map.png", says="####")
+        (self.folder / "r.02.exr").unlink()
+        self.expect(66, "compare", "frozen.##.exr", "r.##.exr", says="frame 2")
+
+    def test_files_that_cannot_be_read(self):
+        reference = self.gray("a.exr", lambda x, y: 1)
+        self.write("text.exr", "no picture")
+        self.expect(66, "compare", reference, "absent.exr", says="absent.exr: no such file")
+        self.expect(66, "compare", "absent.exr", reference, says="absent.exr")
+        self.expect(65, "compare", reference, "text.exr", says="text.exr: it is not an OpenEXR file")
 
 
 class RealFiles(Case):

@@ -10,12 +10,18 @@
 #include <new>
 #include <string>
 
+#include "compare_command.h"
+#include "compare_report.h"
 #include "core/error.h"
 #include "film/whole_file.h"
 #include "inspect.h"
 #include "render_command.h"
 #include "shot/read_shot.h"
 #include "shot/write_shot.h"
+#include "trace_path_command.h"
+#ifdef BRISANCE_REPORT
+#include "report_command.h"
+#endif
 
 namespace {
 
@@ -23,9 +29,10 @@ using namespace brisance;
 
 constexpr const char* kExitCodes = R"(Exit codes:
   0    all frames written
-  1    rendering failed
+  1    rendering failed; a measure of compare is above its --fail-above
   2    command line or shot file: unknown key, wrong type, value out of range
-  65   a file exists but cannot be used: not a VDB, truncated, no usable grid
+  65   a file exists but cannot be used: not a VDB, truncated, no usable grid; images that do not compare;
+       a checkpoint of another render
   66   a file or frame is not there
   73   the output folder or file cannot be made
   74   writing failed half way: the disk is full
@@ -54,16 +61,13 @@ void install_signal_handlers() {
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
-void add_shot_options(CLI::App& command, RenderOptions& options) {
+// What every command that renders takes.
+template <class Options>
+void add_common_options(CLI::App& command, Options& options) {
     static const std::map<std::string, ProgressStyle> styles = {{"auto", ProgressStyle::Automatic},
                                                                 {"tty", ProgressStyle::Bar},
                                                                 {"plain", ProgressStyle::Plain},
                                                                 {"none", ProgressStyle::None}};
-    command.add_option("SHOT_OR_VDB", options.input, "A shot (JSON), or a .vdb with or without frame token (####)")
-        ->required();
-    command.add_option("-o,--output", options.output,
-                       "The EXR, with #### for the frame number, or a folder; PNG and statistics go beside it");
-    command.add_option("-f,--frames", options.frames, "Frames: 1001-1100x2,1200; without it, all that are on disk");
     command.add_option("--set", options.overrides, "Overrides one key of the shot: --set smoke.albedo=0.9; repeatable")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
@@ -74,7 +78,117 @@ void add_shot_options(CLI::App& command, RenderOptions& options) {
     command.add_option("--progress", options.progress, "auto, tty (bar), plain (lines) or none")
         ->transform(CLI::CheckedTransformer(styles).description(""))
         ->type_name("STYLE");
+}
+
+void add_shot_options(CLI::App& command, RenderOptions& options) {
+    command.add_option("SHOT_OR_VDB", options.input, "A shot (JSON), or a .vdb with or without frame token (####)")
+        ->required();
+    command.add_option("-o,--output", options.output,
+                       "The EXR, with #### for the frame number, or a folder; PNG and statistics go beside it");
+    command.add_option("-f,--frames", options.frames, "Frames: 1001-1100x2,1200; without it, all that are on disk");
+    command.add_option("--method", options.method, "lighting_grid or path: the same as --set method=...")
+        ->check(CLI::IsMember({"lighting_grid", "path"}))
+        ->type_name("METHOD");
+    add_common_options(command, options);
     command.add_flag("--keep-going", options.keep_going, "A frame that fails does not stop the others");
+}
+
+void add_compare_options(CLI::App& command, CompareOptions& options) {
+    command.add_option("IMAGE", options.image, "The EXR to judge, with or without frame token (####)")->required();
+    command
+        .add_option("REFERENCE", options.references,
+                    "The EXR it should be, or two independent halves of it: their noise is then known, and taken out")
+        ->required()
+        ->expected(1, 2);
+    command.add_option("-f,--frames", options.frames, "Frames: 1001-1100x2,1200; without it, all of IMAGE on disk");
+    CLI::Option* const cells =
+        command.add_flag("--cells", options.cells, "Each layer that all have: V, MV, MM, bounce1, ...");
+    command
+        .add_option("--layers", options.layers,
+                    "A layer, or a sum of layers (V+MV), instead of the beauty; an EXR of one layer stands for it")
+        ->excludes(cells);
+    command.add_flag("--json", options.as_json, "As JSON");
+    command.add_option("--flip-map", options.flip_map,
+                       "A PNG of the errors that HDR-FLIP sees: black 0, violet, red, pale yellow 1");
+    command
+        .add_option("--fail-above", options.limits,
+                    fmt::format("Exit code 1 when a measure is larger, or has pixels that are not finite; repeatable; "
+                                "measures: {}",
+                                fmt::join(metric_names(), ", ")))
+        ->type_name("METRIC=VALUE")
+        ->allow_extra_args(false);
+    command.add_option("--pixels-per-degree", options.pixels_per_degree, "How closely HDR-FLIP looks; default 67")
+        ->check(CLI::Range(1.0, 1000.0));
+    command.add_flag("--force", options.force, "Compares images of different shots or frames");
+}
+
+#ifdef BRISANCE_REPORT
+void add_report_options(CLI::App& command, ReportOptions& options) {
+    command.add_option("SHOT_OR_VDB", options.input, "A shot (JSON), or a .vdb with or without frame token (####)")
+        ->required();
+    command.add_option("-o,--output", options.output, "The page; CSV and JSON go beside it; default report.html");
+    command.add_option("-f,--frame", options.frame, "The frame; without it, the only one on disk");
+    command
+        .add_option("--methods", options.methods.methods,
+                    fmt::format("NAME, or LABEL=NAME, and settings: exact=path,tracing.free_flight=exact; "
+                                "names: {}; default: lighting_grid path",
+                                fmt::join(built_in_methods(), ", ")))
+        ->type_name("METHOD ...");
+    command
+        .add_option("--budgets", options.methods.budgets,
+                    "Paths per pixel of the path methods: 4,16,64,256; of one method alone: path:16,64; steps 1 to 4, "
+                    "from coarse to fine, of the other one: lighting_grid:2,3")
+        ->type_name("[METHOD:]LIST ...");
+    command
+        .add_option("--ladder", options.methods.ladders,
+                    "Steps of a method's own: lighting_grid:lighting.alpha=1,2,3; several keys go side by side")
+        ->type_name("METHOD:KEY=LIST ...");
+    CLI::Option* const reference =
+        command
+            .add_option("--reference", options.references,
+                        "An EXR, or two independent halves, instead of a reference made for the report")
+            ->expected(1, 2);
+    command
+        .add_option("--reference-samples", options.reference_samples,
+                    "Paths per pixel of the reference; default: 1024, or four times the largest budget")
+        ->check(CLI::Range(4, 1 << 30))
+        ->excludes(reference);
+    command.add_option("--reference-seconds", options.reference_seconds, "Ends the reference after this time [s]")
+        ->check(CLI::PositiveNumber)
+        ->excludes(reference);
+    command.add_option("--repeats", options.repeats, "Renders each step so often; its time is the median")
+        ->check(CLI::Range(1, 1000));
+    command.add_option("--exposures", options.exposures, "Of the page's pictures, beside the shot's [stops]: -3,0,3")
+        ->delimiter(',')
+        ->allow_extra_args(false);
+    command.add_option("--picture-width", options.picture_width, "Of the page's pictures, at most [pixels]: 480")
+        ->check(CLI::Range(16, 16384));
+    add_common_options(command, options);
+}
+#endif
+
+void add_render_options(CLI::App& command, RenderOptions& options) {
+    add_shot_options(command, options);
+    command.add_option("--checkpoint", options.checkpoint,
+                       "Method path: keeps the state of the render in this file, with #### for the frame number, every "
+                       "tracing.checkpoint_seconds, and goes on from it where it exists: after being stopped, or for "
+                       "more paths than before. Its picture has the same bits as that of one uninterrupted render")
+        ->type_name("FILE");
+    command.add_flag("--certify", options.certify,
+                     "Estimates the finished picture's error against the truth, with 95 % confidence intervals, from "
+                     "certify.paths unbiased paths: on standard error, in the statistics and in the EXR's header");
+    command.add_flag("--explain", options.explain, "Prints what ran, what was left out and why, and what it cost");
+    command.add_flag("--print-config", options.print_config, "Prints the resolved shot instead of rendering");
+}
+
+void add_trace_path_options(CLI::App& command, TracePathOptions& options) {
+    command.add_option("SHOT_OR_VDB", options.input, "A shot (JSON), or a .vdb with or without frame token (####)")
+        ->required();
+    command.add_option("X", options.x, "The pixel's column, from 0 at the left")->required();
+    command.add_option("Y", options.y, "The pixel's row, from 0 at the top")->required();
+    command.add_option("SAMPLE", options.sample, "The path's number in its pixel, from 0")->required();
+    command.add_option("-f,--frame", options.frames, "The frame; without it, the only one on disk");
+    add_common_options(command, options);
 }
 
 int run(int argc, char** argv) {
@@ -85,9 +199,7 @@ int run(int argc, char** argv) {
 
     RenderOptions options;
     CLI::App* const render = app.add_subcommand("render", "Renders a shot, or a bare .vdb, to OpenEXR");
-    add_shot_options(*render, options);
-    render->add_flag("--explain", options.explain, "Prints what ran, what was left out and why, and what it cost");
-    render->add_flag("--print-config", options.print_config, "Prints the resolved shot instead of rendering");
+    add_render_options(*render, options);
     render->footer(kExitCodes);
 
     CLI::App* const plan = app.add_subcommand("plan", "Prints what a render would read, run and leave out");
@@ -98,6 +210,24 @@ int run(int argc, char** argv) {
     CLI::App* const inspect = app.add_subcommand("inspect", "Prints a .vdb file's grids and suggests a shot");
     inspect->add_option("FILE", file, "The .vdb file")->required();
     inspect->add_flag("--json", as_json, "As JSON");
+
+    CompareOptions comparison;
+    CLI::App* const compare = app.add_subcommand("compare", "Measures how far an EXR is from a reference");
+    add_compare_options(*compare, comparison);
+    compare->footer(kExitCodes);
+
+#ifdef BRISANCE_REPORT
+    ReportOptions reported;
+    CLI::App* const report = app.add_subcommand("report", "Measures methods against a reference: page, CSV and JSON");
+    add_report_options(*report, reported);
+    report->footer(kExitCodes);
+    reported.command_line = {"brisance"};
+    reported.command_line.insert(reported.command_line.end(), argv + 1, argv + argc);
+#endif
+
+    TracePathOptions traced;
+    CLI::App* const trace_path = app.add_subcommand("trace-path", "Prints one path of method path, to find its faults");
+    add_trace_path_options(*trace_path, traced);
 
     bool keys = false;
     CLI::App* const schema = app.add_subcommand("schema", "Prints the JSON Schema of shots");
@@ -114,6 +244,14 @@ int run(int argc, char** argv) {
         return run_plan(options);
     if (inspect->parsed())
         return run_inspect(file, as_json);
+    if (compare->parsed())
+        return run_compare(comparison);
+    if (trace_path->parsed())
+        return run_trace_path(traced);
+#ifdef BRISANCE_REPORT
+    if (report->parsed())
+        return run_report(reported);
+#endif
     std::fputs((keys ? shot_keys_text() : shot_schema()).c_str(), stdout);
     return static_cast<int>(ExitCode::Success);
 }

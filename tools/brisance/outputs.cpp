@@ -37,10 +37,18 @@ std::string output_pattern(const Shot& shot, const std::string& asked, bool seve
     return path.string();
 }
 
+std::vector<fs::path> files_of(const FrameOutput& output) {
+    std::vector<fs::path> files;
+    for (const fs::path& file : {output.exr, output.png, output.statistics, output.halves[0], output.halves[1]})
+        if (!file.empty())
+            files.push_back(file);
+    return files;
+}
+
 void refuse_overwriting(const FrameOutput& output, const fs::path& input) {
-    for (const fs::path& file : {output.exr, output.png, output.statistics}) {
+    for (const fs::path& file : files_of(output)) {
         std::error_code error;
-        if (!file.empty() && fs::equivalent(file, input, error))
+        if (fs::equivalent(file, input, error))
             throw Error(ExitCode::Usage,
                         fmt::format("{} is read and would be overwritten; choose another -o", file.string()));
     }
@@ -60,17 +68,46 @@ std::vector<FrameOutput> plan_outputs(const Shot& shot, const std::string& asked
             output.png = fs::path(output.exr).replace_extension(".png");
         if (shot.output.statistics)
             output.statistics = fs::path(output.exr).replace_extension(".stats.json");
+        if (shot.output.halves)
+            output.halves = {fs::path(output.exr).replace_extension(".A.exr"),
+                             fs::path(output.exr).replace_extension(".B.exr")};
         const auto [other, first] = frame_of.emplace(output.exr, frame.frame);
         if (!first)
             throw Error(ExitCode::Usage, fmt::format("frames {} and {} would both be written to {}", other->second,
                                                      frame.frame, output.exr.string()));
         refuse_overwriting(output, input);
-        for (const fs::path& file : {output.exr, output.png, output.statistics})
-            if (!file.empty())
-                check_writable(file);
+        for (const fs::path& file : files_of(output))
+            check_writable(file);
         outputs.push_back(output);
     }
     return outputs;
+}
+
+std::vector<fs::path> plan_checkpoints(const Shot& shot, const std::string& asked, const std::vector<FrameFile>& frames,
+                                       const std::vector<FrameOutput>& outputs, const fs::path& input) {
+    std::vector<fs::path> checkpoints(frames.size());
+    if (asked.empty())
+        return checkpoints;
+    if (shot.method != RenderMethod::Path)
+        throw Error(ExitCode::Usage, "--checkpoint keeps the state of the path tracer; give --method path with it");
+    if (frames.size() > 1 && !has_frame_token(asked))
+        throw Error(ExitCode::Usage, fmt::format("--checkpoint: several frames would be kept in {}; put #### where the "
+                                                 "frame number goes",
+                                                 asked));
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        checkpoints[i] = expand(asked, frames[i].frame);
+        std::vector<fs::path> taken = files_of(outputs[i]);
+        taken.insert(taken.end(), {input, frames[i].file});
+        for (const fs::path& file : taken) {
+            std::error_code error;
+            if (file.lexically_normal() == checkpoints[i].lexically_normal() ||
+                fs::equivalent(file, checkpoints[i], error))
+                throw Error(ExitCode::Usage, fmt::format("--checkpoint: {} is something else; choose another file",
+                                                         checkpoints[i].string()));
+        }
+        check_writable(checkpoints[i]);
+    }
+    return checkpoints;
 }
 
 }  // namespace brisance

@@ -1,6 +1,7 @@
 // Where the files of each frame go.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -12,8 +13,9 @@ namespace brisance {
 
 struct FrameOutput {
     std::filesystem::path exr;
-    std::filesystem::path png;         // empty: not wanted
-    std::filesystem::path statistics;  // STEM.stats.json; empty: not wanted
+    std::filesystem::path png;                    // empty: not wanted
+    std::filesystem::path statistics;             // STEM.stats.json; empty: not wanted
+    std::array<std::filesystem::path, 2> halves;  // STEM.A.exr and STEM.B.exr; empty: not wanted
 };
 
 // One output for each frame. `asked`: the EXR of the command line, or a folder for it, relative to the current folder;
@@ -22,5 +24,13 @@ struct FrameOutput {
 // overwritten), CannotCreate or OutputFailed when a folder is missing or cannot be written into.
 std::vector<FrameOutput> plan_outputs(const Shot& shot, const std::string& asked, const std::vector<FrameFile>& frames,
                                       const std::filesystem::path& input);
+
+// One checkpoint for each frame: `asked` with the frame's number in it, or nothing for all when it is empty. Throws
+// Error Usage (no frame token for several frames; the method keeps none; it is a file that is read or written as
+// something else), CannotCreate or OutputFailed as plan_outputs.
+std::vector<std::filesystem::path> plan_checkpoints(const Shot& shot, const std::string& asked,
+                                                    const std::vector<FrameFile>& frames,
+                                                    const std::vector<FrameOutput>& outputs,
+                                                    const std::filesystem::path& input);
 
 }  // namespace brisance

@@ -30,7 +30,12 @@ struct Failures {
 };
 
 Shot load(const RenderOptions& options, Progress& progress) {
-    return load_shot(options.input, {options.preset, options.overrides}, progress);
+    ShotOptions layers{options.preset, options.overrides};
+    if (!options.method.empty())
+        layers.overrides.insert(layers.overrides.begin(), "method=" + options.method);
+    if (options.certify)
+        layers.overrides.emplace_back("certify.enabled=true");
+    return load_shot(options.input, layers, progress);
 }
 
 // Runs `work`; what it throws becomes a line and is counted. Returns whether it came to its end.
@@ -145,6 +150,24 @@ void announce(const fs::path& file) {
     std::fflush(stdout);
 }
 
+// Their mean is the picture, their difference tells its noise; what is certified is the picture.
+void write_halves(const RenderedFrame& frame, const FrameOutput& output, Progress& progress) {
+    if (output.halves[0].empty())
+        return;
+    if (frame.halves.size() != output.halves.size()) {
+        progress.warning("halves", "output.halves: only method path has halves; none are written");
+        return;
+    }
+    for (std::size_t half = 0; half < output.halves.size(); ++half) {
+        ImageMetadata metadata = frame.metadata;
+        metadata.samples_per_pixel /= 2.0;
+        metadata.text.erase("brisance/certificate");
+        metadata.text["brisance/half"] = half == 0 ? "A" : "B";
+        write_exr(output.halves[half], frame.halves[half], metadata);
+        announce(output.halves[half]);
+    }
+}
+
 void write_frame(RenderedFrame& frame, const Shot& shot, const fs::path& volume, const FrameOutput& output,
                  PngExposure& png_exposure, TextProgress& progress) {
     progress.stage("writing");
@@ -155,6 +178,7 @@ void write_frame(RenderedFrame& frame, const Shot& shot, const fs::path& volume,
         progress.warning("exr-range", trouble);
         frame.statistics.warnings.push_back("exr-range: " + trouble);
     }
+    write_halves(frame, output, progress);
     std::optional<float> exposure;
     if (!output.png.empty()) {
         exposure = png_exposure.of(frame.image, progress);
@@ -181,12 +205,14 @@ int run_render(const RenderOptions& options) {
     Failures failures;
     const std::vector<FrameFile> frames = usable_frames(volume_pattern(shot), options, progress, failures);
     const std::vector<FrameOutput> outputs = plan_outputs(shot, options.output, frames, options.input);
+    const std::vector<fs::path> checkpoints =
+        plan_checkpoints(shot, options.checkpoint, frames, outputs, options.input);
     PngExposure exposure(shot);
     for (std::size_t i = 0; i < frames.size(); ++i) {
         const FrameFile& frame = frames[i];
         progress.begin_frame(frame.frame, frame.file.string(), i, frames.size());
         const auto work = [&] {
-            RenderedFrame rendered = render_frame(shot, frame.file, frame.frame, progress);
+            RenderedFrame rendered = render_frame(shot, frame.file, frame.frame, progress, checkpoints[i]);
             write_frame(rendered, shot, frame.file, outputs[i], exposure, progress);
             if (options.explain)
                 progress.say(without_last_newline(rendered.statistics.explain()));

@@ -13,8 +13,11 @@ struct RenderOptions {
     std::string output;  // -o; empty: the shot's, or by name
     std::string frames;  // -f; empty: those on disk
     std::string preset;
+    std::string method;  // of rendering; empty: the shot's
     std::vector<std::string> overrides;
-    int threads = 0;  // 0: all processors
+    std::string checkpoint;  // where the state of a long render is kept, and taken up; empty: nowhere
+    bool certify = false;    // also where the shot does not ask for it
+    int threads = 0;         // 0: all processors
     bool explain = false;
     bool print_config = false;
     bool keep_going = false;

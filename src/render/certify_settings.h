@@ -1,0 +1,12 @@
+// What a certificate may cost.
+#pragma once
+
+namespace brisance {
+
+struct CertifySettings {
+    bool enabled = false;  // estimate the finished frame's error
+    int paths = 1 << 19;   // in all, whatever the picture's size
+    int seed = 0;          // other seeds choose other pixels and other paths
+};
+
+}  // namespace brisance

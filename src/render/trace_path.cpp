@@ -1,0 +1,38 @@
+#include "render/trace_path.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "render/camera.h"
+#include "render/load_medium.h"
+#include "render/trace_picture.h"
+
+namespace brisance {
+
+bool TracedPath::finite() const {
+    return std::all_of(orders.begin(), orders.end(),
+                       [](const Rgb& c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); });
+}
+
+TracedPath trace_path(const Shot& shot, const std::filesystem::path& volume, int x, int y, std::uint64_t sample,
+                      Progress& progress) {
+    if (x < 0 || y < 0 || x >= shot.camera.width || y >= shot.camera.height)
+        throw Error(ExitCode::Usage, "pixel " + std::to_string(x) + " " + std::to_string(y) +
+                                         " is outside of the picture, which has " + std::to_string(shot.camera.width) +
+                                         " x " + std::to_string(shot.camera.height));
+    Statistics statistics;
+    const Medium medium = load_medium(shot, volume, statistics, progress);
+    const Camera camera(shot.camera_given ? shot.camera : framed_camera(medium, shot.camera), medium);
+    const PathTracer tracer(medium, shot.tracing, shot.scattering.bounces);
+    const std::size_t pixel = std::size_t(y) * shot.camera.width + x;
+    TracedPath out;
+    PathStatistics counts;
+    out.orders = trace_sample(tracer, camera, pixel, sample, counts);
+    out.scatterings = counts.scatterings;
+    const Ray local = sample_ray(camera, pixel, sample);
+    out.ray = {dvec3(glm::inverse(camera.camera_from_world())[3]), local.direction};  // local space is not turned
+    return out;
+}
+
+}  // namespace brisance

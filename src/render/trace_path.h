@@ -1,0 +1,26 @@
+// One path of a picture, to see what it did.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "core/progress.h"
+#include "medium/cell_walk.h"
+#include "shot/shot.h"
+#include "tracing/path_tracer.h"
+
+namespace brisance {
+
+struct TracedPath {
+    Ray ray;                        // of the camera, through the pixel; world space [m]
+    PathSum orders{};               // what it brings, by the number of scatterings [W/(m^2 sr)]
+    std::uint64_t scatterings = 0;  // followed; more than orders may hold
+    bool finite() const;
+};
+
+// The path that method path gives number `sample` in the pixel at (x, y), counted from the top left. The same bits as
+// in the picture. Throws Error Usage for a pixel outside of the picture, and as render_frame.
+TracedPath trace_path(const Shot& shot, const std::filesystem::path& volume, int x, int y, std::uint64_t sample,
+                      Progress& progress);
+
+}  // namespace brisance

@@ -1,0 +1,157 @@
+// Whole measurements on a medium small enough for the path tracer.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/error.h"
+#include "expect.h"
+#include "film/write_image.h"
+#include "independent_draw.h"
+#include "measure_runs.h"
+#include "media/node_media.h"
+#include "metrics/layers.h"
+#include "reference.h"
+#include "render/render_frame.h"
+#include "shot/write_shot.h"
+#include "volume/temp_folder.h"
+
+namespace brisance {
+namespace {
+
+const Medium& medium() {
+    static const Medium ball = [] {
+        media::Recipe recipe = media::glowing_ball(5, 2.0f);
+        recipe.settings.smoke.albedo = Rgb(0.7f);
+        return media::make_medium(recipe);
+    }();
+    return ball;
+}
+
+Shot shot() {
+    Shot shot;
+    shot.volume.file = "ball.vdb";
+    shot.method = RenderMethod::Path;
+    shot.camera.eye = dvec3(0.0, -6.0, 0.0);
+    shot.camera.width = 24;
+    shot.camera.height = 18;
+    shot.camera_given = true;
+    shot.tracing.samples = 16;
+    return shot;
+}
+
+Picture beauty(const Image& image) {
+    return picture_of(image, {""}).picture;
+}
+
+// Of the deviations of two pictures from a third, over all pixels.
+double correlation(const Picture& a, const Picture& b, const Picture& truth) {
+    double ab = 0.0, aa = 0.0, bb = 0.0;
+    for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
+        const dvec3 da(a.pixels[i] - truth.pixels[i]), db(b.pixels[i] - truth.pixels[i]);
+        ab += glm::dot(da, db);
+        aa += glm::dot(da, da);
+        bb += glm::dot(db, db);
+    }
+    return ab / std::sqrt(aa * bb);
+}
+
+TEST(IndependentDraw, SharesNoNoiseWithAnOrdinaryOne) {
+    Progress silent;
+    Shot exact = shot();
+    exact.tracing.samples = 2048;
+    const Picture truth = beauty(render_medium(exact, medium(), silent).image);
+    const Picture ordinary = beauty(render_medium(shot(), medium(), silent).image);
+    const Picture other = without_margin(beauty(render_medium(drawn_independently(shot()), medium(), silent).image));
+    ASSERT_EQ(other.width, ordinary.width);
+    EXPECT_NE(other.pixels, ordinary.pixels);
+    // 432 independent pixels: a correlation of 0.25 would be five standard deviations.
+    EXPECT_NEAR(correlation(ordinary, other, truth), 0.0, 0.25);
+    // The same pixels all the same: their noise is all that differs.
+    const Differences differences = measure_differences(other.pixels, truth.pixels);
+    const Differences usual = measure_differences(ordinary.pixels, truth.pixels);
+    EXPECT_NEAR(differences.rrmse / usual.rrmse, 1.0, 0.3);
+}
+
+TEST(Measuring, FindsTheErrorsOfThePathTracerHalvedByFourTimesThePaths) {
+    Progress silent;
+    Shot base = shot();
+    Shot long_one = base;
+    long_one.tracing.samples = 1024;
+    const ReportReference reference = trace_reference(long_one, medium(), silent);
+    EXPECT_TRUE(reference.summary.halves);
+    EXPECT_EQ(reference.layers.size(), 4u);
+    EXPECT_GT(reference.summary.noise.at(""), 0.0);
+
+    Report report;
+    report.reference = reference.summary;
+    report.layers = {""};
+    PagePictures pictures({});
+    const auto planned = plan_runs(base, parse_methods({{"path"}, {"4,16,64"}, {}}));
+    measure_runs(planned, medium(), reference, {}, report, pictures, silent);
+    const std::vector<MeasuredRun>& runs = report.methods.at(0).runs;
+    ASSERT_EQ(runs.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(runs[i].samples_per_pixel, i == 0 ? 4 : i == 1 ? 16 : 64);
+        EXPECT_GT(runs[i].cost.wall_seconds, 0.0);
+        EXPECT_EQ(runs[i].errors.size(), 4u);
+    }
+    for (std::size_t i = 0; i + 1 < 3; ++i) {
+        const double ratio = *runs[i].errors.at("").noise_free / *runs[i + 1].errors.at("").noise_free;
+        EXPECT_GT(ratio, 1.5);
+        EXPECT_LT(ratio, 3.5);
+    }
+    const nlohmann::ordered_json page = pictures.to_json();
+    EXPECT_EQ(page["images"]["method1step1"][""].size(), 3u);
+    EXPECT_TRUE(page["flip"]["method1step3"].contains("MM"));
+}
+
+class GivenReference : public ::testing::Test {
+protected:
+    std::filesystem::path write(const std::string& name, const Shot& shot, float value, int frame = 1) {
+        const std::filesystem::path file = folder_.path() / name;
+        Layer layer{"", {"R", "G", "B"}, true, {}};
+        const auto count = static_cast<std::size_t>(shot.camera.width * shot.camera.height);
+        layer.pixels.assign(3 * count, value);
+        ImageMetadata metadata;
+        metadata.frame = frame;
+        metadata.text["brisance/shot"] = to_json(shot);
+        write_exr(file, {shot.camera.width, shot.camera.height, {layer}}, metadata);
+        return file;
+    }
+    static std::string refusal(const std::vector<std::filesystem::path>& files) {
+        try {
+            read_reference(files, shot(), 1);
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ExitCode::BadData);
+            return error.what();
+        }
+        return {};
+    }
+
+    TempFolder folder_;
+};
+
+TEST_F(GivenReference, IsTakenWithItsNoise) {
+    const auto a = write("a.exr", shot(), 0.9f), b = write("b.exr", shot(), 1.1f);
+    const ReportReference reference = read_reference({a, b}, shot(), 1);
+    EXPECT_TRUE(reference.summary.halves);
+    EXPECT_TRUE(reference.ordinary_draw) << "of method path";
+    EXPECT_NEAR(reference.summary.noise.at(""), 0.1, 1e-6);
+    EXPECT_NEAR(mean_picture(reference.layers.at("")).pixels[0].x, 1.0f, 1e-6f);
+    EXPECT_TRUE(read_reference({a}, shot(), 1).summary.noise.empty());
+}
+
+TEST_F(GivenReference, OfAnotherPictureIsRefusedWithWhatDiffers) {
+    Shot other = shot();
+    other.camera.width = 30;
+    EXPECT_HAS(refusal({write("wide.exr", other, 1.0f)}), "30 x 18 pixels, the shot 24 x 18");
+    other = shot();
+    other.medium.smoke.mean_cosine = 0.5f;
+    EXPECT_HAS(refusal({write("g.exr", other, 1.0f)}), "smoke.mean_cosine: 0.5 against 0");
+    EXPECT_HAS(refusal({write("late.exr", shot(), 1.0f, 7)}), "frame 7, not 1");
+    const auto a = write("a.exr", shot(), 1.0f);
+    EXPECT_HAS(refusal({a, a}), "no independent halves");
+}
+
+}  // namespace
+}  // namespace brisance

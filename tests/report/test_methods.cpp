@@ -1,0 +1,185 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "core/error.h"
+#include "expect.h"
+#include "measure_runs.h"
+#include "methods.h"
+
+namespace brisance {
+namespace {
+
+using Strings = std::vector<std::string>;
+
+std::string joined(const Strings& words) {
+    std::string all;
+    for (const std::string& word : words)
+        all += word + " ";
+    return all;
+}
+
+std::vector<Method> parse(const Strings& methods, const Strings& budgets = {}, const Strings& ladders = {}) {
+    return parse_methods({methods, budgets, ladders});
+}
+
+// The message of the usage error; empty when there is none.
+std::string refusal(const std::function<void()>& work) {
+    try {
+        work();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::Usage);
+        return error.what();
+    }
+    return {};
+}
+
+std::string refusal(const Strings& methods, const Strings& budgets = {}, const Strings& ladders = {}) {
+    return refusal([&] { parse(methods, budgets, ladders); });
+}
+
+Shot shot() {
+    Shot shot;
+    shot.volume.file = "fire.vdb";
+    return shot;
+}
+
+Strings labels(const Method& method) {
+    Strings result;
+    for (const MethodStep& step : method.steps)
+        result.push_back(step.label);
+    return result;
+}
+
+TEST(Methods, AreTheLightingGridAndThePathTracerUnlessNamed) {
+    const std::vector<Method> methods = parse({});
+    ASSERT_EQ(methods.size(), 2u);
+    EXPECT_EQ(methods[0].label, "lighting_grid");
+    EXPECT_EQ(methods[0].steps.size(), 4u);
+    EXPECT_FALSE(methods[0].unbiased);
+    EXPECT_FALSE(methods[0].averages);
+    EXPECT_EQ(methods[1].label, "path");
+    EXPECT_TRUE(methods[1].unbiased);
+    EXPECT_TRUE(methods[1].averages);
+    EXPECT_EQ(labels(methods[1]), (Strings{"4 spp", "16 spp", "64 spp", "256 spp"}));
+}
+
+TEST(Methods, HaveALabelAndSettings) {
+    const Method method = parse({"woodcock=path,tracing.free_flight=null_collision,tracing.transmittance=ratio"})[0];
+    EXPECT_EQ(method.label, "woodcock");
+    EXPECT_EQ(method.base, "path");
+    EXPECT_EQ(method.settings,
+              (Strings{"method=path", "tracing.free_flight=null_collision", "tracing.transmittance=ratio"}));
+    EXPECT_EQ(parse({"path,tracing.light_sampling=false"})[0].label, "path,tracing.light_sampling=false");
+}
+
+TEST(Methods, MayHaveListsForValues) {
+    const Method method = parse({"a=path,smoke.albedo=[0.5,0.6,0.7],name=\"b,c\""})[0];
+    EXPECT_EQ(method.settings, (Strings{"method=path", "smoke.albedo=[0.5,0.6,0.7]", "name=\"b,c\""}));
+}
+
+TEST(Methods, OfThePathTracerShareABudgetUnlessTheyHaveTheirOwn) {
+    const std::vector<Method> methods =
+        parse({"lighting_grid", "path", "path_plain"}, {"2,8", "path_plain:32", "lighting_grid:4,1"});
+    EXPECT_EQ(labels(methods[1]), (Strings{"2 spp", "8 spp"}));
+    EXPECT_EQ(methods[1].steps[0].settings, (Strings{"tracing.samples=2"}));
+    EXPECT_EQ(labels(methods[2]), (Strings{"32 spp"}));
+    ASSERT_EQ(methods[0].steps.size(), 2u);
+    EXPECT_HAS(joined(methods[0].steps[0].settings), "lighting.shadow_resolution=24");
+    EXPECT_HAS(joined(methods[0].steps[1].settings), "lighting.shadow_resolution=8");
+}
+
+TEST(Methods, KeepTheirOwnSettingsAtEveryStepOfTheBuiltInLadder) {
+    const Method method = parse({"near=lighting_grid,lighting.alpha=4"})[0];
+    for (const MethodStep& step : method.steps)
+        EXPECT_LACKS(joined(step.settings), "lighting.alpha=");
+    // Steps that would then be the same are one.
+    const Method fixed =
+        parse({"a=lighting_grid,lighting.alpha=2,lighting.shadow_resolution=8,lighting.shadow_distances=6,"
+               "scattering.alpha=1"})[0];
+    EXPECT_EQ(fixed.steps.size(), 1u);
+}
+
+TEST(Ladders, GoSideBySide) {
+    const Method method =
+        parse({"lighting_grid"}, {},
+              {"lighting_grid:lighting.alpha=1,2,3", "lighting_grid:lighting.shadow_resolution=8,16,24"})[0];
+    ASSERT_EQ(method.steps.size(), 3u);
+    EXPECT_EQ(method.steps[1].settings, (Strings{"lighting.alpha=2", "lighting.shadow_resolution=16"}));
+    EXPECT_EQ(method.steps[1].label, "alpha=2 shadow_resolution=16");
+}
+
+TEST(Ladders, OfTimesEndByTimeAlone) {
+    const Method method = parse({"path"}, {}, {"path:tracing.seconds=1,10"})[0];
+    EXPECT_EQ(method.steps[0].label, "1 s");
+    EXPECT_EQ(method.steps[1].settings, (Strings{"tracing.seconds=10", "tracing.samples=none"}));
+    EXPECT_TRUE(method.averages);
+}
+
+TEST(Ladders, OfOtherSettingsDoNotAverage) {
+    const Method method = parse({"p=path,tracing.samples=16"}, {}, {"p:tracing.transmittance=exact,ratio"})[0];
+    EXPECT_TRUE(method.unbiased);
+    EXPECT_FALSE(method.averages);
+}
+
+TEST(Methods, ThatSayWhenTheyStopHaveOneStep) {
+    const Method samples = parse({"p=path,tracing.samples=16", "path"}, {"4,8"})[0];
+    EXPECT_EQ(labels(samples), (Strings{"16 spp"}));
+    const Method seconds = parse({"p=path,tracing.seconds=5"})[0];
+    EXPECT_EQ(seconds.steps[0].settings, (Strings{"tracing.samples=none"}));
+}
+
+TEST(Methods, ThatCannotBeAreRefusedByName) {
+    EXPECT_HAS(refusal({"photons"}), "no method is called \"photons\"; there are lighting_grid, path");
+    EXPECT_HAS(refusal({"path", "path"}), "two are called path");
+    EXPECT_HAS(refusal({"=path"}), "label");
+    EXPECT_HAS(refusal({"a:b=path"}), "colon");
+    EXPECT_HAS(refusal({"path,fast"}), "\"fast\" is no setting");
+    EXPECT_HAS(refusal({"path,method=lighting_grid"}), "stands first");
+    EXPECT_HAS(refusal({""}), "no method");
+}
+
+TEST(Ladders, ThatCannotBeAreRefusedByName) {
+    EXPECT_HAS(refusal({"path"}, {"grid:1,2"}), "--budgets grid: no method has this label; there are path");
+    EXPECT_HAS(refusal({"path"}, {"4,16", "8"}), "given twice for all path methods");
+    EXPECT_HAS(refusal({"lighting_grid"}, {"lighting_grid:0"}), "1 to 4, not \"0\"");
+    EXPECT_HAS(refusal({"lighting_grid"}, {"lighting_grid:2x"}), "1 to 4, not \"2x\"");
+    EXPECT_HAS(refusal({"path"}, {}, {"path:tracing.samples"}), "METHOD:KEY=");
+    EXPECT_HAS(refusal({"path"}, {}, {"tracing.samples=4"}), "METHOD:KEY=");
+    EXPECT_HAS(refusal({"path"}, {}, {"plain:tracing.samples=4"}), "no method has this label");
+    EXPECT_HAS(refusal({"path"}, {"path:4"}, {"path:tracing.samples=4"}), "leave one of the two out");
+    EXPECT_HAS(refusal({"p=path,tracing.samples=4"}, {"p:4"}), "leave one of the two out");
+    EXPECT_HAS(refusal({"lighting_grid"}, {}, {"lighting_grid:lighting.alpha=1,2", "lighting_grid:lighting.levels=3"}),
+               "lighting.alpha has 2 values and lighting.levels has 1");
+}
+
+TEST(Runs, OfEveryBuiltInMethodAreShots) {
+    Shot base = shot();
+    base.tracing.seconds = 3.0;
+    const std::vector<PlannedMethod> planned = plan_runs(base, parse({"lighting_grid", "path", "path_plain"}));
+    ASSERT_EQ(planned.size(), 3u);
+    const Shot& grid = planned[0].runs[2].shot;
+    EXPECT_EQ(grid.lighting.alpha, Shot().lighting.alpha) << "step 3 is the default";
+    EXPECT_EQ(grid.lighting.shadow_resolution, Shot().lighting.shadow_resolution);
+    EXPECT_EQ(grid.scattering.alpha, Shot().scattering.alpha);
+    const Shot& plain = planned[2].runs[1].shot;
+    EXPECT_EQ(plain.method, RenderMethod::Path);
+    EXPECT_EQ(plain.tracing.samples, 16);
+    EXPECT_EQ(plain.tracing.seconds, 0.0) << "the step alone says when to stop";
+    EXPECT_EQ(plain.tracing.emission, EmissionEstimator::Collision);
+    EXPECT_EQ(plain.tracing.free_flight, FreeFlight::NullCollision);
+    EXPECT_FALSE(plain.tracing.light_sampling);
+    EXPECT_HAS(joined(planned[2].runs[1].settings), "tracing.seconds=none");
+}
+
+TEST(Runs, ThatWouldShowSomethingElseAreRefused) {
+    const std::string thin = refusal([] { plan_runs(shot(), parse({"thin=path,smoke.albedo=0.1"})); });
+    EXPECT_HAS(thin, "thin, 4 spp");
+    EXPECT_HAS(thin, "smoke.albedo");
+    EXPECT_HAS(refusal([] { plan_runs(shot(), parse({"p=path,scattering.bounces=1"})); }), "scattering.bounces");
+    EXPECT_HAS(refusal([] { plan_runs(shot(), parse({"path"}, {"1"})); }), "tracing.samples");
+    EXPECT_HAS(refusal([] { plan_runs(shot(), parse({"path,tracing.fast=true"})); }), "tracing.fast");
+}
+
+}  // namespace
+}  // namespace brisance

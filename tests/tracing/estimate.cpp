@@ -1,0 +1,96 @@
+#include "estimate.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/parallel.h"
+
+namespace brisance::testing {
+
+namespace {
+
+// Roberts' three-dimensional sequence, shifted at random for every batch.
+constexpr double kSteps[3] = {0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
+
+double part(double x) {
+    return x - std::floor(x);
+}
+
+}  // namespace
+
+Estimate estimate(int numbers, std::uint64_t per_batch, std::uint64_t seed, const Sampler& sample) {
+    std::vector<double> sums(std::size_t(kBatches) * numbers);
+    parallel_for(kBatches, [&](std::size_t batch) {
+        const std::uint64_t key = seed * kBatches + batch;
+        Rng shift(Stream::PathRotation, key);
+        const dvec3 first(shift.next_double(), shift.next_double(), shift.next_double());
+        std::vector<double> out(numbers);
+        for (std::uint64_t i = 0; i < per_batch; ++i) {
+            Rng rng(Stream::Path, key, i);
+            const dvec3 place(part(first.x + i * kSteps[0]), part(first.y + i * kSteps[1]),
+                              part(first.z + i * kSteps[2]));
+            sample(place, rng, out.data());
+            for (int k = 0; k < numbers; ++k)
+                sums[batch * numbers + k] += out[k] / double(per_batch);
+        }
+    });
+    Estimate e{std::vector<double>(numbers), std::vector<double>(numbers), per_batch * kBatches};
+    for (int k = 0; k < numbers; ++k) {
+        for (int b = 0; b < kBatches; ++b)
+            e.mean[k] += sums[b * numbers + k] / kBatches;
+        double square = 0.0;
+        for (int b = 0; b < kBatches; ++b)
+            square += std::pow(sums[b * numbers + k] - e.mean[k], 2);
+        e.error[k] = std::sqrt(square / (kBatches - 1.0) / kBatches);
+    }
+    return e;
+}
+
+Estimate estimate_to(double relative, int numbers, std::uint64_t seed, const Sampler& sample, std::uint64_t most) {
+    constexpr double margin = 0.85;  // below what is asked for, because the pilot only guesses
+    Estimate e = estimate(numbers, 8, 2 * seed, sample);
+    for (int attempt = 0; attempt < 4; ++attempt) {
+        double worst = 0.0;
+        for (int k = 0; k < numbers; ++k)
+            worst = std::max(worst, e.mean[k] != 0.0 ? e.error[k] / std::abs(e.mean[k]) : 0.0);
+        if (attempt > 0 && worst <= relative)
+            return e;
+        const double factor = std::pow(worst / (margin * relative), 2);
+        const double per_batch = std::clamp(std::ceil(factor * e.samples / kBatches), 8.0, double(most) / kBatches);
+        e = estimate(numbers, static_cast<std::uint64_t>(per_batch), 2 * seed + 1, sample);
+    }
+    return e;
+}
+
+Rows::~Rows() {
+    std::printf("%s: %d rows, worst deviation %.2f standard errors (%s), largest standard error %.3f %%\n",
+                what_.c_str(), count_, worst_, worst_row_.c_str(), 100.0 * dullest_);
+}
+
+void Rows::expect(const std::string& row, double mean, double error, double truth, double allowance, double sharp) {
+    ++count_;
+    const double beyond = std::max(0.0, std::abs(mean - truth) - allowance);
+    EXPECT_LE(beyond, kSigmas * error) << row << ": " << mean << " +- " << error << ", expected " << truth;
+    EXPECT_LE(error, sharp * std::abs(truth)) << row << ": not sampled enough";
+    if (error > 0.0 && beyond / error >= worst_) {
+        worst_ = beyond / error;
+        worst_row_ = row;
+    }
+    dullest_ = std::max(dullest_, error / std::abs(truth));
+}
+
+dvec3 uniform_direction(double u, double v) {
+    const double z = 1.0 - 2.0 * u, r = std::sqrt(std::max(0.0, 1.0 - z * z));
+    return {r * std::cos(2.0 * kPi64 * v), r * std::sin(2.0 * kPi64 * v), z};
+}
+
+double chi_square_tail(double chi_square, int degrees) {
+    const double k = 2.0 / (9.0 * degrees);
+    const double z = (std::cbrt(chi_square / degrees) - (1.0 - k)) / std::sqrt(k);
+    return 0.5 * std::erfc(z / std::sqrt(2.0));
+}
+
+}  // namespace brisance::testing

@@ -1,0 +1,137 @@
+// Lines through smoke that glows and absorbs and does not scatter, against closed forms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tracing_fixture.h"
+
+namespace brisance {
+namespace {
+
+using namespace testing;
+
+// The ball's lattice: 40 nodes to the radius. Its surface is smeared with a variance of a quarter of a voxel, so that
+// volumes are off by 3/4 / 40^2 = 0.05 % and chords by less.
+constexpr int kBallNodes = 40;
+constexpr double kBall = 1e-3;
+
+std::string depth_of(double depth) {
+    return "optical depth " + std::to_string(depth);
+}
+
+TracingSettings not_aimed() {
+    TracingSettings settings;
+    settings.aimed = false;  // nothing scatters
+    return settings;
+}
+
+struct Row {
+    double depth;
+    double slab, centre, emissivity, escape;  // escape: of a photon emitted in the ball of that optical radius
+};
+
+constexpr Row kRows[] = {
+    {0.01, 0.0099502, 0.0198013, 0.0132339, 0.9925398}, {0.1, 0.0951626, 0.1812692, 0.1238452, 0.9288389},
+    {0.5, 0.3934693, 0.6321206, 0.4715178, 0.7072766},  {1.0, 0.6321206, 0.8646647, 0.7030029, 0.5272522},
+    {2.0, 0.8646647, 0.9816844, 0.8864473, 0.3324177},  {5.0, 0.9932621, 0.9999546, 0.9800100, 0.1470015},
+    {10.0, 0.9999546, 1.0000000, 0.9950000, 0.0746250},
+};
+constexpr double kDigits = 5.1e-8;  // of the table
+constexpr double kRounding = 1e-6;  // of single precision
+
+TEST(EmittingLines, SlabsRadiateOneMinusTransmittance) {
+    Rows rows("emitting slabs");
+    for (const Row& row : kRows)
+        for (const int nodes : {1, 6, 30}) {
+            const Traced traced(slab(nodes, row.depth, Rgb(0.0f)), not_aimed());
+            const Estimate e = estimate_to(kSharp, 3, nodes, [&](const dvec3& place, Rng& rng, double* out) {
+                traced.look(ray_into_layers(1.0), place.x, rng, out);
+            });
+            rows.expect(depth_of(row.depth), e.mean[0], e.error[0], row.slab, kDigits + kRounding * row.slab);
+        }
+}
+
+TEST(EmittingLines, ALayerBehindALayerIsSeenThroughIt) {
+    Rows rows("two layers");
+    for (const double first : {0.1, 1.0, 3.0})
+        for (const double second : {0.2, 2.0, 50.0}) {
+            const auto density = [=](int z) { return float(z <= 4 ? first / 4 : z > 8 ? second / 6 : 0.0); };
+            Recipe r = layers(14, density, [](int z) { return z <= 6 ? 3.0f : 0.5f; });
+            const Traced traced(r, not_aimed());
+            const Estimate e = estimate_to(kSharp, 3, 1, [&](const dvec3& place, Rng& rng, double* out) {
+                traced.look(ray_into_layers(0.7), place.x, rng, out);
+            });
+            const double truth =
+                -3.0 * std::expm1(-first / 0.7) - 0.5 * std::exp(-first / 0.7) * std::expm1(-second / 0.7);
+            rows.expect(depth_of(first) + ", " + depth_of(second), e.mean[0], e.error[0], truth, kRounding * truth);
+        }
+}
+
+TEST(EmittingLines, BallsRadiateAsTheirChordsAndSurfacesSay) {
+    Rows rows("emitting balls");
+    for (const Row& row : kRows) {
+        const Traced traced(scattering_ball(kBallNodes, row.depth, Rgb(0.0f)), not_aimed());
+        const Estimate centre = estimate_to(kSharp, 3, 1, [&](const dvec3& place, Rng& rng, double* out) {
+            traced.look(ray_through_middle(place.y, place.z), place.x, rng, out);
+        });
+        rows.expect("centre, " + depth_of(row.depth), centre.mean[0], centre.error[0], row.centre, kBall * row.centre);
+        constexpr double wider = 1.05;
+        const Estimate flux = estimate_to(kSharp, 3, 2, [&](const dvec3& place, Rng& rng, double* out) {
+            traced.look(ray_through_disc(wider, place.y, place.z, rng), place.x, rng, out);
+        });
+        const double area = wider * wider;
+        rows.expect("flux, " + depth_of(row.depth), area * flux.mean[0], area * flux.error[0], row.emissivity,
+                    kBall * row.emissivity);
+        // What leaves, over what is emitted: the one from rays, the other from nodes.
+        const double leaving = 4.0 * kPi64 * kPi64 * area / emitted_power(*traced.medium).x;
+        rows.expect("escape, " + depth_of(row.depth), leaving * flux.mean[0], leaving * flux.error[0], row.escape,
+                    kBall * row.escape);
+    }
+}
+
+// From the middle of a ball all directions look the same.
+TEST(EmittingLines, TheMiddleOfABallSeesOneRadius) {
+    Rows rows("from the middle");
+    for (const Row& row : kRows) {
+        const Traced traced(scattering_ball(kBallNodes, row.depth, Rgb(0.0f)), not_aimed());
+        const Estimate e = estimate_to(kSharp, 3, 1, [&](const dvec3& place, Rng& rng, double* out) {
+            traced.look({dvec3(0.0), uniform_direction(place.y, place.z)}, place.x, rng, out);
+        });
+        rows.expect(depth_of(row.depth), e.mean[0], e.error[0], row.slab, kBall * row.slab);
+    }
+}
+
+// j = 1 whatever the density: (1 - exp(-tau)) / sigma, from transparent voxels to opaque ones.
+TEST(EmittingLines, AFlameInSmokeIsDimmedByIt) {
+    Rows rows("flame in smoke");
+    for (const double voxel : {1e-6, 1e-2, 0.3, 3.0, 1e2, 1e4}) {
+        const auto one = [](int) { return 1.0f; };
+        Recipe r = layers(30, one, [](int z) { return z > 0 && z <= 30 ? 1.0f : 0.0f; });
+        r.settings.smoke.extinction_per_metre = static_cast<float>(voxel);
+        r.settings.fire.convention = EmissionConvention::Direct;
+        const Traced traced(r, not_aimed());
+        const Estimate e = estimate_to(kSharp, 3, 1, [&](const dvec3& place, Rng& rng, double* out) {
+            traced.look(ray_into_layers(0.8), place.x, rng, out);
+        });
+        const double truth = -std::expm1(-30.0 * voxel / 0.8) / voxel;
+        rows.expect(depth_of(voxel) + " of a voxel", e.mean[0], e.error[0], truth, kRounding * truth);
+    }
+}
+
+// The same ramp of j and sigma would hide which is which: the flame ends where the smoke is thickest.
+TEST(EmittingLines, AFlameBehindSmokeIsSeenThroughIt) {
+    Rows rows("flame behind smoke");
+    for (const double depth : {0.5, 5.0, 15.0, 20.0}) {
+        const auto density = [=](int z) { return float(z <= 20 ? depth / 20 : 0.0); };
+        Recipe r = layers(24, density, [](int z) { return z == 23 ? 1.0f : 0.0f; });
+        r.settings.fire.convention = EmissionConvention::Direct;
+        const Traced traced(r, not_aimed());
+        const Estimate e = estimate_to(kSharp, 3, 1, [&](const dvec3& place, Rng& rng, double* out) {
+            traced.look(ray_into_layers(1.0), place.x, rng, out);
+        });
+        rows.expect(depth_of(depth), e.mean[0], e.error[0], std::exp(-depth), kRounding * std::exp(-depth));
+    }
+}
+
+}  // namespace
+}  // namespace brisance

@@ -1,0 +1,153 @@
+// Light is neither made nor lost on the way: what is emitted leaves, or is absorbed.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tracing_fixture.h"
+
+namespace brisance {
+namespace {
+
+using namespace testing;
+
+// Smoke of all kinds around a point, within 0.9 m of it, 24 nodes to the metre.
+constexpr double kSpacing = 1.0 / 24.0;
+
+Recipe smoke(const NodeScalar& density, const NodeScalar& flame, const Rgb& albedo, float g) {
+    Recipe r;
+    r.box = cube(-12, 12);
+    r.world_from_index = cubic(kSpacing);
+    r.density = density;
+    r.flame = flame;
+    r.settings.smoke.albedo = albedo;
+    r.settings.smoke.mean_cosine = g;
+    r.settings.fire.convention = EmissionConvention::Direct;
+    return r;
+}
+
+float homogeneous(const ivec3&) {
+    return 3.0f;
+}
+
+// Contrasts of a million, voxels from transparent to an optical depth of six.
+float uneven(const ivec3& n) {
+    return 150.0f * std::pow(testing::noise(n, 1), 16.0f);
+}
+
+float some_flames(const ivec3& n) {
+    return std::max(0.0f, testing::noise(n / 3, 2) - 0.8f);
+}
+
+// The power that leaves, from rays that arrive backwards through all discs around the smoke.
+Estimate leaving_power(const Traced& traced, double sharp) {
+    constexpr double radius = 0.98;  // beyond the corners of the box and their ramps
+    Estimate e = estimate_to(sharp, 3, 7, [&](const dvec3& place, Rng& rng, double* out) {
+        traced.look(ray_through_disc(radius, place.y, place.z, rng), place.x, rng, out);
+    });
+    for (int c = 0; c < 3; ++c) {
+        e.mean[c] *= 4.0 * kPi64 * kPi64 * radius * radius;
+        e.error[c] *= 4.0 * kPi64 * kPi64 * radius * radius;
+    }
+    return e;
+}
+
+TEST(Energy, SmokeThatAbsorbsNothingLetsAllLightOut) {
+    Rows rows("albedo 1");
+    const NodeScalar one_flame = [](const ivec3& n) { return n == ivec3(2, 1, -3) ? 1.0f : 0.0f; };
+    for (const float g : {0.0f, 0.6f})
+        for (const bool even : {true, false})
+            for (const bool one : {true, false}) {
+                const Traced traced(
+                    smoke(even ? homogeneous : uneven, one ? one_flame : NodeScalar(some_flames), Rgb(1.0f), g));
+                const Estimate e = leaving_power(traced, kSharp);
+                const std::string row = std::string(even ? "even" : "uneven") + (one ? ", one flame" : ", many flames");
+                rows.expect(row + ", g = " + std::to_string(g), e.mean[0], e.error[0],
+                            emitted_power(*traced.medium).x, 1e-6 * emitted_power(*traced.medium).x);
+            }
+}
+
+// The brick and the place in it of a point.
+struct Place {
+    int brick;
+    vec3 position;
+};
+
+Place place_in(const Traced& traced, const dvec3& local) {
+    const dvec3 node = local / kSpacing + dvec3(traced.medium->reference_node);
+    const ivec3 brick = ivec3(glm::floor(node)) >> 3;
+    return {traced.tracer.field().bricks().find(brick), vec3(node - dvec3(brick * 8))};
+}
+
+// Absorbed power: the integral of absorption times fluence, at random points of the box.
+Estimate absorbed_power(const Traced& traced, double sharp) {
+    constexpr double side = 26.0 * kSpacing;
+    Estimate e = estimate_to(sharp, 3, 8, [&](const dvec3& place, Rng& rng, double* out) {
+        const double x = rng.next_double(), y = rng.next_double(), u = rng.next_double();
+        const dvec3 point = side * (dvec3(x, y, place.y) - 0.5);
+        traced.look({point, uniform_direction(u, place.z)}, place.x, rng, out);
+        const Place at = place_in(traced, point);
+        for (int c = 0; c < 3; ++c)
+            out[c] = at.brick < 0 ? 0.0
+                                  : out[c] * traced.tracer.field().extinction(at.brick, at.position) *
+                                        (1.0 - traced.medium->albedo[c]);
+    });
+    for (int c = 0; c < 3; ++c) {
+        e.mean[c] *= 4.0 * kPi64 * std::pow(side, 3);
+        e.error[c] *= 4.0 * kPi64 * std::pow(side, 3);
+    }
+    return e;
+}
+
+TEST(Energy, WhatLeavesAndWhatIsAbsorbedIsWhatWasEmitted) {
+    Rows rows("left and absorbed");
+    const NodeScalar soft = [](const ivec3& n) { return 20.0f * std::pow(testing::noise(n, 1), 2.0f); };
+    const Traced traced(smoke(soft, some_flames, Rgb(0.3f, 0.7f, 0.95f), 0.3f));
+    const Estimate left = leaving_power(traced, kSharp), absorbed = absorbed_power(traced, 0.006);
+    const double truth = emitted_power(*traced.medium).x;
+    for (int c = 0; c < 3; ++c)
+        rows.expect("channel " + std::to_string(c), left.mean[c] + absorbed.mean[c],
+                    std::hypot(left.error[c], absorbed.error[c]), truth, 1e-6 * truth, 0.006);
+}
+
+// From inside an endless isothermal medium every pixel is that of a black body, whatever is scattered and how.
+TEST(Energy, InsideAThickIsothermalMediumEverythingLooksAlike) {
+    Rows rows("isothermal");
+    for (const float g : {0.0f, 0.7f, -0.5f})
+        for (const bool even : {true, false}) {
+            Recipe r;
+            r.box = cube(-16, 16);
+            r.world_from_index = cubic(1.0);
+            r.density = [=](const ivec3& n) { return even ? 2.0f : 8.0f * testing::noise(n, 3) * testing::noise(n, 4); };
+            r.flame = [](const ivec3&) { return 1.0f; };
+            r.settings.smoke.albedo = Rgb(0.2f, 0.5f, 0.8f);
+            r.settings.smoke.mean_cosine = g;
+            const Traced traced(r);
+            const Estimate e = estimate_to(kSharp, 3, 9, [&](const dvec3& place, Rng& rng, double* out) {
+                traced.look({dvec3(0.3, 0.1, -0.2), uniform_direction(place.y, place.z)}, place.x, rng, out);
+            });
+            for (int c = 0; c < 3; ++c)
+                rows.expect((even ? "even, g = " : "uneven, g = ") + std::to_string(g), e.mean[c], e.error[c], 1.0,
+                            1e-5);
+        }
+}
+
+// The same where the medium is so thick that pixels from outside see one temperature only: black smoke.
+TEST(Energy, OpaqueBlackSmokeIsABlackBody) {
+    Rows rows("opaque black smoke");
+    for (const double voxel : {10.0, 1e4, 1e7}) {
+        Recipe r;
+        r.box = cube(-9, 9);
+        r.world_from_index = cubic(1.0);
+        r.density = [=](const ivec3& n) { return float(voxel * (1.0 + 1000.0 * testing::noise(n, 5))); };
+        r.flame = [](const ivec3&) { return 1.0f; };
+        r.settings = black_smoke();
+        const Traced traced(r);
+        const Estimate e = estimate_to(kSharp, 3, 3, [&](const dvec3& place, Rng& rng, double* out) {
+            traced.look(ray_through_disc(4.0, place.y, place.z, rng), place.x, rng, out);
+        });
+        rows.expect("voxel " + std::to_string(voxel), e.mean[0], e.error[0], 1.0, 1e-5);
+    }
+}
+
+}  // namespace
+}  // namespace brisance

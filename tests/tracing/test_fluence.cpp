@@ -1,0 +1,79 @@
+// Fluence of uniformly emitting balls: what arrives at a point from all directions, inside, on and outside.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tracing_fixture.h"
+
+namespace brisance {
+namespace {
+
+using namespace testing;
+
+// 48 nodes to the radius. A surface smeared with variance h^2 / 4 changes the volume by 3/4 / 48^2 = 0.03 %, and the
+// fluence at the surface, whose slope is infinite there, by about as much.
+constexpr int kNodes = 48;
+constexpr double kBall = 1e-3;
+
+// 4 pi times the mean radiance of all directions, or the same from the cone that holds a ball of radius 1.05.
+Estimate fluence(const Traced& traced, double r) {
+    const double most = r > 1.1 ? 1.0 - std::sqrt(1.0 - std::pow(1.05 / r, 2)) : 2.0;  // of 1 - cos
+    const dvec3 eye(r * dvec3(0.6, -0.48, 0.64)), x(0.8, 0.36, -0.48), y(0.0, 0.8, 0.6);
+    Estimate e = estimate_to(kSharp, 3, 1, [&](const dvec3& place, Rng& rng, double* out) {
+        const dvec3 d = uniform_direction(0.5 * most * place.y, place.z);
+        const dvec3 direction = -(d.z * dvec3(0.6, -0.48, 0.64) + d.x * x + d.y * y);
+        traced.look({eye, direction}, place.x, rng, out);
+    });
+    e.mean[0] *= 2.0 * kPi64 * most;
+    e.error[0] *= 2.0 * kPi64 * most;
+    return e;
+}
+
+Traced unscattered(const Recipe& recipe) {
+    TracingSettings settings;
+    settings.aimed = false;
+    return Traced(recipe, settings, 0);
+}
+
+// j = R = 1, no extinction: 2 pi + pi (1 - r^2) / r ln |(1 + r) / (1 - r)|.
+TEST(FluenceOfBalls, WithoutExtinctionMatchesTheClosedForm) {
+    Rows rows("fluence, transparent ball");
+    Recipe r = glowing_ball(kNodes, 1.0f);
+    r.flame = r.density;
+    r.density = nullptr;
+    r.settings.fire.convention = EmissionConvention::Direct;
+    const Traced traced = unscattered(r);
+    constexpr double table[][2] = {{0.0, 12.566371}, {0.25, 12.301208}, {0.5, 11.460274}, {0.75, 9.849252},
+                                   {0.9, 8.236011},  {1.0, 6.283185},   {1.25, 3.176932}, {1.5, 2.069687},
+                                   {2.0, 1.106097},  {4.0, 0.265163},   {10.0, 0.041972}};
+    for (const auto& row : table) {
+        const Estimate e = fluence(traced, row[0]);
+        rows.expect("r = " + std::to_string(row[0]), e.mean[0], e.error[0], row[1], kBall * row[1]);
+    }
+}
+
+// sigma = j = 1: the ball of radius one metre and extinction R has source function 1, and the same fluence as the ball
+// of radius R has in units of j.
+TEST(FluenceOfBalls, WithAbsorptionMatchesTheTable) {
+    Rows rows("fluence, absorbing ball");
+    constexpr double at[] = {0.0, 0.25, 0.5, 0.75, 0.9, 1.0};
+    constexpr struct {
+        double radius;
+        double fluence[6];
+    } table[] = {{0.1, {1.19585, 1.17064, 1.09047, 0.93590, 0.77975, 0.58845}},
+                 {0.5, {4.94448, 4.84356, 4.51819, 3.87148, 3.19092, 2.31147}},
+                 {1.0, {7.94346, 7.79574, 7.30850, 6.29151, 5.15282, 3.56679}},
+                 {2.0, {10.86570, 10.71848, 10.20095, 8.97095, 7.36963, 4.74122}},
+                 {5.0, {12.48170, 12.44680, 12.27751, 11.56789, 9.97660, 5.65506}}};
+    for (const auto& ball : table) {
+        const Traced traced = unscattered(glowing_ball(kNodes, static_cast<float>(ball.radius)));
+        for (int k = 0; k < 6; ++k) {
+            const Estimate e = fluence(traced, at[k]);
+            rows.expect("R = " + std::to_string(ball.radius) + ", r = " + std::to_string(at[k]), e.mean[0], e.error[0],
+                        ball.fluence[k], kBall * ball.fluence[k]);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace brisance

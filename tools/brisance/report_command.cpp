@@ -1,0 +1,223 @@
+#include "report_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/stopwatch.h"
+#include "film/whole_file.h"
+#include "film/write_image.h"
+#include "load_shot.h"
+#include "measure_runs.h"
+#include "page.h"
+#include "page_pictures.h"
+#include "reference.h"
+#include "render/camera.h"
+#include "render/load_medium.h"
+#include "report.h"
+#include "report_json.h"
+#include "report_text.h"
+#include "shot/write_shot.h"
+#include "volume/frame_path.h"
+
+namespace brisance {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kLeastReferenceSamples = 1024;
+constexpr int kReferenceOverBudget = 4;  // times the paths of the largest run
+
+struct ReportFiles {
+    fs::path page, measurements, times, data;
+};
+
+ReportFiles report_files(const ReportOptions& options) {
+    const fs::path page = options.output;
+    if (page.extension() != ".html")
+        throw Error(ExitCode::Usage, fmt::format("-o names the page and must end in .html: {}", options.output));
+    const auto beside = [&](const char* extension) { return fs::path(page).replace_extension(extension); };
+    return {page, beside(".csv"), beside(".times.csv"), beside(".json")};
+}
+
+void check_outputs(const ReportFiles& files, std::vector<fs::path> inputs) {
+    for (const fs::path& file : {files.page, files.measurements, files.times, files.data}) {
+        for (const fs::path& input : inputs) {
+            std::error_code error;
+            if (fs::equivalent(file, input, error))
+                throw Error(ExitCode::Usage,
+                            fmt::format("{} is read and would be overwritten; choose another -o", file.string()));
+        }
+        check_writable(file);
+    }
+}
+
+FrameFile only_frame(const Shot& shot, const ReportOptions& options) {
+    const std::string pattern = volume_pattern(shot);
+    const std::vector<FrameFile> frames =
+        resolve_sequence(pattern, options.frame.empty() ? std::nullopt : std::optional(parse_frames(options.frame)));
+    if (frames.size() == 1)
+        return frames.front();
+    std::vector<int> numbers;
+    for (const FrameFile& frame : frames)
+        numbers.push_back(frame.frame);
+    throw Error(ExitCode::Usage,
+                fmt::format("a report is of one frame, and there are {}: name one with -f", describe_frames(numbers)));
+}
+
+// A camera that is the same for every run, whatever its picture's width.
+void fix_camera(Shot& shot, const Medium& medium) {
+    if (!shot.camera_given)
+        shot.camera = framed_camera(medium, shot.camera);
+    shot.camera_given = true;
+}
+
+int largest_budget(const std::vector<PlannedMethod>& methods) {
+    int most = 0;
+    for (const PlannedMethod& method : methods)
+        for (const PlannedRun& run : method.runs)
+            if (run.shot.method == RenderMethod::Path)
+                most = std::max(most, run.shot.tracing.samples);
+    return most;
+}
+
+std::vector<std::string> reference_settings(const ReportOptions& options, const std::vector<PlannedMethod>& methods) {
+    int samples = options.reference_samples;
+    if (samples == 0 && options.reference_seconds == 0.0)
+        samples = std::max(kLeastReferenceSamples, kReferenceOverBudget * largest_budget(methods));
+    return {"method=path", samples > 0 ? fmt::format("tracing.samples={}", samples) : "tracing.samples=none",
+            options.reference_seconds > 0.0 ? fmt::format("tracing.seconds={}", options.reference_seconds)
+                                            : "tracing.seconds=none",
+            "tracing.error=none", "output.layers.cells=true"};
+}
+
+// The words that render with `settings` over the shot as it was asked for.
+std::string render_command(const ReportOptions& options, const std::vector<std::string>& settings,
+                           const std::string& output) {
+    std::vector<std::string> words = {"brisance", "render", options.input};
+    if (!options.frame.empty())
+        words.insert(words.end(), {"-f", options.frame});
+    if (!options.preset.empty())
+        words.insert(words.end(), {"--preset", options.preset});
+    for (const std::vector<std::string>* list : {&options.overrides, &settings})
+        for (const std::string& setting : *list)
+            words.insert(words.end(), {"--set", setting});
+    if (options.threads > 0)
+        words.insert(words.end(), {"--threads", std::to_string(options.threads)});
+    words.insert(words.end(), {"-o", output});
+    std::string line;
+    for (const std::string& word : words)
+        line += fmt::format("{}{}", line.empty() ? "" : " ", shell_quoted(word));
+    return line;
+}
+
+void add_commands(const ReportOptions& options, const std::vector<PlannedMethod>& methods, Report& report) {
+    for (std::size_t m = 0; m < methods.size(); ++m)
+        for (std::size_t s = 0; s < methods[m].runs.size(); ++s) {
+            MeasuredRun& run = report.methods[m].runs[s];
+            run.command = render_command(options, methods[m].runs[s].settings, run.id + ".exr");
+        }
+}
+
+Report begin_report(const ReportOptions& options, const Shot& shot, const FrameFile& frame) {
+    Report report;
+    report.version = BRISANCE_VERSION;
+    report.date = report_date();
+    for (const std::string& word : options.command_line)
+        report.command += fmt::format("{}{}", report.command.empty() ? "" : " ", shell_quoted(word));
+    report.shot = {shot.name.empty() ? fs::path(options.input).stem().string() : shot.name,
+                   options.input,
+                   frame.file.filename().string(),
+                   frame.frame,
+                   shot.camera.width,
+                   shot.camera.height,
+                   settings_hash(shot),
+                   to_json(shot)};
+    report.machine = this_machine();
+    report.repeats = options.repeats;
+    return report;
+}
+
+ReportReference make_reference(const ReportOptions& options, const std::vector<PlannedMethod>& methods,
+                               const Shot& shot, const Medium& medium, TextProgress& progress) {
+    const std::vector<std::string> settings = reference_settings(options, methods);
+    ReportReference reference = trace_reference(shot_with(shot, "reference", settings), medium, progress);
+    reference.summary.command = render_command(options, settings, "reference.exr");
+    return reference;
+}
+
+// Of the page's pictures, so that all are shown alike.
+double base_exposure(const Shot& shot, const ReportReference& reference) {
+    if (shot.exposure_given)
+        return shot.output.exposure_stops;
+    const Picture mean = mean_picture(reference.layers.at(""));
+    Image image{mean.width, mean.height, {{"", {"R", "G", "B"}, false, {}}}};
+    for (const Rgb& pixel : mean.pixels)
+        image.layers[0].pixels.insert(image.layers[0].pixels.end(), {pixel.x, pixel.y, pixel.z});
+    return automatic_exposure(image);
+}
+
+PagePictures begin_pictures(const ReportOptions& options, const Shot& shot, const ReportReference& reference) {
+    PagePictures pictures({options.picture_width, options.exposures, base_exposure(shot, reference), shot.output.view});
+    for (const auto& [layer, target] : reference.layers)
+        pictures.add_picture("reference", layer, mean_picture(target));
+    return pictures;
+}
+
+void write_report(const ReportFiles& files, const Report& report, const PagePictures& pictures) {
+    const nlohmann::ordered_json json = report_json(report);
+    write_text(files.data, json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+    write_text(files.measurements, measurements_csv(report));
+    write_text(files.times, times_csv(report));
+    write_text(files.page, report_page(json, pictures.to_json()));
+}
+
+}  // namespace
+
+int run_report(const ReportOptions& options) {
+    TextProgress progress(options.progress);
+    const ThreadLimit limit(options.threads);
+    const std::vector<Method> methods = parse_methods(options.methods);
+    const ReportFiles files = report_files(options);
+    Shot shot = load_shot(options.input, {options.preset, options.overrides}, progress);
+    const FrameFile frame = only_frame(shot, options);
+    std::vector<fs::path> inputs = {options.input, frame.file};
+    inputs.insert(inputs.end(), options.references.begin(), options.references.end());
+    check_outputs(files, inputs);
+    const std::vector<PlannedMethod> unframed = plan_runs(shot, methods);  // says what is wrong before anything is read
+    Report report = begin_report(options, shot, frame);
+    std::optional<ReportReference> reference;
+    if (!options.references.empty())
+        reference = read_reference({options.references.begin(), options.references.end()}, shot, frame.frame);
+
+    const Stopwatch watch;
+    Statistics loading;
+    const Medium medium = load_medium(shot, frame.file, loading, progress);
+    report.loading_seconds = watch.seconds();
+    fix_camera(shot, medium);
+    const std::vector<PlannedMethod> planned = plan_runs(shot, methods);
+    if (!reference)
+        reference = make_reference(options, planned, shot, medium, progress);
+    report.reference = reference->summary;
+    for (const std::string& layer : report_layers())
+        if (reference->layers.contains(layer))
+            report.layers.push_back(layer);
+    PagePictures pictures = begin_pictures(options, shot, *reference);
+    measure_runs(planned, medium, *reference, {options.repeats}, report, pictures, progress);
+    add_commands(options, planned, report);
+    progress.stage("writing");
+    write_report(files, report, pictures);
+    progress.finish();
+    std::fputs(times_table(report).c_str(), stdout);
+    for (const fs::path& file : {files.page, files.measurements, files.times, files.data})
+        fmt::print("{}\n", file.string());
+    return static_cast<int>(ExitCode::Success);
+}
+
+}  // namespace brisance

@@ -1,0 +1,140 @@
+#include "measure_runs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "independent_draw.h"
+#include "metrics/layers.h"
+#include "named_progress.h"
+#include "render/render_frame.h"
+#include "render_cost.h"
+#include "shot/read_shot.h"
+#include "shot/scene_differences.h"
+#include "shot/write_shot.h"
+
+namespace brisance {
+namespace {
+
+bool sets(const std::vector<std::string>& settings, const std::string& key) {
+    return std::any_of(settings.begin(), settings.end(),
+                       [&](const std::string& setting) { return setting.starts_with(key + "="); });
+}
+
+// The step alone says when a run stops, and cells are what is compared.
+void complete(const Shot& shot, std::vector<std::string>& settings) {
+    if (sets(settings, "tracing.samples") && shot.tracing.seconds > 0.0 && !sets(settings, "tracing.seconds"))
+        settings.push_back("tracing.seconds=none");
+    if (sets(settings, "tracing.samples") && shot.tracing.error > 0.0 && !sets(settings, "tracing.error"))
+        settings.push_back("tracing.error=none");
+    if (!shot.output.cell_layers)
+        settings.push_back("output.layers.cells=true");
+}
+
+PlannedRun plan_run(const Shot& shot, const Method& method, const MethodStep& step) {
+    PlannedRun run{step, method.settings, {}};
+    run.settings.insert(run.settings.end(), step.settings.begin(), step.settings.end());
+    complete(shot, run.settings);
+    const std::string name = fmt::format("{}, {}", method.label, step.label);
+    run.shot = shot_with(shot, name, run.settings);
+    const std::vector<std::string> changes = scene_differences(to_json(shot), to_json(run.shot));
+    if (!changes.empty())
+        throw Error(ExitCode::Usage, fmt::format("{}: a method may not change what is to be computed: {}", name,
+                                                 fmt::join(changes, "; ")));
+    return run;
+}
+
+struct Rendered {
+    RenderedFrame frame;
+    Cost cost;
+};
+
+Rendered render_repeatedly(const Shot& shot, const Medium& medium, int repeats, Progress& progress) {
+    Rendered result;
+    std::vector<Cost> costs;
+    for (int i = 0; i < repeats; ++i) {
+        const CostMeter meter;
+        result.frame = render_medium(shot, medium, progress);
+        costs.push_back(meter.cost());
+    }
+    const auto middle = costs.begin() + static_cast<std::ptrdiff_t>((costs.size() - 1) / 2);
+    std::nth_element(costs.begin(), middle, costs.end(),
+                     [](const Cost& a, const Cost& b) { return a.wall_seconds < b.wall_seconds; });
+    result.cost = *middle;
+    return result;
+}
+
+LayerErrors errors_of(const Comparison& comparison, const std::optional<double>& noise) {
+    LayerErrors errors;
+    errors.differences = comparison.differences;
+    errors.flip = comparison.flip.mean;
+    errors.not_finite = comparison.not_finite;
+    if (comparison.halves)
+        errors.noise_free = comparison.halves->noise_free;
+    errors.below_noise = noise && below_noise(errors.differences.rrmse, *noise);
+    return errors;
+}
+
+void compare_layers(const Image& image, bool margin, const ReportReference& reference, MeasuredRun& run,
+                    PagePictures& pictures) {
+    const std::vector<std::string> there = picture_layers(image);
+    for (const auto& [layer, target] : reference.layers) {
+        if (std::find(there.begin(), there.end(), layer) == there.end())
+            continue;
+        const Picture whole = picture_of(image, {layer}).picture;
+        const Picture picture = margin ? without_margin(whole) : whole;
+        const Comparison comparison = compare(picture, target);
+        const auto noise = reference.summary.noise.find(layer);
+        run.errors[layer] =
+            errors_of(comparison, noise == reference.summary.noise.end() ? std::nullopt : std::optional(noise->second));
+        pictures.add_picture(run.id, layer, picture);
+        pictures.add_errors(run.id, layer, picture, mean_picture(target), comparison.differences.epsilon,
+                            comparison.flip.errors);
+    }
+}
+
+}  // namespace
+
+Shot shot_with(const Shot& shot, const std::string& source, const std::vector<std::string>& settings) {
+    Shot result = parse_shot(to_json(shot), source, shot.folder, {"", settings});
+    result.camera = shot.camera;
+    result.camera_given = shot.camera_given;
+    return result;
+}
+
+std::vector<PlannedMethod> plan_runs(const Shot& shot, const std::vector<Method>& methods) {
+    std::vector<PlannedMethod> planned;
+    for (const Method& method : methods) {
+        planned.push_back({method, {}});
+        for (const MethodStep& step : method.steps)
+            planned.back().runs.push_back(plan_run(shot, method, step));
+    }
+    return planned;
+}
+
+void measure_runs(const std::vector<PlannedMethod>& methods, const Medium& medium, const ReportReference& reference,
+                  const MeasureOptions& options, Report& report, PagePictures& pictures, Progress& progress) {
+    for (std::size_t m = 0; m < methods.size(); ++m) {
+        const bool margin = reference.ordinary_draw && methods[m].method.unbiased;
+        MethodResult result{methods[m].method, {}};
+        for (std::size_t s = 0; s < methods[m].runs.size(); ++s) {
+            const PlannedRun& planned = methods[m].runs[s];
+            NamedProgress named(progress, fmt::format("{}, {}", result.method.label, planned.step.label));
+            Rendered rendered = render_repeatedly(margin ? drawn_independently(planned.shot) : planned.shot, medium,
+                                                  options.repeats, named);
+            MeasuredRun run;
+            run.id = fmt::format("method{}step{}", m + 1, s + 1);
+            run.step = planned.step;
+            run.cost = rendered.cost;
+            run.samples_per_pixel = rendered.frame.metadata.samples_per_pixel;
+            run.statistics = std::move(rendered.frame.statistics);
+            named.stage("measuring");
+            compare_layers(rendered.frame.image, margin, reference, run, pictures);
+            result.runs.push_back(std::move(run));
+        }
+        report.methods.push_back(std::move(result));
+    }
+}
+
+}  // namespace brisance

@@ -1,0 +1,43 @@
+// Renders every step of every method and measures it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "medium/medium.h"
+#include "page_pictures.h"
+#include "reference.h"
+#include "report.h"
+#include "shot/shot.h"
+
+namespace brisance {
+
+// One render that is to be measured.
+struct PlannedRun {
+    MethodStep step;
+    std::vector<std::string> settings;  // of method and step: what makes this of the shot
+    Shot shot;
+};
+
+struct PlannedMethod {
+    Method method;
+    std::vector<PlannedRun> runs;
+};
+
+// The shots of all runs, from the one that was asked for. Throws Error Usage for settings that no shot accepts, and for
+// those that would change what is true instead of how it is computed.
+std::vector<PlannedMethod> plan_runs(const Shot& shot, const std::vector<Method>& methods);
+
+// `shot` with settings over it; `source` stands for it in messages.
+Shot shot_with(const Shot& shot, const std::string& source, const std::vector<std::string>& settings);
+
+struct MeasureOptions {
+    int repeats = 1;  // of each render; its time is their median
+};
+
+// Adds the runs' results to `report`, whose reference is set, and their pictures to `pictures`.
+void measure_runs(const std::vector<PlannedMethod>& methods, const Medium& medium, const ReportReference& reference,
+                  const MeasureOptions& options, Report& report, PagePictures& pictures, Progress& progress);
+
+}  // namespace brisance

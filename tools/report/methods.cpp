@@ -1,0 +1,293 @@
+#include "methods.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "core/error.h"
+
+namespace brisance {
+namespace {
+
+using Settings = std::vector<std::string>;
+
+struct BuiltIn {
+    std::string name;
+    Settings settings;
+    bool path = false;
+};
+
+const std::vector<BuiltIn>& built_ins() {
+    static const std::vector<BuiltIn> all = {{"lighting_grid", {"method=lighting_grid"}, false},
+                                             {"path", {"method=path"}, true},
+                                             {"path_plain",
+                                              {"method=path", "tracing.emission=collision",
+                                               "tracing.light_sampling=false", "tracing.free_flight=null_collision"},
+                                              true}};
+    return all;
+}
+
+// From coarse to finer than the default, which is the third.
+const std::vector<Settings>& grid_ladder() {
+    static const std::vector<Settings> all = {
+        {"lighting.alpha=1", "lighting.shadow_resolution=8", "lighting.shadow_distances=6", "scattering.alpha=1"},
+        {"lighting.alpha=1.5", "lighting.shadow_resolution=12", "lighting.shadow_distances=8", "scattering.alpha=1.25"},
+        {"lighting.alpha=2", "lighting.shadow_resolution=20", "lighting.shadow_distances=12", "scattering.alpha=1.5"},
+        {"lighting.alpha=3", "lighting.shadow_resolution=24", "lighting.shadow_distances=12", "scattering.alpha=2"}};
+    return all;
+}
+
+const std::vector<std::string> kPathBudgets = {"4", "16", "64", "256"};
+
+[[noreturn]] void refuse(const std::string& line) {
+    throw Error(ExitCode::Usage, line);
+}
+
+// At commas outside of brackets and quotes: values may be lists.
+std::vector<std::string> split(const std::string& text) {
+    std::vector<std::string> parts(1);
+    int depth = 0;
+    bool quoted = false;
+    for (const char c : text) {
+        quoted = quoted != (c == '"');
+        depth += quoted ? 0 : (c == '[' || c == '{') - (c == ']' || c == '}');
+        if (c == ',' && depth == 0 && !quoted)
+            parts.emplace_back();
+        else
+            parts.back() += c;
+    }
+    return parts;
+}
+
+std::string key_of(const std::string& setting) {
+    return setting.substr(0, setting.find('='));
+}
+
+std::string value_of(const std::string& setting) {
+    return setting.substr(setting.find('=') + 1);
+}
+
+bool sets(const Settings& settings, const std::string& key) {
+    return std::any_of(settings.begin(), settings.end(), [&](const std::string& s) { return key_of(s) == key; });
+}
+
+// "LABEL:REST"; without a colon the label is empty.
+std::pair<std::string, std::string> split_label(const std::string& text) {
+    const std::size_t colon = text.find(':');
+    return colon == std::string::npos ? std::pair{std::string(), text}
+                                      : std::pair{text.substr(0, colon), text.substr(colon + 1)};
+}
+
+const BuiltIn& built_in(const std::string& name, const std::string& text) {
+    for (const BuiltIn& method : built_ins())
+        if (method.name == name)
+            return method;
+    refuse(fmt::format("--methods {}: no method is called \"{}\"; there are {}", text, name,
+                       fmt::join(built_in_methods(), ", ")));
+}
+
+Method parse_method(const std::string& text) {
+    const std::vector<std::string> parts = split(text);
+    const bool named = parts[0].find('=') != std::string::npos;
+    const BuiltIn& base = built_in(named ? value_of(parts[0]) : parts[0], text);
+    Method method{named ? key_of(parts[0]) : text, base.name, base.settings, {}, base.path, false};
+    if (method.label.empty() || method.label.find(':') != std::string::npos)
+        refuse(fmt::format("--methods {}: a label is not empty and holds no colon", text));
+    for (std::size_t i = 1; i < parts.size(); ++i) {
+        if (parts[i].find('=') == std::string::npos || parts[i][0] == '=')
+            refuse(fmt::format("--methods {}: \"{}\" is no setting; they look like tracing.free_flight=exact", text,
+                               parts[i]));
+        if (key_of(parts[i]) == "method")
+            refuse(fmt::format("--methods {}: the method is what stands first, not a setting", text));
+        method.settings.push_back(parts[i]);
+    }
+    return method;
+}
+
+// "lighting.alpha=2": the section says nothing new beside its method.
+std::string short_setting(const std::string& setting) {
+    const std::string key = key_of(setting);
+    if (key == "tracing.samples")
+        return value_of(setting) + " spp";
+    if (key == "tracing.seconds")
+        return value_of(setting) + " s";
+    return key.substr(key.rfind('.') + 1) + "=" + value_of(setting);
+}
+
+std::string label_of(const Settings& settings) {
+    std::vector<std::string> parts;
+    for (const std::string& setting : settings)
+        parts.push_back(short_setting(setting));
+    return fmt::format("{}", fmt::join(parts, " "));
+}
+
+MethodStep built_in_grid_step(std::size_t number, const Method& method) {
+    MethodStep step{fmt::format("step {}", number + 1), {}};
+    // What the method says of itself stays so at every step.
+    for (const std::string& setting : grid_ladder()[number])
+        if (!sets(method.settings, key_of(setting)))
+            step.settings.push_back(setting);
+    std::vector<std::string> values;
+    for (const std::string& setting : step.settings)
+        values.push_back(value_of(setting));
+    if (!values.empty())
+        step.label += fmt::format(": {}", fmt::join(values, "/"));
+    return step;
+}
+
+std::vector<MethodStep> grid_steps(const std::optional<std::vector<std::string>>& chosen, const Method& method) {
+    std::vector<MethodStep> steps;
+    const auto add = [&](std::size_t number) {
+        const MethodStep step = built_in_grid_step(number, method);
+        if (steps.empty() || steps.back().settings != step.settings)
+            steps.push_back(step);
+    };
+    if (!chosen)
+        for (std::size_t i = 0; i < grid_ladder().size(); ++i)
+            add(i);
+    for (const std::string& text : chosen.value_or(std::vector<std::string>{})) {
+        std::size_t number = 0;
+        const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+        if (error != std::errc() || rest != text.data() + text.size() || number < 1 || number > grid_ladder().size())
+            refuse(fmt::format("--budgets {}: the steps of lighting_grid are 1 to {}, not \"{}\"", method.label,
+                               grid_ladder().size(), text));
+        add(number - 1);
+    }
+    return steps;
+}
+
+bool stops(const Settings& settings) {
+    return sets(settings, "tracing.samples") || sets(settings, "tracing.seconds") || sets(settings, "tracing.error");
+}
+
+// Whoever names a time does not want the shot's number of samples to end it.
+void until(MethodStep& step) {
+    if (stops(step.settings) && !sets(step.settings, "tracing.samples"))
+        step.settings.push_back("tracing.samples=none");
+}
+
+std::vector<MethodStep> path_steps(const std::optional<std::vector<std::string>>& budgets, const Method& method) {
+    if (stops(method.settings)) {
+        if (budgets)
+            refuse(fmt::format("--budgets: {} says itself when it stops; leave one of the two out", method.label));
+        MethodStep step;
+        for (const std::string& setting : method.settings)
+            if (stops({setting}))
+                step.label += fmt::format("{}{}", step.label.empty() ? "" : " ", short_setting(setting));
+        if (!sets(method.settings, "tracing.samples"))
+            step.settings = {"tracing.samples=none"};
+        return {step};
+    }
+    std::vector<MethodStep> steps;
+    for (const std::string& samples : budgets.value_or(kPathBudgets))
+        steps.push_back({samples + " spp", {"tracing.samples=" + samples}});
+    return steps;
+}
+
+using Ladder = std::vector<std::pair<std::string, std::vector<std::string>>>;  // keys with their values, side by side
+
+std::vector<MethodStep> ladder_steps(const Ladder& ladder, const Method& method) {
+    std::vector<MethodStep> steps(ladder.front().second.size());
+    for (const auto& [key, values] : ladder) {
+        if (values.size() != steps.size())
+            refuse(fmt::format("--ladder {}: {} has {} values and {} has {}; they go side by side", method.label,
+                               ladder.front().first, steps.size(), key, values.size()));
+        for (std::size_t i = 0; i < steps.size(); ++i)
+            steps[i].settings.push_back(key + "=" + values[i]);
+    }
+    for (MethodStep& step : steps) {
+        step.label = label_of(step.settings);
+        until(step);
+    }
+    return steps;
+}
+
+struct Choices {
+    std::map<std::string, std::vector<std::string>> budgets;  // by label; "": of all path methods
+    std::map<std::string, Ladder> ladders;                    // by label
+};
+
+Choices parse_choices(const MethodOptions& options) {
+    Choices choices;
+    for (const std::string& text : options.budgets) {
+        const auto [label, list] = split_label(text);
+        if (!choices.budgets.emplace(label, split(list)).second)
+            refuse(fmt::format("--budgets: given twice for {}", label.empty() ? "all path methods" : label));
+    }
+    for (const std::string& text : options.ladders) {
+        const auto [label, list] = split_label(text);
+        const std::size_t equals = list.find('=');
+        if (label.empty() || equals == std::string::npos || equals == 0)
+            refuse(fmt::format("--ladder {}: expected METHOD:KEY=VALUE,VALUE,...", text));
+        choices.ladders[label].push_back({list.substr(0, equals), split(list.substr(equals + 1))});
+    }
+    for (const auto& [label, ladder] : choices.ladders)
+        if (choices.budgets.contains(label))
+            refuse(fmt::format("{}: --ladder and --budgets both say its steps; leave one of the two out", label));
+    return choices;
+}
+
+void check_labels(const std::vector<Method>& methods, const Choices& choices) {
+    std::set<std::string> labels;
+    for (const Method& method : methods)
+        if (!labels.insert(method.label).second)
+            refuse(fmt::format("--methods: two are called {}; give one a label: LABEL={}", method.label, method.base));
+    const auto check = [&](const std::string& label, const char* option) {
+        if (!label.empty() && !labels.contains(label))
+            refuse(
+                fmt::format("{} {}: no method has this label; there are {}", option, label, fmt::join(labels, ", ")));
+    };
+    for (const auto& [label, list] : choices.budgets)
+        check(label, "--budgets");
+    for (const auto& [label, ladder] : choices.ladders)
+        check(label, "--ladder");
+}
+
+void add_steps(Method& method, const Choices& choices) {
+    const auto ladder = choices.ladders.find(method.label);
+    const auto own = choices.budgets.find(method.label), common = choices.budgets.find("");
+    std::optional<std::vector<std::string>> budgets;
+    if (own != choices.budgets.end())
+        budgets = own->second;
+    else if (common != choices.budgets.end() && method.unbiased && !stops(method.settings))
+        budgets = common->second;
+    if (ladder != choices.ladders.end())
+        method.steps = ladder_steps(ladder->second, method);
+    else
+        method.steps = method.unbiased ? path_steps(budgets, method) : grid_steps(budgets, method);
+    // More samples, or more time, and nothing else that changes.
+    method.averages = method.unbiased && (ladder == choices.ladders.end() ||
+                                          std::all_of(ladder->second.begin(), ladder->second.end(),
+                                                      [](const auto& rung) { return stops({rung.first}); }));
+}
+
+}  // namespace
+
+const std::vector<std::string>& built_in_methods() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> all;
+        for (const BuiltIn& method : built_ins())
+            all.push_back(method.name);
+        return all;
+    }();
+    return names;
+}
+
+std::vector<Method> parse_methods(const MethodOptions& options) {
+    const std::vector<std::string> texts =
+        options.methods.empty() ? std::vector<std::string>{"lighting_grid", "path"} : options.methods;
+    std::vector<Method> methods;
+    for (const std::string& text : texts)
+        methods.push_back(parse_method(text));
+    const Choices choices = parse_choices(options);
+    check_labels(methods, choices);
+    for (Method& method : methods)
+        add_steps(method, choices);
+    return methods;
+}
+
+}  // namespace brisance

@@ -1,0 +1,42 @@
+// What a report compares: methods, each with a ladder of steps from cheap to good.
+//
+// A method:  NAME, or LABEL=NAME, followed by settings:    exact=path,tracing.free_flight=exact
+//   NAME is lighting_grid, path, or path_plain (the path tracer without what makes it fast).
+// A budget:  LIST for all path methods, or LABEL:LIST:     4,16,64,256    path:16,64    lighting_grid:2,4
+//   For path methods samples per pixel, for lighting_grid numbers of steps of the built-in ladder, 1 to 4.
+// A ladder:  LABEL:KEY=LIST, several of one label side by side, instead of the built-in steps:
+//   lighting_grid:lighting.alpha=1,1.5,2,3   lighting_grid:lighting.shadow_resolution=8,12,20,24
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace brisance {
+
+struct MethodStep {
+    std::string label;                  // "16 spp", "alpha=2"
+    std::vector<std::string> settings;  // "tracing.samples=16", over those of the method
+};
+
+struct Method {
+    std::string label;
+    std::string base;                   // the built-in method it is made of
+    std::vector<std::string> settings;  // "method=path", ..., over those of the shot
+    std::vector<MethodStep> steps;      // at least one
+    bool unbiased = false;
+    bool averages = false;  // its steps average more and more of the same: the error falls as time^-1/2
+};
+
+struct MethodOptions {
+    std::vector<std::string> methods;  // empty: lighting_grid and path
+    std::vector<std::string> budgets;
+    std::vector<std::string> ladders;
+};
+
+// Throws Error Usage; the values of settings are checked later, when a shot is made of them.
+std::vector<Method> parse_methods(const MethodOptions& options);
+
+// Names of the built-in methods.
+const std::vector<std::string>& built_in_methods();
+
+}  // namespace brisance

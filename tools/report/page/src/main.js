@@ -1,0 +1,30 @@
+import { addConvergence } from "./convergence.js";
+import { addCost } from "./cost.js";
+import { byId } from "./dom.js";
+import { addMeasurements } from "./measurements.js";
+import { addPictures } from "./pictures.js";
+import { addRepeat } from "./repeat.js";
+import { report } from "./report.js";
+import { addThemeChoice } from "./theme.js";
+
+const { shot, machine } = report;
+document.title = `${shot.name} \u2013 Brisance report`;
+byId("title").textContent = shot.name;
+byId("subtitle").textContent = [
+    `frame ${shot.frame} of ${shot.volume}`,
+    `${shot.width} \u00d7 ${shot.height} pixels`,
+    `${machine.processor}, ${machine.threads} ${machine.threads === 1 ? "thread" : "threads"}`,
+    `Brisance ${report.brisance}`,
+    report.date.replace("T", " ").replace("Z", " UTC"),
+].join(" \u00b7 ");
+
+addThemeChoice();
+const plot = addConvergence(byId("convergence"), byId("reach"), byId("equal-time"));
+const viewer = addPictures(byId("pictures"));
+addMeasurements(byId("measurements"));
+addCost(byId("cost"));
+addRepeat(byId("repeat"));
+plot.onPick((id) => viewer.show({ left: id }));
+
+// For scripts and the browser's console.
+window.brisanceReport = { report, plot, viewer };

@@ -1,0 +1,39 @@
+// The data that the program put into the page.
+import { clocks } from "./format.js";
+
+const parse = (id) => JSON.parse(document.getElementById(id).textContent);
+
+export const report = parse("report-data");
+export const pictures = parse("report-pictures");
+
+export const reference = "reference"; // id of its pictures
+
+const runs = new Map(report.methods.flatMap((method) => method.runs.map((run) => [run.id, { method, run }])));
+
+export const findRun = (id) => runs.get(id);
+
+export const layers = report.layers;
+
+// Measures that were taken of this report's runs, the one that counts first.
+export const takenMeasures = ["noise_free", "rrmse", "relmse", "mape", "flip"].filter((measure) =>
+    report.methods.some((method) => method.runs.some((run) => typeof run.errors[""]?.[measure] === "number")),
+);
+
+export function nameOf(id) {
+    if (id === reference) return "Reference";
+    const { method, run } = runs.get(id);
+    return `${method.label}, ${run.label}`;
+}
+
+// What a plot can show of a method: [{run, seconds, error}], by time. An error of 0 is one too small to be told from
+// the reference, and has no place on a logarithmic axis.
+export function pointsOf(method, layer, measure, clock) {
+    return method.runs
+        .map((run) => ({ run, seconds: run[clocks[clock].key], error: run.errors[layer]?.[measure] }))
+        .filter((point) => point.seconds > 0 && point.error > 0)
+        .sort((a, b) => a.seconds - b.seconds);
+}
+
+export const lawOf = (method, layer, clock) => method.convergence[layer]?.[clock];
+
+export const seriesColour = (index) => `var(--series-${index % 8})`;

@@ -1,0 +1,36 @@
+// What a report's methods are measured against.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/progress.h"
+#include "medium/medium.h"
+#include "metrics/comparison.h"
+#include "report.h"
+#include "shot/shot.h"
+
+namespace brisance {
+
+struct ReportReference {
+    ReferenceSummary summary;
+    std::map<std::string, Reference> layers;  // "" the beauty, and the ledger's cells it has
+    bool ordinary_draw = false;               // traced with the random numbers of an ordinary render
+};
+
+// Layers that a report compares, in this order: the beauty and the ledger's cells.
+const std::vector<std::string>& report_layers();
+
+// Both halves of a path-traced picture of `shot`, whose method and stop are set. The camera is given.
+ReportReference trace_reference(const Shot& shot, const Medium& medium, Progress& progress);
+
+// One EXR, or two independent halves. Throws Error MissingInput or BadData; the latter names all in which it differs
+// from the shot: size, frame, scene.
+ReportReference read_reference(const std::vector<std::filesystem::path>& files, const Shot& shot, int frame);
+
+// The mean of its halves.
+Picture mean_picture(const Reference& reference);
+
+}  // namespace brisance

@@ -1,0 +1,83 @@
+// One case of the stability matrix: what is rendered, what it ought to be, and how near is near enough.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "media/node_media.h"
+#include "render/render_frame.h"
+
+namespace brisance::stability {
+
+// A medium, and a shot whose camera looks at it. The method is filled in by whoever renders.
+struct Scene {
+    Medium medium;
+    Shot shot;
+};
+
+// How far a picture is from what it ought to be, both as parts of the latter.
+struct Measured {
+    double error = 0.0;
+    double noise = 0.0;  // standard error of `error`, where the method or the reference is random
+};
+
+using Render = std::function<RenderedFrame(const Scene&, RenderMethod)>;
+using Measure = std::function<Measured(const Scene&, const RenderedFrame&, RenderMethod, const Render&)>;
+
+struct Tolerance {
+    std::optional<double> lighting_grid, path;  // empty: the method does not render this case
+    std::string reason;                         // why no smaller
+    const std::optional<double>& of(RenderMethod method) const {
+        return method == RenderMethod::LightingGrid ? lighting_grid : path;
+    }
+};
+
+struct Case {
+    std::string name;   // family/what
+    std::string truth;  // what the picture is held against
+    Tolerance tolerance;
+    std::function<Scene()> scene;
+    Measure measure;
+    bool quick = false;  // of the subset that every test run renders
+
+    std::string family() const { return name.substr(0, name.find('/')); }
+};
+
+// Measures. Pictures of the lighting grid are judged by the relative L2 distance over all pixels, those of the path
+// tracer by the relative error of their mean, since noise is no error: its standard error comes from the two halves.
+
+// All pixels of `layer` ought to have this radiance.
+Measure every_pixel_is(const Rgb& radiance, const std::string& layer = "");
+
+// Each pixel of `layer` ought to have the radiance of the ray through its middle; origin and direction in world space.
+using RadianceOfRay = std::function<double(const dvec3& origin, const dvec3& direction)>;
+Measure every_ray_is(const RadianceOfRay& radiance, const std::string& layer = "");
+
+// Like the picture of another scene by the same method.
+Measure same_picture_as(const std::function<Scene()>& other);
+
+// Power through the picture, times 4 pi: for media seen from afar that look the same from everywhere. `power` is over
+// 4 pi [W/sr].
+Measure power_is(const std::function<double(const Scene&)>& power);
+
+// Like the path tracer's picture, of this many paths per pixel; the path tracer itself is held against its other
+// estimators (null collisions, ratio tracking, emission at collisions).
+Measure like_the_reference(int samples);
+
+// The families.
+std::vector<Case> depth_cases();
+std::vector<Case> albedo_cases();
+std::vector<Case> phase_cases();
+std::vector<Case> contrast_cases();
+std::vector<Case> emission_cases();
+std::vector<Case> scale_cases();
+std::vector<Case> lattice_cases();
+std::vector<Case> shadow_cases();
+std::vector<Case> camera_cases();
+std::vector<Case> light_cases();
+
+std::vector<Case> all_cases();
+
+}  // namespace brisance::stability
