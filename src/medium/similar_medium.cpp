@@ -9,9 +9,10 @@ namespace brisance {
 
 namespace {
 
-// Optical depth of a voxel at most: isothermal half-spaces then come out right to 3 % for albedos up to 0.95; they are
-// too dim below, too bright above.
-constexpr double kMostDepth = 4.0;
+// Optical depth of a voxel at most: in the skin of smoke, where isothermal half-spaces then come out right to 3 %; and
+// below the skin, where light has long forgotten where it came from, and walls are to stay walls.
+constexpr float kSkinDepth = 2.0f, kMostDepth = 8.0f;
+constexpr float kSteepest = 4.0f;  // a voxel's extinction over that of its thinnest neighbour, once above kSkinDepth
 constexpr double kMostAbsorption = 0.05;  // share of extinction beyond which absorption is no longer raised
 
 // What a node becomes.
@@ -26,6 +27,25 @@ struct Similar {
 Similar without_forward(double extinction, const dvec3& albedo, double share) {
     const double left = 1.0 - std::min({albedo.x, albedo.y, albedo.z}) * share;
     return {extinction * left, dvec3(1.0) - (dvec3(1.0) - albedo) / left, dvec3(1.0 / left), dvec3(1.0)};
+}
+
+// Extinction at most at every node [1/m].
+std::vector<float> limits(const Medium& medium) {
+    constexpr int kWide = BrickLattice::kSize + 2;
+    const float skin = kSkinDepth / medium.spacing, most = kMostDepth / medium.spacing;
+    std::vector<float> limit(medium.extinction.size());
+    parallel_for(medium.lattice.brick_count(), [&](std::size_t b) {
+        std::vector<float> box(kWide * kWide * kWide);
+        copy_box(medium.lattice, medium.extinction, 1, medium.lattice.first_node(b) - 1, ivec3(kWide), box);
+        for (int n = 0; n < BrickLattice::kNodes; ++n) {
+            const ivec3 p = BrickLattice::node_in_brick(n);
+            float least = most;
+            for (int k = 0; k < 27; ++k)
+                least = std::min(least, box[((p.x + k / 9) * kWide + p.y + k / 3 % 3) * kWide + p.z + k % 3]);
+            limit[b * BrickLattice::kNodes + n] = std::clamp(kSteepest * least, skin, most);
+        }
+    });
+    return limit;
 }
 
 void hold_down(Similar& s, double most) {
@@ -53,17 +73,17 @@ float forward_share(float mean_cosine) {
 
 std::optional<Medium> similar_medium(const Medium& medium, bool all_orders) {
     const double share = all_orders ? forward_share(medium.mean_cosine) : 0.0;
-    const double most = kMostDepth / medium.spacing;
-    if (share == 0.0 && medium.max_extinction <= most)
+    if (share == 0.0 && medium.max_extinction * medium.spacing <= kSkinDepth)
         return std::nullopt;
     Medium m = medium;
     m.mean_cosine = static_cast<float>((medium.mean_cosine - share) / (1.0 - share));
     m.albedo_nodes.resize(m.extinction.size());
+    const std::vector<float> limit = limits(medium);
     parallel_for(
         m.extinction.size(),
         [&](std::size_t i) {
             Similar s = without_forward(medium.extinction[i], dvec3(medium.albedo_at(i)), share);
-            hold_down(s, most);
+            hold_down(s, limit[i]);
             m.extinction[i] = static_cast<float>(s.extinction);
             m.albedo_nodes[i] = Rgb(s.albedo);
             if (!m.source.empty())

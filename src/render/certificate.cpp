@@ -11,6 +11,7 @@ namespace {
 nlohmann::ordered_json json_of(const CertifiedError& e) {
     // What is infinite becomes null.
     return {{"error", e.error},
+            {"error_square", e.square},
             {"error_interval", {e.error_interval.low, e.error_interval.high}},
             {"mean", e.mean},
             {"mean_interval", {e.mean_interval.low, e.mean_interval.high}},

@@ -199,7 +199,8 @@ private:
 // Of sqrt(s.a / (norm - s.b)).
 void judge_error(CertifiedError& e, const SurveyedSums& s, double norm) {
     const double t = half_width(s.strata), t2 = t * t, below = norm - s.b;
-    e.error = below > 0.0 ? std::sqrt(std::max(0.0, s.a / below)) : kInfinity;
+    e.square = below > 0.0 ? s.a / below : kInfinity;
+    e.error = std::sqrt(std::max(0.0, e.square));
     e.error_interval = {0.0, kInfinity};
     e.largest_share = s.largest_share;
     // Fieller: all q for which a - q below is within t of its standard errors, (a - q below)^2 <= t^2 var(a + q b).

@@ -70,7 +70,7 @@ SurveyedSums surveyed_sums(const std::vector<double>& a, const std::vector<doubl
 double half_width(std::size_t degrees_of_freedom) {
     constexpr double z = 1.959963984540054;
     const double nu = static_cast<double>(std::max<std::size_t>(degrees_of_freedom, 1));
-    // Cornish-Fisher; exact to a thousandth from ten degrees of freedom on.
+    // Cornish-Fisher; within two thousandths from ten degrees of freedom on.
     return z + (z * z * z + z) / (4.0 * nu) + z * (5.0 * z * z * z * z + 16.0 * z * z + 3.0) / (96.0 * nu * nu);
 }
 

@@ -289,12 +289,13 @@ private:
     const OutputSettings& output_;
 };
 
-// Alpha, depth and albedo have nothing random about them: the camera's march gives them exactly.
+// Alpha, depth and albedo have nothing random about them: a few of the camera's marches give them.
 Image sampled_layers(const Medium& medium, const Camera& camera) {
+    constexpr int kEnough = 2;  // rays along a pixel's side
     const CellField field(medium, {}, {});
     PictureSettings settings;
-    settings.samples_per_axis =
-        camera.settings().samples_per_axis > 0 ? camera.settings().samples_per_axis : automatic_samples(camera, field);
+    const int asked = camera.settings().samples_per_axis;
+    settings.samples_per_axis = asked > 0 ? asked : std::min(automatic_samples(camera, field), kEnough);
     settings.cells = false;
     Progress silent;
     return render_picture(field, camera, settings, {}, silent);

@@ -49,11 +49,18 @@ Medium coarse_medium(const ExtinctionPyramid& fine, int level) {
         lattice = std::move(coarse);
         scattering = std::move(values);
     }
-    m.albedo_nodes.resize(m.extinction.size(), Rgb(0.0f));
-    for (std::size_t i = 0; i < m.extinction.size(); ++i)
+    // Where nothing is to be averaged the node's own albedo stays: interpolation reaches there.
+    m.albedo_nodes.resize(m.extinction.size(), f.albedo);
+    for (std::size_t i = 0; i < m.extinction.size(); ++i) {
+        const ivec3 vertex = m.lattice.first_node(i / BrickLattice::kNodes) +
+                             BrickLattice::node_in_brick(int(i % BrickLattice::kNodes));
+        const std::int64_t own = f.lattice.find_node(vertex * (1 << level));
         if (m.extinction[i] > 0.0f)
             m.albedo_nodes[i] = glm::min(
                 Rgb(scattering[i * 3], scattering[i * 3 + 1], scattering[i * 3 + 2]) / m.extinction[i], Rgb(1.0f));
+        else if (own >= 0)
+            m.albedo_nodes[i] = f.albedo_nodes[own];
+    }
     return m;
 }
 

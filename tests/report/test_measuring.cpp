@@ -107,14 +107,17 @@ TEST(Measuring, FindsTheErrorsOfThePathTracerHalvedByFourTimesThePaths) {
 
 class GivenReference : public ::testing::Test {
 protected:
-    std::filesystem::path write(const std::string& name, const Shot& shot, float value, int frame = 1) {
-        const std::filesystem::path file = folder_.path() / name;
+    std::filesystem::path write(const std::string& name, const Shot& shot, float value, int frame = 1,
+                                const std::string& half = {}) {
+        std::filesystem::path file = folder_.path() / name;
         Layer layer{"", {"R", "G", "B"}, true, {}};
         const auto count = static_cast<std::size_t>(shot.camera.width * shot.camera.height);
         layer.pixels.assign(3 * count, value);
         ImageMetadata metadata;
         metadata.frame = frame;
         metadata.text["brisance/shot"] = to_json(shot);
+        if (!half.empty())
+            metadata.text["brisance/half"] = half;
         write_exr(file, {shot.camera.width, shot.camera.height, {layer}}, metadata);
         return file;
     }
@@ -150,7 +153,10 @@ TEST_F(GivenReference, OfAnotherPictureIsRefusedWithWhatDiffers) {
     EXPECT_HAS(refusal({write("g.exr", other, 1.0f)}), "smoke.mean_cosine: 0.5 against 0");
     EXPECT_HAS(refusal({write("late.exr", shot(), 1.0f, 7)}), "frame 7, not 1");
     const auto a = write("a.exr", shot(), 1.0f);
-    EXPECT_HAS(refusal({a, a}), "no independent halves");
+    EXPECT_HAS(refusal({a, a}), "hold the same pixels: they are no independent halves");
+    const auto first = write("1.A.exr", shot(), 1.0f, 1, "A"), second = write("2.A.exr", shot(), 1.1f, 1, "A");
+    EXPECT_HAS(refusal({first, second}), "are both half A: they are no independent halves");
+    EXPECT_EQ(refusal({first, write("1.B.exr", shot(), 1.1f, 1, "B")}), "");
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ TEST(Png, HoldsColoursUnderSomeFilter) {
                                    a <= b && a <= c ? left
                                    : b <= c         ? above
                                                     : corner};
-            const int filter = rows[static_cast<std::size_t>(y * (3 * width + 1))];
+            const int filter = static_cast<unsigned char>(rows[static_cast<std::size_t>(y * (3 * width + 1))]);
             ASSERT_LT(filter, 5);
             back[static_cast<std::size_t>(y * 3 * width + x)] = static_cast<std::uint8_t>(
                 rows[static_cast<std::size_t>(y * (3 * width + 1) + 1 + x)] + guesses[filter]);

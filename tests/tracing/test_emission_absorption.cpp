@@ -19,12 +19,6 @@ std::string depth_of(double depth) {
     return "optical depth " + std::to_string(depth);
 }
 
-TracingSettings not_aimed() {
-    TracingSettings settings;
-    settings.aimed = false;  // nothing scatters
-    return settings;
-}
-
 struct Row {
     double depth;
     double slab, centre, emissivity, escape;  // escape: of a photon emitted in the ball of that optical radius
@@ -43,7 +37,7 @@ TEST(EmittingLines, SlabsRadiateOneMinusTransmittance) {
     Rows rows("emitting slabs");
     for (const Row& row : kRows)
         for (const int nodes : {1, 6, 30}) {
-            const Traced traced(slab(nodes, row.depth, Rgb(0.0f)), not_aimed());
+            const Traced traced(slab(nodes, row.depth, Rgb(0.0f)));
             const Estimate e = estimate_to(kSharp, 3, nodes, [&](const dvec3& place, Rng& rng, double* out) {
                 traced.look(ray_into_layers(1.0), place.x, rng, out);
             });
@@ -57,7 +51,7 @@ TEST(EmittingLines, ALayerBehindALayerIsSeenThroughIt) {
         for (const double second : {0.2, 2.0, 50.0}) {
             const auto density = [=](int z) { return float(z <= 4 ? first / 4 : z > 8 ? second / 6 : 0.0); };
             Recipe r = layers(14, density, [](int z) { return z <= 6 ? 3.0f : 0.5f; });
-            const Traced traced(r, not_aimed());
+            const Traced traced(r);
             const Estimate e = estimate_to(kSharp, 3, 1, [&](const dvec3& place, Rng& rng, double* out) {
                 traced.look(ray_into_layers(0.7), place.x, rng, out);
             });
@@ -70,7 +64,7 @@ TEST(EmittingLines, ALayerBehindALayerIsSeenThroughIt) {
 TEST(EmittingLines, BallsRadiateAsTheirChordsAndSurfacesSay) {
     Rows rows("emitting balls");
     for (const Row& row : kRows) {
-        const Traced traced(scattering_ball(kBallNodes, row.depth, Rgb(0.0f)), not_aimed());
+        const Traced traced(scattering_ball(kBallNodes, row.depth, Rgb(0.0f)));
         const Estimate centre = estimate_to(kSharp, 3, 1, [&](const dvec3& place, Rng& rng, double* out) {
             traced.look(ray_through_middle(place.y, place.z), place.x, rng, out);
         });
@@ -93,7 +87,7 @@ TEST(EmittingLines, BallsRadiateAsTheirChordsAndSurfacesSay) {
 TEST(EmittingLines, TheMiddleOfABallSeesOneRadius) {
     Rows rows("from the middle");
     for (const Row& row : kRows) {
-        const Traced traced(scattering_ball(kBallNodes, row.depth, Rgb(0.0f)), not_aimed());
+        const Traced traced(scattering_ball(kBallNodes, row.depth, Rgb(0.0f)));
         const Estimate e = estimate_to(kSharp, 3, 1, [&](const dvec3& place, Rng& rng, double* out) {
             traced.look({dvec3(0.0), uniform_direction(place.y, place.z)}, place.x, rng, out);
         });
@@ -109,7 +103,7 @@ TEST(EmittingLines, AFlameInSmokeIsDimmedByIt) {
         Recipe r = layers(30, one, [](int z) { return z > 0 && z <= 30 ? 1.0f : 0.0f; });
         r.settings.smoke.extinction_per_metre = static_cast<float>(voxel);
         r.settings.fire.convention = EmissionConvention::Direct;
-        const Traced traced(r, not_aimed());
+        const Traced traced(r);
         const Estimate e = estimate_to(kSharp, 3, 1, [&](const dvec3& place, Rng& rng, double* out) {
             traced.look(ray_into_layers(0.8), place.x, rng, out);
         });
@@ -125,7 +119,7 @@ TEST(EmittingLines, AFlameBehindSmokeIsSeenThroughIt) {
         const auto density = [=](int z) { return float(z <= 20 ? depth / 20 : 0.0); };
         Recipe r = layers(24, density, [](int z) { return z == 23 ? 1.0f : 0.0f; });
         r.settings.fire.convention = EmissionConvention::Direct;
-        const Traced traced(r, not_aimed());
+        const Traced traced(r);
         const Estimate e = estimate_to(kSharp, 3, 1, [&](const dvec3& place, Rng& rng, double* out) {
             traced.look(ray_into_layers(1.0), place.x, rng, out);
         });

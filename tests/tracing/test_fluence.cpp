@@ -30,9 +30,7 @@ Estimate fluence(const Traced& traced, double r) {
 }
 
 Traced unscattered(const Recipe& recipe) {
-    TracingSettings settings;
-    settings.aimed = false;
-    return Traced(recipe, settings, 0);
+    return Traced(recipe, {}, 0);
 }
 
 // j = R = 1, no extinction: 2 pi + pi (1 - r^2) / r ln |(1 + r) / (1 - r)|.

@@ -98,13 +98,13 @@ constexpr SlabTable kSlabs[] = {
 constexpr double kSlabDigits = 1e-5;
 
 // Three rows of the table at once, in the three channels.
-void expect_slabs(Rows& rows, const std::array<int, 3>& tables, const TracingSettings& settings, double sharp) {
+void expect_slabs(Rows& rows, const std::array<int, 3>& tables, double sharp) {
     Rgb albedo;
     for (int c = 0; c < 3; ++c)
         albedo[c] = static_cast<float>(kSlabs[tables[c]].albedo);
     for (int i = 0; i < 8; ++i) {
         const double thickness = kSlabs[0].rows[i].thickness;
-        const Traced traced(slab(1 + i % 6, thickness, albedo), settings);
+        const Traced traced(slab(1 + i % 6, thickness, albedo));
         for (const double mu : {1.0, 0.5}) {
             const Ray ray = ray_into_layers(mu);
             const Estimate e = estimate_to(sharp, 3, i, [&](const dvec3& place, Rng& rng, double* out) {
@@ -120,19 +120,19 @@ void expect_slabs(Rows& rows, const std::array<int, 3>& tables, const TracingSet
 }
 
 TEST(Slabs, ShineByTheirEmissivity) {
-    Rows rows("slabs, default settings");
-    expect_slabs(rows, {0, 1, 2}, {}, kSharp);
+    Rows rows("slabs");
+    expect_slabs(rows, {0, 1, 2}, kSharp);
 }
 
 TEST(Slabs, OfBrightSmokeShineByTheirEmissivity) {
     Rows rows("slabs, high albedo");
-    expect_slabs(rows, {3, 4, 4}, plain_paths(), kSharp);
+    expect_slabs(rows, {3, 4, 4}, kSharp);
 }
 
 // Hundreds of scatterings to a path: sampled to half a percent.
 TEST(Slabs, OfTheBrightestSmokeShineByTheirEmissivity) {
     Rows rows("slabs, highest albedo");
-    expect_slabs(rows, {5, 5, 6}, plain_paths(), 0.005);
+    expect_slabs(rows, {5, 5, 6}, 0.005);
 }
 
 // Van de Hulst's slab, as quoted with MCML: reflection 0.097395, transmission 0.660958.
@@ -140,13 +140,11 @@ TEST(Slabs, ThatScatterForwardShineByTheirEmissivity) {
     Rows rows("slab, g = 0.75");
     Recipe r = slab(5, 2.0, Rgb(0.9f));
     r.settings.smoke.mean_cosine = 0.75f;
-    for (const bool defaults : {false, true}) {
-        const Traced traced(r, defaults ? TracingSettings() : plain_paths());
-        const Estimate e = estimate_to(kSharp, 3, 1, [&](const dvec3& place, Rng& rng, double* out) {
-            traced.look(ray_into_layers(1.0), place.x, rng, out);
-        });
-        rows.expect(defaults ? "default" : "plain", e.mean[0], e.error[0], 1.0 - 0.097395 - 0.660958, 1e-6);
-    }
+    const Traced traced(r);
+    const Estimate e = estimate_to(kSharp, 3, 1, [&](const dvec3& place, Rng& rng, double* out) {
+        traced.look(ray_into_layers(1.0), place.x, rng, out);
+    });
+    rows.expect("albedo 0.9, thickness 2", e.mean[0], e.error[0], 1.0 - 0.097395 - 0.660958, 1e-6);
 }
 
 // Chandrasekhar's H: an isothermal half space shines by sqrt(1 - albedo) H(mu).
@@ -168,12 +166,11 @@ constexpr HTable kH[] = {
 };
 
 // `voxel` is the optical depth of one voxel; six of them are as good as endless.
-void expect_half_space(Rows& rows, const std::array<int, 3>& tables, std::initializer_list<int> mus, double voxel,
-                       const TracingSettings& settings, double sharp) {
+void expect_half_space(Rows& rows, const std::array<int, 3>& tables, std::initializer_list<int> mus, double voxel, double sharp) {
     Rgb albedo;
     for (int c = 0; c < 3; ++c)
         albedo[c] = static_cast<float>(kH[tables[c]].albedo);
-    const Traced traced(slab(6, 6.0 * voxel, albedo), settings);
+    const Traced traced(slab(6, 6.0 * voxel, albedo));
     for (const int i : mus) {
         const Ray ray = ray_into_layers(kMu[i]);
         const Estimate e = estimate_to(sharp, 3, 100 + i, [&](const dvec3& place, Rng& rng, double* out) {
@@ -188,27 +185,27 @@ void expect_half_space(Rows& rows, const std::array<int, 3>& tables, std::initia
 }
 
 TEST(HalfSpace, ShinesByChandrasekharsH) {
-    Rows rows("half space, default settings");
-    expect_half_space(rows, {0, 1, 2}, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, 6.0, {}, kSharp);
+    Rows rows("half space");
+    expect_half_space(rows, {0, 1, 2}, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, 6.0, kSharp);
 }
 
 TEST(HalfSpace, OfBrightSmokeShinesByChandrasekharsH) {
     Rows rows("half space, high albedo");
-    expect_half_space(rows, {3, 4, 4}, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, 6.0, plain_paths(), kSharp);
+    expect_half_space(rows, {3, 4, 4}, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, 6.0, kSharp);
 }
 
 // A path's scatterings are many and very unequal: sampled to one percent.
 TEST(HalfSpace, OfTheBrightestSmokeShinesByChandrasekharsH) {
     Rows rows("half space, highest albedo");
-    expect_half_space(rows, {4, 4, 5}, {1, 5, 10}, 12.0, plain_paths(), 0.005);
-    expect_half_space(rows, {6, 6, 6}, {10}, 40.0, plain_paths(), 0.02);
+    expect_half_space(rows, {4, 4, 5}, {1, 5, 10}, 12.0, 0.005);
+    expect_half_space(rows, {6, 6, 6}, {10}, 40.0, 0.02);
 }
 
 // All light comes from a skin far thinner than a voxel.
 TEST(HalfSpace, OfStiffSmokeShinesTheSame) {
     Rows rows("half space, stiff voxels");
     for (const double voxel : {1e2, 1e4, 1e6})
-        expect_half_space(rows, {0, 1, 2}, {1, 10}, voxel, voxel == 1e4 ? TracingSettings() : plain_paths(), kSharp);
+        expect_half_space(rows, {0, 1, 2}, {1, 10}, voxel, kSharp);
 }
 
 }  // namespace

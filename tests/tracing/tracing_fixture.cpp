@@ -77,13 +77,6 @@ void Traced::look(const Ray& ray, double place, Rng& rng, double* out) const {
         out[c] = all[c];
 }
 
-TracingSettings plain_paths() {
-    TracingSettings settings;
-    settings.light_sampling = false;
-    settings.aimed = false;
-    return settings;
-}
-
 // Products of two trilinear fields are integrated by two Gauss points to an axis of every cell.
 dvec3 emitted_power(const Medium& medium) {
     const TrackingField field(medium);

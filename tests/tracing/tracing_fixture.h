@@ -41,9 +41,6 @@ struct Traced {
     PathTracer tracer;
 };
 
-// Neither rays toward the fire nor aiming: what a plane-parallel layer of high albedo needs least of.
-TracingSettings plain_paths();
-
 // Power that the medium emits, 4 pi times the integral of j; the trilinear field's integral is the nodes' sum.
 dvec3 emitted_power(const Medium& medium);
 

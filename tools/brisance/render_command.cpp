@@ -162,7 +162,7 @@ void write_halves(const RenderedFrame& frame, const FrameOutput& output, Progres
         ImageMetadata metadata = frame.metadata;
         metadata.samples_per_pixel /= 2.0;
         metadata.text.erase("brisance/certificate");
-        metadata.text["brisance/half"] = half == 0 ? "A" : "B";
+        metadata.text.insert_or_assign("brisance/half", std::string(1, half == 0 ? 'A' : 'B'));
         write_exr(output.halves[half], frame.halves[half], metadata);
         announce(output.halves[half]);
     }

@@ -46,7 +46,7 @@ ReportFiles report_files(const ReportOptions& options) {
     return {page, beside(".csv"), beside(".times.csv"), beside(".json")};
 }
 
-void check_outputs(const ReportFiles& files, std::vector<fs::path> inputs) {
+void check_outputs(const ReportFiles& files, const std::vector<fs::path>& inputs) {
     for (const fs::path& file : {files.page, files.measurements, files.times, files.data}) {
         for (const fs::path& input : inputs) {
             std::error_code error;
@@ -65,6 +65,7 @@ FrameFile only_frame(const Shot& shot, const ReportOptions& options) {
     if (frames.size() == 1)
         return frames.front();
     std::vector<int> numbers;
+    numbers.reserve(frames.size());
     for (const FrameFile& frame : frames)
         numbers.push_back(frame.frame);
     throw Error(ExitCode::Usage,
@@ -91,10 +92,13 @@ std::vector<std::string> reference_settings(const ReportOptions& options, const 
     int samples = options.reference_samples;
     if (samples == 0 && options.reference_seconds == 0.0)
         samples = std::max(kLeastReferenceSamples, kReferenceOverBudget * largest_budget(methods));
-    return {"method=path", samples > 0 ? fmt::format("tracing.samples={}", samples) : "tracing.samples=none",
+    return {"method=path",
+            samples > 0 ? fmt::format("tracing.samples={}", samples) : "tracing.samples=none",
             options.reference_seconds > 0.0 ? fmt::format("tracing.seconds={}", options.reference_seconds)
                                             : "tracing.seconds=none",
-            "tracing.error=none", "output.layers.cells=true"};
+            "tracing.error=none",
+            "output.layers.cells=true",
+            "output.halves=true"};
 }
 
 // The words that render with `settings` over the shot as it was asked for.

@@ -15,20 +15,11 @@ double on_line(double x, double x0, double y0, double x1, double y1) {
     return std::exp(std::log(y0) + share * (std::log(y1) - std::log(y0)));
 }
 
-}  // namespace
-
-ErrorCurve::ErrorCurve(std::vector<CurvePoint> points, Tail tail) : points_(std::move(points)), tail_(tail) {
-    std::erase_if(points_,
-                  [](const CurvePoint& p) { return !(p.seconds > 0.0) || !std::isfinite(p.error) || p.error < 0.0; });
-    std::stable_sort(points_.begin(), points_.end(),
-                     [](const CurvePoint& a, const CurvePoint& b) { return a.seconds < b.seconds; });
-}
-
-std::optional<PowerLaw> ErrorCurve::law(double after) const {
+std::optional<PowerLaw> fit(const std::vector<CurvePoint>& points, double CurvePoint::*against) {
     std::vector<double> xs, ys;
-    for (const CurvePoint& p : points_)
-        if (p.error > 0.0 && p.seconds > after) {
-            xs.push_back(std::log(p.seconds - after));
+    for (const CurvePoint& p : points)
+        if (p.error > 0.0 && p.*against > 0.0) {
+            xs.push_back(std::log(p.*against));
             ys.push_back(std::log(p.error));
         }
     if (xs.size() < 2)
@@ -45,6 +36,23 @@ std::optional<PowerLaw> ErrorCurve::law(double after) const {
         return std::nullopt;
     const double exponent = xy / xx;
     return PowerLaw{std::exp(mean_y - exponent * mean_x), exponent};
+}
+
+}  // namespace
+
+ErrorCurve::ErrorCurve(std::vector<CurvePoint> points, Tail tail) : points_(std::move(points)), tail_(tail) {
+    std::erase_if(points_,
+                  [](const CurvePoint& p) { return !(p.seconds > 0.0) || !std::isfinite(p.error) || p.error < 0.0; });
+    std::stable_sort(points_.begin(), points_.end(),
+                     [](const CurvePoint& a, const CurvePoint& b) { return a.seconds < b.seconds; });
+}
+
+std::optional<PowerLaw> ErrorCurve::law() const {
+    return fit(points_, &CurvePoint::seconds);
+}
+
+std::optional<PowerLaw> ErrorCurve::law_of_work() const {
+    return fit(points_, &CurvePoint::work);
 }
 
 double ErrorCurve::startup() const {

@@ -18,7 +18,7 @@ enum class Tail {
     Floor     // a biased method: nothing below the smallest error that was measured
 };
 
-// error = constant * seconds^exponent
+// error = constant * seconds^exponent, or of work
 struct PowerLaw {
     double constant = 0.0;
     double exponent = 0.0;
@@ -41,9 +41,11 @@ public:
     // Points in any order. Those without a positive time or with an error that is not finite are left out.
     ErrorCurve(std::vector<CurvePoint> points, Tail tail);
 
-    // Least squares in the logarithms, over all errors above 0 at times above `after`, time counted from there; absent
-    // unless two of them differ in time.
-    std::optional<PowerLaw> law(double after = 0.0) const;
+    // Least squares in the logarithms, over all errors above 0; absent unless two of them differ in time.
+    std::optional<PowerLaw> law() const;
+
+    // The same against work instead of time: what no other program on the machine can disturb.
+    std::optional<PowerLaw> law_of_work() const;
 
     // The time [s] that averaging does not shorten, by the straight line through time against work of the two longest
     // runs; at most the first run's. 0 for a tail that does not average.

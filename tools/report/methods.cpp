@@ -281,6 +281,7 @@ std::vector<Method> parse_methods(const MethodOptions& options) {
     const std::vector<std::string> texts =
         options.methods.empty() ? std::vector<std::string>{"lighting_grid", "path"} : options.methods;
     std::vector<Method> methods;
+    methods.reserve(texts.size());
     for (const std::string& text : texts)
         methods.push_back(parse_method(text));
     const Choices choices = parse_choices(options);

@@ -95,10 +95,18 @@ void check_given(const std::vector<GivenFile>& given, const Shot& shot, int fram
 
 void check_halves(const std::vector<GivenFile>& given, const ReportReference& reference) {
     const Reference& beauty = reference.layers.at("");
-    if (beauty.second && beauty.first.pixels == beauty.second->pixels)
+    if (!beauty.second)
+        return;
+    // Half A of one render and half A of another begin with the same paths.
+    const auto half = given[0].metadata.text.find("brisance/half"),
+               other = given[1].metadata.text.find("brisance/half");
+    const bool same_half =
+        half != given[0].metadata.text.end() && other != given[1].metadata.text.end() && half->second == other->second;
+    if (same_half || beauty.first.pixels == beauty.second->pixels)
         throw Error(ExitCode::BadData,
-                    fmt::format("--reference: {} and {} hold the same pixels: they are no independent halves",
-                                given[0].file.string(), given[1].file.string()));
+                    fmt::format("--reference: {} and {} {}: they are no independent halves", given[0].file.string(),
+                                given[1].file.string(),
+                                same_half ? fmt::format("are both half {}", half->second) : "hold the same pixels"));
 }
 
 void notice_origin(const std::vector<GivenFile>& given, ReportReference& reference) {

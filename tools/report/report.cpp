@@ -94,7 +94,7 @@ std::vector<double> equal_times(const Report& report, Clock clock) {
     if (!(high > 0.0))
         return {};
     for (const std::vector<double>& digits : {std::vector<double>{1, 2, 5}, {1, 3}, {1}}) {
-        const std::vector<double> times = round_numbers(low, high, digits);
+        std::vector<double> times = round_numbers(low, high, digits);
         if (times.size() <= kMostEqualTimes && !times.empty())
             return times;
     }

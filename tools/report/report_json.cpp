@@ -73,11 +73,11 @@ Json convergence_json(const Report& report, const MethodResult& result) {
             const ErrorCurve curve = curve_of(report, result, layer, clock);
             if (curve.points().empty())
                 continue;
-            const std::optional<PowerLaw> law = curve.law(), after = curve.law(curve.startup());
+            const std::optional<PowerLaw> law = curve.law(), of_work = curve.law_of_work();
             json[layer][name] = {{"slope", law ? number(law->exponent) : Json()},
                                  {"constant", law ? number(law->constant) : Json()},
                                  {"startup_seconds", number(curve.startup())},
-                                 {"slope_after_startup", after ? number(after->exponent) : Json()},
+                                 {"slope_in_paths", of_work ? number(of_work->exponent) : Json()},
                                  {"times", times_json(curve)},
                                  {"errors", errors_after_json(curve, equal_times(report, clock))}};
         }

@@ -63,7 +63,7 @@ void add_times(const Report& report, const std::string& layer, Clock clock, std:
         const ErrorCurve curve = curve_of(report, result, layer, clock);
         if (curve.points().empty())
             continue;
-        const std::optional<PowerLaw> law = curve.law(), after = curve.law(curve.startup());
+        const std::optional<PowerLaw> law = curve.law(), of_work = curve.law_of_work();
         for (const double target : report_targets()) {
             const Reading reading = curve.time_to(target), first = base.time_to(target);
             const bool reached = reading.kind != ReadingKind::NotReached;
@@ -71,7 +71,7 @@ void add_times(const Report& report, const std::string& layer, Clock clock, std:
             csv += csv_row({result.method.label, shown_layer(layer), clock == Clock::Wall ? "wall" : "cpu",
                             csv_number(target), reached ? csv_number(reading.value) : "", name_of(reading.kind),
                             csv_number(ratio), csv_number(curve.floor()), law ? csv_number(law->exponent) : "",
-                            csv_number(curve.startup()), after ? csv_number(after->exponent) : "",
+                            csv_number(curve.startup()), of_work ? csv_number(of_work->exponent) : "",
                             report.methods[baseline(report)].method.label});
         }
     }
@@ -146,7 +146,7 @@ std::string measurements_csv(const Report& report) {
 
 std::string times_csv(const Report& report) {
     std::string csv = csv_row({"method", "layer", "clock", "error", "seconds", "kind", "ratio_to_baseline",
-                               "smallest_error", "slope", "startup_seconds", "slope_after_startup", "baseline"});
+                               "smallest_error", "slope", "startup_seconds", "slope_in_paths", "baseline"});
     for (const std::string& layer : report.layers)
         for (const Clock clock : {Clock::Wall, Clock::Cpu})
             add_times(report, layer, clock, csv);

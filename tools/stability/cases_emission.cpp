@@ -62,10 +62,11 @@ Case largest_half_scattering() {
     c.truth = "sqrt(1 - albedo) H(1)";
     c.tolerance = {0.03, 0.005, "as depth/scattering"};
     c.scene = [] {
-        media::Recipe r = isothermal_ball(8, 1.0, 0.8);
-        r.density = [](const ivec3& n) { return kLargestHalf * media::ball(n, dvec3(0.0), 8); };
+        media::Recipe r = absorbing_slab(kNodes, kEdge, kEdge);
+        r.density = [](const ivec3& n) { return n.z >= 0 && n.z < kNodes ? kLargestHalf : 0.0f; };
         r.flame = [](const ivec3&) { return kLargestHalf; };
-        return scene_of(r, camera_on_centre(8), 512);
+        r.settings.smoke.albedo = Rgb(0.8f);
+        return scene_of(r, camera_on_slab(kNodes, kEdge), 512);
     };
     c.measure = every_pixel_is(Rgb(static_cast<float>(kLargestHalf * isothermal_half_space(0.8, 1.0))));
     return c;

@@ -24,22 +24,19 @@ function ratioCell(entry, base) {
     return h("td", { class: `ratio ${certain ? "" : "extrapolated"}` }, times(ratioOf(entry, base)));
 }
 
-// Of a method that averages also how it falls once it has begun: -1/2 unless something is wrong.
-function slopeCell(method, law) {
-    const after =
-        method.converges && known(law?.slope_after_startup)
-            ? h("small", {}, `${number(law.slope_after_startup, 2)} after ${seconds(law.startup_seconds)}`)
-            : null;
-    return h("td", {}, known(law?.slope) ? number(law.slope, 2) : "\u2013", after);
+// Of a method that averages also the slope against the number of paths: -1/2 unless something is wrong.
+function slopeCell(law) {
+    const inPaths = known(law?.slope_in_paths) ? h("small", {}, `${number(law.slope_in_paths, 2)} in paths`) : null;
+    return h("td", {}, known(law?.slope) ? number(law.slope, 2) : "\u2013", inPaths);
 }
 
 function reachTable(state, base) {
     const laws = report.methods.map((method) => lawOf(method, state.layer, state.clock));
-    const head = [h("th", { scope: "col" }, "Method"), h("th", { scope: "col" }, "Slope")];
+    const head = [h("th", { scope: "col" }, "Method"), h("th", { scope: "col", class: "numbers" }, "Slope")];
     for (const target of report.targets)
         head.push(h("th", { scope: "col", class: "numbers" }, percent(target)), h("th", { class: "ratio" }, "ratio"));
     const rows = report.methods.map((method, i) => {
-        const cells = [methodHead(method, i), slopeCell(method, laws[i])];
+        const cells = [methodHead(method, i), slopeCell(laws[i])];
         report.targets.forEach((_, t) => {
             const entry = laws[i]?.times[t];
             if (!entry) return cells.push(h("td", {}, "\u2013"), h("td", { class: "ratio" }));
@@ -84,6 +81,15 @@ function aboutNoise() {
         : `${stated} Errors below twice that are marked: they tell about the reference.`;
 }
 
+// By which settings the steps of each method differ.
+function aboutSteps() {
+    const keysOf = (method) => [
+        ...new Set(method.runs.flatMap((run) => run.settings.map((text) => text.split("=")[0]))),
+    ];
+    const texts = report.methods.map((method) => `${method.label} by ${keysOf(method).join(", ") || "nothing"}`);
+    return `Steps: ${texts.join("; ")}. spp: paths per pixel.`;
+}
+
 function disturbed() {
     const { machine, time } = report;
     return (
@@ -98,8 +104,8 @@ const reachHelp =
     "method is extrapolated from its longest run by the law of averages: after the start-up, the time that fewer " +
     "paths do not shorten, its error falls as time to the power of \u2212\u00bd. A " +
     "biased one stays at its lowest measured error, its bias floor. \u201cOr less\u201d: the cheapest run was already " +
-    "better, or the error had become too small to be told from 0. Slope: least squares through all points; " +
-    "below it the slope with the time counted from the end of the start-up.";
+    "better, or the error had become too small to be told from 0. Slope: least squares through all points, against time " +
+    "and against the number of paths.";
 
 export function addConvergence(plotSection, reachSection, equalTimeSection) {
     const state = { layer: "", measure: takenMeasures[0], clock: "wall" };
@@ -156,7 +162,8 @@ export function addConvergence(plotSection, reachSection, equalTimeSection) {
         h(
             "p",
             { class: "muted" },
-            "Dotted: what more time would give. Click a point to see its picture; click a name to hide its line.",
+            "Dotted: what more time would give. Click a point to see its picture; click a name to hide its line. ",
+            aboutSteps(),
         ),
     );
     reachSection.append(

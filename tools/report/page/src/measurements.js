@@ -25,7 +25,7 @@ function row(method, index, run, layer) {
             " ",
             method.label,
         ),
-        h("td", {}, run.label),
+        h("td", { title: run.settings.join(" ") }, run.label),
         h("td", { class: "numbers" }, number(run.samples_per_pixel)),
         h("td", { class: "numbers" }, seconds(run.wall_seconds)),
         h("td", { class: "numbers" }, seconds(run.cpu_seconds)),

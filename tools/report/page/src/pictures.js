@@ -5,7 +5,7 @@ import { pictures, reference, report, seriesColour } from "./report.js";
 import { caption, setPicture, Viewer } from "./viewer.js";
 
 function thumbnail(viewer, id, title) {
-    const image = h("img", { width: pictures.width, height: pictures.height });
+    const image = h("img", { style: { "aspect-ratio": `${pictures.width} / ${pictures.height}` } });
     const figure = h(
         "figure",
         { dataset: { run: id } },

@@ -1,0 +1,153 @@
+// Every way to sample gives the same picture, order by order: in smoke of uneven density and colour, with fire that is
+// tied to absorption and fire that is not, g = 0.5.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tracing_fixture.h"
+
+namespace brisance {
+namespace {
+
+using namespace testing;
+
+Medium mixed_medium() {
+    Recipe r;
+    r.box = cube(-10, 10);
+    r.world_from_index = cubic(0.1);
+    r.density = [](const ivec3& n) { return n.x > 7 && n.y > 7 ? 300.0f : 12.0f * std::pow(testing::noise(n, 1), 3.0f); };
+    r.flame = [](const ivec3& n) { return n.z < 0 ? std::max(0.0f, testing::noise(n, 2) - 0.7f) : 0.0f; };
+    r.colour = [](const ivec3& n) { return Rgb(1.0f, 0.7f, 0.3f) * (0.5f + 0.5f * testing::noise(n, 3)); };
+    r.settings.smoke.albedo = Rgb(0.95f);
+    r.settings.smoke.mean_cosine = 0.5f;
+    r.settings.fire.colour = Rgb(1.0f, 0.5f, 0.2f);
+    Medium medium = make_medium(r);
+    // Files hold one kind of emission; a medium may hold both.
+    medium.emission.resize(medium.lattice.node_count());
+    for (std::size_t i = 0; i < medium.emission.size(); ++i) {
+        const ivec3 n = medium.lattice.first_node(i / BrickLattice::kNodes) +
+                        BrickLattice::node_in_brick(static_cast<int>(i % BrickLattice::kNodes));
+        if (glm::length(dvec3(n) - dvec3(3, -4, 5)) < 2.5)
+            medium.emission[i] = Rgb(0.3f, 0.6f, 1.0f);
+    }
+    return medium;
+}
+
+// Mean over rays from everywhere of each order's luminance, and of the three channels of all of them.
+Estimate look_by_orders(const TracingSettings& settings, double sharp) {
+    const Traced traced(mixed_medium(), settings);
+    return estimate_to(sharp, kPathOrders + 3, 11, [&](const dvec3& place, Rng& rng, double* out) {
+        PathSum sum{};
+        PathStatistics statistics;
+        traced.tracer.trace(ray_through_disc(1.2, place.y, place.z, rng), place.x, rng, sum, statistics);
+        dvec3 all(0.0);
+        for (int k = 0; k < kPathOrders; ++k) {
+            out[k] = luminance(sum[k]);
+            all += dvec3(sum[k]);
+        }
+        for (int c = 0; c < 3; ++c)
+            out[kPathOrders + c] = all[c];
+    });
+}
+
+struct Way {
+    std::string name;
+    TracingSettings settings;
+};
+
+std::vector<Way> all_ways() {
+    std::vector<Way> ways;
+    for (const bool light : {true, false})
+        for (const FreeFlight flight : {FreeFlight::Exact, FreeFlight::NullCollision})
+            for (const auto transmittance :
+                 {TransmittanceEstimator::Exact, TransmittanceEstimator::RayMarch, TransmittanceEstimator::Ratio}) {
+                Way way;
+                way.settings.light_sampling = light;
+                way.settings.free_flight = flight;
+                way.settings.transmittance = transmittance;
+                way.name = std::string(light ? "lines to the fire" : "phase function") +
+                           (flight == FreeFlight::Exact ? ", exact flight" : ", null collisions") +
+                           (transmittance == TransmittanceEstimator::Exact      ? ", exact transmittance"
+                            : transmittance == TransmittanceEstimator::RayMarch ? ", ray march"
+                                                                                : ", ratio tracking");
+                ways.push_back(way);
+            }
+    ways.push_back({"collisions", {}});
+    ways.back().settings.emission = EmissionEstimator::Collision;
+    return ways;
+}
+
+TEST(Estimators, AgreeOrderByOrder) {
+    const std::vector<Way> ways = all_ways();
+    Rows rows("estimators against one another");
+    std::vector<Estimate> found;
+    for (const Way& way : ways)
+        found.push_back(look_by_orders(way.settings, 0.01));
+    for (std::size_t i = 0; i < ways.size(); ++i)
+        for (int k = 0; k < kPathOrders + 3; ++k) {
+            // Against the mean of all others, weighted by what they are known to.
+            double sum = 0.0, weights = 0.0;
+            for (std::size_t j = 0; j < ways.size(); ++j) {
+                const double weight = i == j ? 0.0 : 1.0 / (found[j].error[k] * found[j].error[k]);
+                sum += weight * found[j].mean[k];
+                weights += weight;
+            }
+            rows.expect(ways[i].name + ", " + std::to_string(k), found[i].mean[k],
+                        std::hypot(found[i].error[k], 1.0 / std::sqrt(weights)), sum / weights, 0.0, 0.02);
+        }
+}
+
+// Cutting paths short leaves out later orders and changes no earlier one.
+TEST(Estimators, FewerBouncesAreTheFirstOrders) {
+    const Medium medium = mixed_medium();
+    const auto orders = [&](int bounces) {
+        const PathTracer tracer(medium, {}, bounces);
+        return estimate(kPathOrders, 64, 12, [&](const dvec3& place, Rng& rng, double* out) {
+            PathSum sum{};
+            PathStatistics statistics;
+            tracer.trace(ray_through_disc(1.2, place.y, place.z, rng), place.x, rng, sum, statistics);
+            for (int k = 0; k < kPathOrders; ++k)
+                out[k] = luminance(sum[k]);
+        });
+    };
+    const Estimate all = orders(-1);
+    Rows rows("fewer bounces");
+    for (const int bounces : {0, 1, 2, 5}) {
+        const Estimate some = orders(bounces);
+        for (int k = 0; k < kPathOrders; ++k) {
+            if (k > bounces)
+                EXPECT_EQ(some.mean[k], 0.0);
+            else
+                rows.expect(std::to_string(bounces) + ", " + std::to_string(k), some.mean[k],
+                            std::hypot(some.error[k], all.error[k]), all.mean[k], 1e-6 * all.mean[k], 0.2);
+        }
+    }
+}
+
+// Lengths times s and coefficients over s: the same picture, bit by bit where s is a power of two.
+TEST(Estimators, KnowNoUnitOfLength) {
+    const auto radiance = [](double scale) {
+        Recipe r;
+        r.box = cube(-6, 6);
+        r.world_from_index = cubic(0.25 * scale);
+        r.density = [](const ivec3& n) { return 4.0f * testing::noise(n, 1); };
+        r.flame = [](const ivec3& n) { return testing::noise(n, 2); };
+        r.settings.smoke.extinction_per_metre = static_cast<float>(1.0 / scale);
+        const Traced traced(r);
+        std::vector<double> found;
+        for (int i = 0; i < 200; ++i) {
+            Rng rng(Stream::Path, i);
+            Ray ray = ray_through_disc(1.5, (i + 0.5) / 200.0, 0.618 * i, rng);
+            ray.origin *= scale;
+            double out[3];
+            traced.look(ray, 0.3, rng, out);
+            found.push_back(out[0]);
+        }
+        return found;
+    };
+    EXPECT_EQ(radiance(1.0), radiance(1024.0));
+    EXPECT_EQ(radiance(1.0), radiance(1.0 / 4096.0));
+}
+
+}  // namespace
+}  // namespace brisance
