@@ -11,7 +11,7 @@ namespace {
 
 // Optical depth of a voxel at most: in the skin of smoke, where isothermal half-spaces then come out right to 3 %; and
 // below the skin, where light has long forgotten where it came from, and walls are to stay walls.
-constexpr float kSkinDepth = 2.0f, kMostDepth = 8.0f;
+constexpr float kSkinDepth = 2.0f, kMostDepth = 4.0f;
 constexpr float kSteepest = 4.0f;  // a voxel's extinction over that of its thinnest neighbour, once above kSkinDepth
 constexpr double kMostAbsorption = 0.05;  // share of extinction beyond which absorption is no longer raised
 
@@ -48,6 +48,13 @@ std::vector<float> limits(const Medium& medium) {
     return limit;
 }
 
+// Of an isothermal half-space that absorbs this share of its extinction, over 4/sqrt(3): flux over pi times its source.
+// Fits Chandrasekhar's solution to 1 %; diffusion gives the square root alone.
+double emissivity(double absorbed) {
+    const double root = std::sqrt(absorbed);
+    return root / (1.0 + 1.26 * root);
+}
+
 void hold_down(Similar& s, double most) {
     const double x = s.extinction / most;
     if (!(x > 1.0))
@@ -56,7 +63,8 @@ void hold_down(Similar& s, double most) {
         const double absorbed = 1.0 - s.albedo[c];
         const double raised = std::clamp(x * x * absorbed, absorbed, std::max(absorbed, kMostAbsorption));
         // j' / j, which is also (sigma' S') / (sigma S).
-        const double gain = absorbed > 0.0 ? std::sqrt(raised / absorbed) / x : 1.0;
+        const double gain =
+            absorbed > 0.0 ? raised / absorbed * emissivity(absorbed) / emissivity(raised) / x : 1.0;
         s.albedo[c] = 1.0 - raised;
         s.source_factor[c] *= gain * x;
         s.emission_factor[c] *= gain;

@@ -6,10 +6,10 @@
 //    constant albedo look the same however optical depth is laid out in them, so extinction is held down until a voxel
 //    is about as thick as the skin. Smoke that scatters nearly all light is no skin: light diffuses through many
 //    voxels, and what comes out must not change. With extinction sigma = x sigma' and 1 - albedo = e, albedo and
-//    emission j are changed so that the flux out of the diffusing medium stays the same,
-//      j' / (sigma' sqrt(e')) = j / (sigma sqrt(e)),     e <= e' <= x^2 e:
-//    e' = x^2 e keeps power and diffusion, e' = e keeps the source function. The first is taken as far as e' = 0.05,
-//    beyond which light dies within a voxel or two anyway.
+//    emission j are changed so that the flux out of a half-space stays the same,
+//      j' / (sigma' e') E(e') = j / (sigma e) E(e),     e <= e' <= x^2 e,
+//    with its emissivity E(e), nearly the square root of e: e' = x^2 e keeps power and diffusion, e' = e keeps the
+//    source function. The first is taken as far as e' = 0.05, beyond which light dies within a voxel or two anyway.
 //  - A phase function with a forward peak narrower than the angles between a lattice's lights. Light that scatters into
 //    the peak has hardly scattered: a share f of all scattering counts as none (delta scaling: Joseph, Wiscombe,
 //    Weinman, The delta-Eddington approximation for radiative flux transfer, J. Atmos. Sci. 33, 1976; Wiscombe, The

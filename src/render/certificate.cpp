@@ -41,10 +41,13 @@ std::string mean_text(const CertifiedError& e) {
 }  // namespace
 
 nlohmann::ordered_json Certificate::to_json() const {
-    nlohmann::ordered_json json = {
-        {"confidence", kConfidence},           {"paths", paths}, {"pixels", pixels},
-        {"paths_per_pixel", paths_per_pixel},  {"seed", seed},   {"not_finite_pixels", not_finite_pixels},
-        {"not_finite_paths", not_finite_paths}};
+    nlohmann::ordered_json json = {{"confidence", kConfidence},
+                                   {"samples", samples},
+                                   {"pixels", pixels},
+                                   {"samples_per_pixel", samples_per_pixel},
+                                   {"seed", seed},
+                                   {"not_finite_pixels", not_finite_pixels},
+                                   {"not_finite_samples", not_finite_samples}};
     for (const CertifiedError& e : errors)
         (e.cell.empty() ? json["picture"] : json["cells"][e.cell]) = json_of(e);
     return json;
@@ -54,7 +57,7 @@ std::string Certificate::line() const {
     std::string text;
     for (const CertifiedError& e : errors)
         text += e.cell.empty() ? error_text(e) + ", " + mean_text(e) : "; " + e.cell + " " + error_text(e);
-    return text + fmt::format("; {:.0f} % confidence, {} paths at {} pixels{}", 100.0 * kConfidence, paths, pixels,
+    return text + fmt::format("; {:.0f} % confidence, {} samples at {} pixels{}", 100.0 * kConfidence, samples, pixels,
                               not_finite_pixels > 0
                                   ? fmt::format("; without {} pixels that are not finite", not_finite_pixels)
                                   : "");

@@ -23,12 +23,12 @@ struct CertifiedError {
 
 struct Certificate {
     std::vector<CertifiedError> errors;  // the picture first
-    std::uint64_t paths = 0;             // in all
+    std::uint64_t samples = 0;           // in all
     std::uint64_t pixels = 0;            // drawn; some perhaps more than once
-    std::uint64_t paths_per_pixel = 0;
+    std::uint64_t samples_per_pixel = 0;
     int seed = 0;
-    std::uint64_t not_finite_pixels = 0;  // of the picture: the certificate is about the others
-    std::uint64_t not_finite_paths = 0;   // counted as 0
+    std::uint64_t not_finite_pixels = 0;   // of the picture: the certificate is about the others
+    std::uint64_t not_finite_samples = 0;  // counted as 0
 
     // Without times: equal renders have equal certificates.
     nlohmann::ordered_json to_json() const;

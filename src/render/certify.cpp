@@ -21,15 +21,18 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // How pixels are drawn: evenly, by what each target shows there, and by its square.
 constexpr double kEvenly = 0.2, kByRadiance = 0.2, kBySquare = 0.6;
 
-// A budget of B = n m paths, m at each of n draws, leaves the squared error with the variance
+// A budget of B = n m samples, m at each of n draws, leaves the squared error with the variance
 //     (m S + 4 C + 2 N / (m - 1)) / B,
 // S the spread of (I - R)^2 over the draws, C the mean of (I - R)^2 sigma^2, N that of sigma^4, sigma the noise of one
-// path. It is least for m - 1 = sqrt(2 N / S): some ten paths when the picture is off by a third of the noise,
+// sample. It is least for m - 1 = sqrt(2 N / S): some ten samples when the picture is off by a third of the noise,
 // thousands when by a hundredth. The mean error's variance, (m S' + N') / B, and errors that are rare always ask for
 // many draws. With m = n / 16 the interval's width stays within 1.3 times the best that was measured, for errors from
-// 0.6 to 23 %.
-std::size_t draws_of(int paths) {
-    return std::clamp<std::size_t>(std::lround(4.0 * std::sqrt(paths)), 2, std::max(2, paths / 2));
+// 0.6 to 23 %. Larger budgets buy draws and samples so that the intervals of good and bad pictures shrink alike.
+std::size_t draws_of(int samples) {
+    constexpr double usual = 1 << 19;
+    const double share = samples / usual;
+    const double draws = 4.0 * std::sqrt(usual) * std::max(std::sqrt(share), std::cbrt(share * share));
+    return std::clamp<std::size_t>(std::lround(draws), 2, std::max(2, samples / 2));
 }
 
 // Pictures of one or several orders of scattering: the beauty, and its cells.
@@ -71,22 +74,22 @@ struct Told {
 };
 using ToldOfAll = std::array<Told, kMostTargets>;
 
-Told told_by(const dvec3& image, const dvec3& sum, const dvec3& squares, int paths, double weight) {
-    const double n = paths;
+Told told_by(const dvec3& image, const dvec3& sum, const dvec3& squares, int samples, double weight) {
+    const double n = samples;
     const dvec3 mean = sum / n, square = (sum * sum - squares) / (n * (n - 1.0));
     return {weight * sum_of(square), weight * sum_of(mean), weight * sum_of(2.0 * image * mean - square)};
 }
 
 class Sampler {
 public:
-    Sampler(const std::vector<Target>& targets, const PathTracer& tracer, const Camera& camera, int seed, int paths)
-        : targets_(targets), tracer_(tracer), camera_(camera), seed_(seed), paths_(paths) {}
+    Sampler(const std::vector<Target>& targets, const PathTracer& tracer, const Camera& camera, int seed, int samples)
+        : targets_(targets), tracer_(tracer), camera_(camera), seed_(seed), samples_(samples) {}
 
     ToldOfAll ask(std::size_t number, const PixelSurvey::Draw& draw) {
         std::array<dvec3, kMostTargets> image{}, sum{}, squares{};
         for (std::size_t t = 0; t < targets_.size(); ++t)
             image[t] = targets_[t].pixel(draw.pixel);
-        for (int k = 0; k < paths_; ++k) {
+        for (int k = 0; k < samples_; ++k) {
             const PathSum path = trace(number, k, draw.pixel);
             for (std::size_t t = 0; t < targets_.size(); ++t) {
                 const dvec3 d = image[t] - seen(targets_[t], path);
@@ -96,7 +99,7 @@ public:
         }
         ToldOfAll told{};
         for (std::size_t t = 0; t < targets_.size(); ++t)
-            told[t] = told_by(image[t], sum[t], squares[t], paths_, draw.weight);
+            told[t] = told_by(image[t], sum[t], squares[t], samples_, draw.weight);
         return told;
     }
 
@@ -110,7 +113,7 @@ private:
         return sum;
     }
 
-    // Everything about it is random and independent of every other path: no sequence, no stratification.
+    // Everything about it is random and independent of every other sample: no sequence, no stratification.
     PathSum trace(std::size_t number, int k, std::size_t pixel) {
         const CameraSettings& s = camera_.settings();
         Rng rng(Stream::Certificate, std::uint64_t(seed_) << 32 | number, std::uint64_t(k) + 1);
@@ -132,7 +135,7 @@ private:
     const std::vector<Target>& targets_;
     const PathTracer& tracer_;
     const Camera& camera_;
-    int seed_, paths_;
+    int seed_, samples_;
     std::atomic<std::uint64_t> not_finite_ = 0;
 };
 
@@ -254,15 +257,15 @@ void warn(const Certificate& c, Progress& progress) {
     if (c.not_finite_pixels > 0)
         progress.warning("certificate", std::to_string(c.not_finite_pixels) +
                                             " pixels are not finite: the certificate is about the others");
-    if (c.not_finite_paths > 0)
-        progress.warning("certificate", std::to_string(c.not_finite_paths) +
-                                            " paths of the certificate were not finite and count as dark");
+    if (c.not_finite_samples > 0)
+        progress.warning("certificate", std::to_string(c.not_finite_samples) +
+                                            " samples of the certificate were not finite and count as dark");
     // Intervals lean on sums over many pixels.
     constexpr double kFewDecide = 0.5;
     if (c.errors.front().largest_share > kFewDecide)
         progress.warning("certificate",
                          "one or two pixels decide about the error: its interval may be too narrow; raise "
-                         "certify.paths");
+                         "certify.samples");
 }
 
 }  // namespace
@@ -272,23 +275,23 @@ Certificate certify(const Image& image, const Shot& shot, const Plan& plan, cons
     progress.stage("certificate");
     const std::vector<Target> targets = targets_of(image);
     const Population population(image, targets);
-    const PixelSurvey survey(population.sizes(), image.width, draws_of(settings.paths), settings.seed);
+    const PixelSurvey survey(population.sizes(), image.width, draws_of(settings.samples), settings.seed);
     const auto& draws = survey.draws();
     Certificate out;
     out.seed = settings.seed;
     out.not_finite_pixels = population.not_usable();
     out.pixels = draws.size();
-    out.paths_per_pixel = draws.empty() ? 0 : std::max<std::uint64_t>(2, settings.paths / out.pixels);
-    out.paths = out.pixels * out.paths_per_pixel;
+    out.samples_per_pixel = draws.empty() ? 0 : std::max<std::uint64_t>(2, settings.samples / out.pixels);
+    out.samples = out.pixels * out.samples_per_pixel;
     const PathTracer tracer(medium, shot.tracing, shot.scattering.bounces);
-    Sampler sampler(targets, tracer, camera, settings.seed, static_cast<int>(out.paths_per_pixel));
+    Sampler sampler(targets, tracer, camera, settings.seed, static_cast<int>(out.samples_per_pixel));
     std::vector<ToldOfAll> told(draws.size());
     std::atomic<std::size_t> done = 0;
     parallel_for(draws.size(), [&](std::size_t i) {
         told[i] = sampler.ask(i, draws[i]);
         progress.fraction(double(++done) / double(draws.size()));
     });
-    out.not_finite_paths = sampler.not_finite();
+    out.not_finite_samples = sampler.not_finite();
     for (std::size_t t = 0; t < targets.size(); ++t) {
         const bool black = population.total([&](std::size_t p) { return sum_of(targets[t].pixel(p)); }) == 0.0;
         out.errors.push_back(black && !plan.emission ? nothing_missing(targets[t])

@@ -1,13 +1,14 @@
-// The error of a finished picture against the truth, from a small and stated number of unbiased paths.
+// The error of a finished picture against the truth, from a small and stated number of unbiased samples:
+// rays of the camera with all their paths.
 //
-// Squared error without bias: two independent paths at a pixel bring x and y, both with the pixel's true value R as
+// Squared error without bias: two independent samples at a pixel bring x and y, both with the pixel's true value R as
 // their mean, so that (I - x)(I - y) has the mean (I - R)^2: independent noise multiplies to nothing. Averaged over all
-// pairs of a pixel's paths and summed over the picture by a survey of its pixels, that is the numerator of
+// pairs of a pixel's samples and summed over the picture by a survey of its pixels, that is the numerator of
 //     error^2 = sum (I - R)^2 / sum R^2,
 // and as R^2 = I^2 - 2 I (I - R) + (I - R)^2, the same numbers correct the picture's own sum of squares to the
 // denominator. The interval of the ratio is Fieller's (Some Problems in Interval Estimation, 1954).
 //
-// The paths are of a stream of their own: independent of all that made the picture.
+// The samples are of a stream of their own: independent of all that made the picture.
 #pragma once
 
 #include "core/progress.h"
@@ -21,10 +22,10 @@
 namespace brisance {
 
 // Of a picture by any method: its beauty, and the ledger cells it has layers of. The estimators are those of
-// shot.tracing. The same bits for any number of threads. Warns of pixels and paths that are not finite, and when few
+// shot.tracing. The same bits for any number of threads. Warns of pixels and samples that are not finite, and when few
 // pixels decide.
 //
-// What it cannot see: light that none of its paths met, and errors that hide in few pixels. A share s of the pixels
+// What it cannot see: light that none of its samples met, and errors that hide in few pixels. A share s of the pixels
 // that is wrongly dark goes unnoticed with probability (1 - s)^(draws / 5); one that is wrongly bright hardly ever.
 Certificate certify(const Image& image, const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera,
                     const CertifySettings& settings, Progress& progress);

@@ -4,9 +4,9 @@
 namespace brisance {
 
 struct CertifySettings {
-    bool enabled = false;  // estimate the finished frame's error
-    int paths = 1 << 19;   // in all, whatever the picture's size
-    int seed = 0;          // other seeds choose other pixels and other paths
+    bool enabled = false;   // estimate the finished frame's error
+    int samples = 1 << 19;  // the camera's rays, each with its paths, in all, whatever the picture's size
+    int seed = 0;           // other seeds choose other pixels and other samples
 };
 
 }  // namespace brisance

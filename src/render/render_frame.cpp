@@ -2,6 +2,8 @@
 
 #include <sys/resource.h>
 
+#include <ctime>
+
 #include "core/stopwatch.h"
 #include "medium/similar_medium.h"
 #include "render/camera.h"
@@ -39,7 +41,8 @@ private:
 };
 
 void add_order_layers(Image& image, const CellField& field, const NodeLighting& lighting, const Medium& medium,
-                      const Medium* similar, const Camera& camera, const PictureSettings& settings, Progress& progress) {
+                      const Medium* similar, const Camera& camera, const PictureSettings& settings,
+                      Progress& progress) {
     const auto add = [&](const std::string& name, const Layer& from) {
         Layer layer = from;
         layer.name = name;
@@ -127,9 +130,14 @@ std::string joined(const std::vector<std::string>& names) {
 void add_certificate(RenderedFrame& out, const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera,
                      Progress& progress) {
     const Stopwatch watch;
+    const std::clock_t cpu = std::clock();
     const Certificate certificate = certify(out.image, shot, plan, medium, camera, shot.certify, progress);
     out.statistics.certificate = certificate.to_json();
-    out.statistics.stages.push_back({"certificate", watch.seconds(), 0, {{"paths", certificate.paths}}});
+    out.statistics.stages.push_back(
+        {"certificate",
+         watch.seconds(),
+         0,
+         {{"samples", certificate.samples}, {"cpu_seconds", double(std::clock() - cpu) / CLOCKS_PER_SEC}}});
     out.metadata.text["brisance/certificate"] = certificate.to_json().dump();
     progress.notice("certificate: " + certificate.line());
 }

@@ -226,6 +226,30 @@ Departure CoarseOperator::departure_of(const NodeRadiance& source) const {
     return out;
 }
 
+// Multiplies what arrives so that `collides` of it does. Deep in thick smoke a gather cannot but be right: what arrives
+// there set out next door. So it is the nodes from which light escapes that answer for what is missing or too much.
+void CoarseOperator::close_balance(const dvec3& collides, const dvec3& hit, Gathered& arriving) const {
+    constexpr float kLeastShare = 1e-3f;
+    constexpr double kMostChange = 0.5;
+    const std::size_t n = mask_.size();
+    std::vector<float> share(n, 0.0f);
+    std::vector<Rgb> shared(n, Rgb(0.0f));
+    for (std::size_t i = 0; i < n; ++i)
+        if (mask_[i]) {
+            share[i] = 1.0f - collision_[i] + kLeastShare;
+            for (int c = 0; c < 3; ++c)
+                shared[i][c] = share[i] * arriving.fluence[c * n + i];
+        }
+    const dvec3 of_shares = collided(medium_, shared);
+    dvec3 change(0.0);
+    for (int c = 0; c < 3; ++c)
+        if (of_shares[c] > 0.0)
+            change[c] = std::clamp((collides[c] - hit[c]) / of_shares[c], -kMostChange, kMostChange);
+    for (auto* field : {&arriving.fluence, &arriving.moments})
+        for (std::size_t k = 0; k < field->size(); ++k)
+            (*field)[k] *= 1.0f + static_cast<float>(change[int(k / n % 3)]) * share[k % n];
+}
+
 NodeRadiance CoarseOperator::bounce(const Departure& departure, BounceBalance& balance, std::vector<LevelCost>& costs,
                                     Progress& progress) {
     Gathered arriving = gather(departure.light, costs, progress);
@@ -238,13 +262,9 @@ NodeRadiance CoarseOperator::bounce(const Departure& departure, BounceBalance& b
         dvec3 collides(0.0);
         for (std::size_t i = 0; i < mask_.size(); ++i)
             collides += dvec3(departure.power[i]) * double(hat_collision_[i]);
-        Rgb scale(1.0f);
-        for (int c = 0; c < 3; ++c)
-            if (hit[c] > 0.0)
-                scale[c] = static_cast<float>(collides[c] / hit[c]);
+        close_balance(collides, hit, arriving);
         balance.escaped = 1.0 - luminance(Rgb(collides)) / y;
-        balance.scale = luminance(Rgb(collides)) / y / balance.collided;
-        arriving.scale(scale);
+        balance.scale = luminance(Rgb(collided(medium_, fluence_at_nodes(arriving, mask_)))) / y / balance.collided;
     }
     return scattered_source(medium_, arriving, mask_);
 }

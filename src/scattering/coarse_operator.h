@@ -45,6 +45,7 @@ public:
 private:
     Gathered gather(const ScatteredLight& lights, std::vector<LevelCost>& costs, Progress& progress);
     void balance_nodes(const ExtinctionPyramid& fine);
+    void close_balance(const dvec3& collides, const dvec3& hit, Gathered& arriving) const;
 
     int level_;
     Medium medium_;  // coarse

@@ -7,10 +7,11 @@ void add_certify_keys(std::vector<Key>& keys) {
         "certify.enabled", "estimates each finished frame's error against the truth, as --certify does", flag(),
         [](Shot & s) -> auto& { return s.certify.enabled; }));
     keys.push_back(make_key(
-        "certify.paths", "unbiased paths that a certificate may cost, in all", whole(1024, 1 << 30),
-        [](Shot & s) -> auto& { return s.certify.paths; }));
+        "certify.samples",
+        "unbiased samples, each a ray of the camera with its paths, that a certificate may cost in all",
+        whole(1024, 1 << 30), [](Shot & s) -> auto& { return s.certify.samples; }));
     keys.push_back(make_key(
-        "certify.seed", "other seeds give certificates from other paths", whole(0, 1 << 30),
+        "certify.seed", "other seeds give certificates from other samples", whole(0, 1 << 30),
         [](Shot & s) -> auto& { return s.certify.seed; }));
 }
 

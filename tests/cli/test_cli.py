@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import pty
+import random
 import resource
 import shutil
 import signal
@@ -485,6 +486,179 @@ class Compare(VolumeCase):
         self.expect(66, "compare", reference, "absent.exr", says="absent.exr: no such file")
         self.expect(66, "compare", "absent.exr", reference, says="absent.exr")
         self.expect(65, "compare", reference, "text.exr", says="text.exr: it is not an OpenEXR file")
+
+
+class PathTracer(VolumeCase):
+    """What method path adds: halves, certificates, single paths."""
+
+    SHOT = ["--set", "camera.width=24", "--set", "camera.height=18"]
+    TRACED = [*SHOT, "--method", "path", "--set", "tracing.samples=4", "--set", "output.png=false"]
+
+    def statistics(self, name="a"):
+        return json.loads((self.out / f"{name}.stats.json").read_text(encoding="utf-8"))
+
+    def test_method_is_a_shorthand(self):
+        for command in ("render", "plan"):
+            self.expect(2, command, self.volume, "--method", "guess", says="--method")
+        text = self.expect(0, "render", self.volume, "--method", "path", "--print-config").stdout
+        self.assertEqual(json.loads(text)["method"], "path")
+        self.assertIn("method is path", self.expect(0, "plan", self.volume, "--method", "path", "-o", self.out).stdout)
+
+    def test_a_render_without_end_is_refused(self):
+        never = ["--method", "path", "--set", "tracing.samples=none"]
+        self.expect(2, "render", self.volume, *never, says=["tracing.samples", "would never end"])
+        self.expect(0, "render", self.volume, *never, "--set", "tracing.seconds=1", "--print-config")
+        self.expect(0, "render", self.volume, *never, "--set", "tracing.error=0.1", "--print-config")
+
+    def test_halves(self):
+        done = self.expect(0, "render", self.volume, *self.TRACED, "--set", "output.halves=true", "-o",
+                           self.out / "a.exr")
+        self.assertEqual(self.outputs(), ["a.A.exr", "a.B.exr", "a.exr", "a.stats.json"])
+        self.assertEqual(len(done.stdout.split()), 4)
+        layer, = json.loads(self.expect(0, "compare", self.out / "a.exr", self.out / "a.A.exr", self.out / "a.B.exr",
+                                        "--json").stdout)["frames"][0]["layers"]
+        self.assertLess(abs(layer["mean"]), 1e-5)  # the picture is the mean of the halves
+        self.assertGreater(layer["reference_noise"], 0)
+
+    def test_halves_of_what_has_none(self):
+        self.expect(0, "render", self.volume, *SMALL, "--set", "output.halves=true", "-o", self.out / "a.exr",
+                    says="[halves]")
+        self.assertNotIn("a.A.exr", self.outputs())
+
+    def test_certificates(self):
+        environment = {**os.environ, "SOURCE_DATE_EPOCH": "1000000000"}
+        budget = ["--certify", "--set", "certify.samples=4096"]
+        for look in (self.TRACED, LIT):
+            files = []
+            for threads in (1, 2):
+                self.expect(0, "render", self.volume, *look, *budget, "-o", self.out / "a.exr", "--threads", threads,
+                            env=environment, says="certificate: error ")
+                files.append((self.out / "a.exr").read_bytes())
+            self.assertEqual(files[0], files[1])
+            certificate = self.statistics()["certificate"]
+            self.assertEqual(certificate["confidence"], 0.95)
+            self.assertLessEqual(certificate["samples"], 4096)
+            low, high = certificate["picture"]["error_interval"]
+            self.assertLessEqual(low, certificate["picture"]["error"])
+            self.assertLessEqual(certificate["picture"]["error"], high)
+            self.assertIn("V", certificate["cells"])
+            self.assertIn(b"brisance/certificate\0string\0", files[0])
+        self.expect(0, "render", self.volume, *self.TRACED, "-o", self.out / "b.exr")
+        self.assertNotIn("certificate", self.statistics("b"))
+
+    def test_one_path(self):
+        arguments = [self.volume, 12, 9, 5, *self.SHOT]
+        text = self.expect(0, "trace-path", *arguments).stdout
+        self.assertIn("pixel 12 9, sample 5 (half B)", text)
+        self.assertTrue(text.endswith("\nfinite\n"))
+        self.assertEqual(self.expect(0, "trace-path", *arguments, "--threads", 1).stdout, text)
+        self.expect(2, "trace-path", self.volume, 24, 0, 0, *self.SHOT, says="outside of the picture")
+        for wrong in ([self.volume, 1, 2], [self.volume, -1, 2, 3], [self.volume, 1, 2, "x"]):
+            self.expect(2, "trace-path", *wrong)
+        pattern = self.make_sequence([1, 2])
+        self.expect(2, "trace-path", pattern, 1, 2, 3, says="-f")
+        self.assertIn("frame 2,", self.expect(0, "trace-path", pattern, 1, 2, 3, *self.SHOT, "-f", 2).stdout)
+
+
+class Checkpoints(VolumeCase):
+    """Long renders that are stopped, and go on as if nothing had been."""
+
+    # 3072 pixels: 516 kB of checkpoint, and less than half of that as EXR.
+    TRACED = ["--method", "path", "--set", "camera.width=64", "--set", "camera.height=48", "--set", "output.png=false",
+              "--set", "output.statistics=false", "--set", "tracing.checkpoint_seconds=0", "--set", "smoke.albedo=0.5"]
+
+    def setUp(self):
+        super().setUp()
+        self.state = self.folder / "state"
+        self.environment = {**os.environ, "SOURCE_DATE_EPOCH": "1000000000"}
+
+    def arguments(self, name, samples, *more):
+        return ["render", self.volume, *self.TRACED, "--set", f"tracing.samples={samples}", "-o", self.out / name, *more]
+
+    def render(self, name, samples, *more, code=0, **options):
+        return self.expect(code, *self.arguments(name, samples, *more), env=self.environment, **options)
+
+    def bytes_of(self, name):
+        return (self.out / name).read_bytes()
+
+    def start(self, *arguments):
+        return subprocess.Popen([BINARY, *map(str, arguments)], cwd=self.folder, stdout=subprocess.DEVNULL,
+                                stderr=subprocess.DEVNULL, env=self.environment)
+
+    def test_killed_again_and_again(self):
+        samples = 48
+        self.render("whole.exr", samples)
+        moments = random.Random(1)
+        stopped = 0
+        for sent in (signal.SIGKILL, signal.SIGTERM, signal.SIGKILL, signal.SIGKILL):
+            before = self.state.read_bytes() if self.state.exists() else b""
+            with self.start(*self.arguments("parts.exr", samples, "--checkpoint", self.state)) as process:
+                while process.poll() is None and (not self.state.exists() or self.state.read_bytes() == before):
+                    time.sleep(0.005)
+                time.sleep(0.3 * moments.random())
+                process.send_signal(sent)
+            stopped += process.returncode != 0
+            if process.returncode == 0:
+                break
+            self.assertNotIn("parts.exr", self.outputs())
+        self.assertGreaterEqual(stopped, 1)
+        self.render("parts.exr", samples, "--checkpoint", self.state, says="going on from")
+        self.assertEqual(self.bytes_of("parts.exr"), self.bytes_of("whole.exr"))
+
+    def test_more_paths_than_before(self):
+        self.render("whole.exr", 12, "--set", "output.halves=true")
+        self.render("parts.exr", 4, "--checkpoint", self.state)
+        self.assertTrue(self.state.exists())
+        self.render("parts.exr", 12, "--checkpoint", self.state, "--set", "output.halves=true",
+                    says=["going on from", "after 4 "])
+        for end in ("exr", "A.exr", "B.exr"):
+            self.assertEqual(self.bytes_of(f"parts.{end}"), self.bytes_of(f"whole.{end}"))
+        # Enough already: nothing to add, and the same picture again.
+        self.render("again.exr", 12, "--checkpoint", self.state, "--certify", "--set", "certify.samples=1024",
+                    says="certificate: ")
+
+    def test_full_disk(self):
+        def limit():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (400 << 10, 400 << 10))
+
+        self.render("whole.exr", 4)
+        self.render("parts.exr", 4, "--checkpoint", self.state, preexec_fn=limit, says=["[checkpoint]", "not kept"])
+        self.assertEqual(self.bytes_of("parts.exr"), self.bytes_of("whole.exr"))
+        self.assertFalse(self.state.exists())
+
+    def test_of_another_render(self):
+        self.render("a.exr", 4, "--checkpoint", self.state)
+        kept = self.state.read_bytes()
+        for other in ("smoke.albedo=0.6", "camera.width=66", "output.layers.bounces=true", "tracing.light_sampling=false"):
+            self.render("b.exr", 8, "--checkpoint", self.state, "--set", other, code=65,
+                        says=[str(self.state), "belongs to another"])
+            self.assertEqual(self.state.read_bytes(), kept)
+        self.assertEqual(self.outputs(), ["a.exr"])
+
+    def test_damaged(self):
+        self.render("a.exr", 4, "--checkpoint", self.state)
+        kept = self.state.read_bytes()
+        flipped = bytearray(kept)
+        flipped[len(kept) // 2] ^= 4
+        for bytes_now in (kept[:-1], kept[:40], bytes(flipped), kept + b"x", b"", b"no checkpoint"):
+            self.state.write_bytes(bytes_now)
+            self.render("b.exr", 8, "--checkpoint", self.state, code=65, says=str(self.state))
+            self.assertEqual(self.state.read_bytes(), bytes_now)
+
+    def test_sequences_have_one_each(self):
+        pattern = self.make_sequence([1, 2])
+        sequence = ["render", pattern, *self.TRACED, "--set", "tracing.samples=2", "-o", self.out / "a.#.exr"]
+        self.expect(2, *sequence, "--checkpoint", "state", says="####")
+        self.expect(0, *sequence, "--checkpoint", "state.##")
+        self.assertEqual([name for name in self.names() if name.startswith("state")], ["state.01", "state.02"])
+        self.expect(65, *sequence, "-f", 2, "--checkpoint", "state.01", says="belongs to another")
+
+    def test_where_it_has_no_place(self):
+        self.expect(2, "render", self.volume, *SMALL, "--checkpoint", self.state, says=["--checkpoint", "--method path"])
+        for other in (self.volume, self.out / "a.exr"):
+            self.render("a.exr", 2, "--checkpoint", other, code=2, says="is something else")
+        self.render("a.exr", 2, "--checkpoint", "absent/state", code=73, says="absent")
+        self.assertEqual(self.outputs(), [])
 
 
 class RealFiles(Case):

@@ -42,7 +42,7 @@ Shot shot_of_ball() {
     return shot;
 }
 
-// A picture of means over paths `begin` to `end` of every pixel.
+// A picture of means over samples `begin` to `end` of every pixel.
 Image path_picture(const PathTracer& tracer, const Camera& camera, std::uint64_t begin, std::uint64_t end,
                    std::uint64_t step = 1) {
     Image image{kSize, kSize, {}};
@@ -92,7 +92,7 @@ TrueError true_error(const Image& image, const Image& a, const Image& b, const s
         square += (double(i[k]) - ra[k]) * (double(i[k]) - rb[k]);
         // (I - A)(I - B) varies with A + B, which varies as A - B does.
         const double changed = (i[k] - 0.5 * (double(ra[k]) + rb[k])) * (double(ra[k]) - rb[k]);
-        variance += 3.0 * changed * changed;  // the three channels of a path are alike
+        variance += 3.0 * changed * changed;  // the three channels of a sample are alike
         norm += double(ra[k]) * rb[k];
         sum += i[k];
         truth += 0.5 * (double(ra[k]) + rb[k]);
@@ -105,14 +105,14 @@ protected:
     static constexpr int kCertificates = 240;
 
     // Paths that neither the truth nor a certificate has.
-    Image picture(int paths_per_pixel) const {
+    Image picture(int samples_per_pixel) const {
         constexpr std::uint64_t first = 1 << 20;
-        return path_picture(tracer_, camera_, first, first + paths_per_pixel);
+        return path_picture(tracer_, camera_, first, first + samples_per_pixel);
     }
 
-    Certificate certificate(const Image& image, int seed, int paths = 4096) const {
+    Certificate certificate(const Image& image, int seed, int samples = 4096) const {
         Progress silent;
-        return certify(image, shot_, plan_, medium_, camera_, {true, paths, seed}, silent);
+        return certify(image, shot_, plan_, medium_, camera_, {true, samples, seed}, silent);
     }
 
     std::vector<Certificate> certificates(const Image& image, int first_seed) const {
@@ -123,9 +123,9 @@ protected:
     }
 
     std::vector<TrueError> true_errors(const Image& image) const {
-        constexpr std::uint64_t paths = 1024;  // per pixel, in each half
-        const Image a = path_picture(tracer_, camera_, 0, 2 * paths, 2);
-        const Image b = path_picture(tracer_, camera_, 1, 2 * paths, 2);
+        constexpr std::uint64_t samples = 1024;  // per pixel, in each half
+        const Image a = path_picture(tracer_, camera_, 0, 2 * samples, 2);
+        const Image b = path_picture(tracer_, camera_, 1, 2 * samples, 2);
         std::vector<TrueError> all;
         for (const std::string& cell : kCells)
             all.push_back(true_error(image, a, b, cell));
@@ -230,12 +230,12 @@ TEST_F(Certificates, AreTheSameForAnyNumberOfThreadsAndOthersForOtherSeeds) {
 
 TEST_F(Certificates, CostWhatTheySay) {
     const Image image = picture(1);
-    for (const int paths : {1024, 4096, 20000}) {
-        const Certificate c = certificate(image, 1, paths);
-        EXPECT_EQ(c.paths, c.pixels * c.paths_per_pixel);
-        EXPECT_LE(c.paths, std::uint64_t(paths));
-        EXPECT_GT(c.paths, std::uint64_t(paths) * 9 / 10);
-        EXPECT_GE(c.paths_per_pixel, 2u);
+    for (const int samples : {1024, 4096, 20000}) {
+        const Certificate c = certificate(image, 1, samples);
+        EXPECT_EQ(c.samples, c.pixels * c.samples_per_pixel);
+        EXPECT_LE(c.samples, std::uint64_t(samples));
+        EXPECT_GT(c.samples, std::uint64_t(samples) * 9 / 10);
+        EXPECT_GE(c.samples_per_pixel, 2u);
     }
 }
 
@@ -262,6 +262,27 @@ TEST_F(Certificates, LeaveOutPixelsThatAreNotFiniteAndSaySo) {
     EXPECT_EQ(none.errors.front().error_interval.high, std::numeric_limits<double>::infinity());
     EXPECT_TRUE(none.to_json()["picture"]["error_interval"][1].is_null() ||
                 std::isinf(none.to_json()["picture"]["error_interval"][1].get<double>()));
+}
+
+// Under a filter other than the picture's own the picture would seem wrong by more than its noise.
+TEST_F(Certificates, MeanThePicturesOwnPixelFilter) {
+    const auto camera = [&](PixelFilter filter, float width) {
+        CameraSettings settings = shot_.camera;
+        settings.filter = filter;
+        settings.filter_width_pixels = width;
+        return Camera(settings, medium_);
+    };
+    const Camera gaussian = camera(PixelFilter::Gaussian, 6.0f);
+    const std::vector<Camera> others = {camera(PixelFilter::Box, 6.0f), camera(PixelFilter::Gaussian, 1.0f)};
+    camera_ = gaussian;
+    const Image image = picture(512);
+    const CertifiedError right = certificate(image, 3, 16384).errors.front();
+    EXPECT_LT(right.error, 0.04);
+    EXPECT_LT(std::abs(right.mean), right.mean_interval.high - right.mean_interval.low);
+    for (const Camera& other : others) {
+        camera_ = other;
+        EXPECT_GT(certificate(image, 3, 16384).errors.front().error_interval.low, 0.06);
+    }
 }
 
 TEST_F(Certificates, SayNothingOfCellsThatThePictureHasNoLayersOf) {

@@ -97,6 +97,8 @@ TEST(Keys, BoundsAreChecked) {
         "scattering.alpha=0",
         "output.exposure_stops=1000",
         "output.frames_per_second=0",
+        "certify.samples=1023",
+        "certify.seed=-1",
         "volume.file=",
         "colour_role=smoke",
     };
@@ -111,6 +113,7 @@ TEST(Keys, BoundsAreChecked) {
         "camera.width=16384",
         "camera.width=640.0",
         "lighting.alpha=1",
+        "certify.samples=1024",
         "lighting.levels=auto",
         "scattering.bounces=0",
         "scattering.bounces=all",

@@ -171,6 +171,14 @@ TEST(ReadShot, ContradictionsAreFound) {
     EXPECT_EQ(complaint_about({"fire.modulate_by_flame=true", "fire.model=blackbody"}), "");
 }
 
+TEST(ReadShot, RendersWithoutEndAreFound) {
+    EXPECT_EQ(complaint_about({"method=path", "tracing.samples=none"}),
+              "--set tracing.samples=none: tracing.samples: is none: the render would never end; give tracing.seconds or "
+              "tracing.error");
+    for (const char* end : {"tracing.samples=2", "tracing.seconds=1", "tracing.error=0.5", "method=lighting_grid"})
+        EXPECT_EQ(complaint_about({"method=path", "tracing.samples=none", end}), "") << end;
+}
+
 TEST(ReadShot, FilesAreTakenByNameAndFolder) {
     const std::filesystem::path folder = std::filesystem::temp_directory_path() / "brisance-shot-test";
     std::filesystem::create_directories(folder);

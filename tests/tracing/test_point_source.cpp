@@ -96,8 +96,7 @@ double tent_over_point(double c, const dvec3& receiver) {
     return mean / fluence(c, r);
 }
 
-// Three albedos at once. `sharp` by the distance's index.
-void expect_fluence(Rows& rows, int first, const TracingSettings& settings) {
+Recipe medium_around_a_point(int first) {
     Recipe r;
     r.box = cube(-kHalf, kHalf);
     r.world_from_index = cubic(kSpacing);
@@ -106,26 +105,44 @@ void expect_fluence(Rows& rows, int first, const TracingSettings& settings) {
     r.settings.fire.convention = EmissionConvention::Direct;
     for (int c = 0; c < 3; ++c)
         r.settings.smoke.albedo[c] = static_cast<float>(kPoints[first + c].albedo);
-    const Traced traced(r, settings);
+    return r;
+}
+
+// Half of the directions toward the source, from where it fills a cone, half to all other sides.
+Estimate fluence_at(const Traced& traced, const dvec3& receiver, double sharp) {
+    const double r = glm::length(receiver), cosine = std::sqrt(std::max(0.0, 1.0 - 0.75 / (r * r)));
+    const dvec3 axis = -receiver / r, x = glm::normalize(glm::cross(axis, dvec3(0, 1, 0))), y = glm::cross(axis, x);
+    const double toward = 0.5 * (1.0 - cosine);  // of all directions
+    return estimate_to(sharp, 3, 1, [&](const dvec3& place, Rng& rng, double* out) {
+        const bool near = place.y < 0.5;
+        const double u = near ? 2.0 * place.y * toward : toward + (2.0 * place.y - 1.0) * (1.0 - toward);
+        const dvec3 d = uniform_direction(u, place.z);
+        traced.look({receiver, d.z * axis + d.x * x + d.y * y}, place.x, rng, out);
+        for (int c = 0; c < 3; ++c)
+            out[c] *= 8.0 * kPi64 * (near ? toward : 1.0 - toward);
+    });
+}
+
+// Three albedos at once.
+void expect_fluence(Rows& rows, int first, double sharp) {
+    const Traced traced(medium_around_a_point(first));
+    const double power = emitted_power(*traced.medium).x;
     for (const int i : {2, 3, 4}) {
         const dvec3 receiver = kRadii[i] * glm::normalize(dvec3(0.64, 0.36, -0.68));
-        const Estimate e = estimate_to(kSharp, 3, i, [&](const dvec3& place, Rng& rng, double* out) {
-            traced.look({receiver, uniform_direction(place.y, place.z)}, place.x, rng, out);
-        });
-        const double power = emitted_power(*traced.medium).x;
+        const Estimate e = fluence_at(traced, receiver, sharp);
         for (int c = 0; c < 3; ++c) {
             const PointSource& point = kPoints[first + c];
             const double truth = power * point.at[i] * tent_over_point(point.albedo, receiver);
-            rows.expect("albedo " + std::to_string(point.albedo) + ", r " + std::to_string(kRadii[i]),
-                        4.0 * kPi64 * e.mean[c], 4.0 * kPi64 * e.error[c], truth, 1e-4 * truth);
+            rows.expect("albedo " + std::to_string(point.albedo) + ", r " + std::to_string(kRadii[i]), e.mean[c],
+                        e.error[c], truth, 1e-4 * truth, sharp);
         }
     }
 }
 
 TEST(PointSource, LightsAnInfiniteMediumAsCaseAndZweifelSay) {
     Rows rows("point source");
-    expect_fluence(rows, 0, {});
-    expect_fluence(rows, 3, {});
+    expect_fluence(rows, 0, kSharp);
+    expect_fluence(rows, 3, kSharp);
 }
 
 }  // namespace

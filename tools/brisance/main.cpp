@@ -176,7 +176,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
         ->type_name("FILE");
     command.add_flag("--certify", options.certify,
                      "Estimates the finished picture's error against the truth, with 95 % confidence intervals, from "
-                     "certify.paths unbiased paths: on standard error, in the statistics and in the EXR's header");
+                     "certify.samples unbiased samples: on standard error, in the statistics and in the EXR's header");
     command.add_flag("--explain", options.explain, "Prints what ran, what was left out and why, and what it cost");
     command.add_flag("--print-config", options.print_config, "Prints the resolved shot instead of rendering");
 }

@@ -125,8 +125,7 @@ export function addConvergence(plotSection, reachSection, equalTimeSection) {
         help.textContent = `${measures[state.measure].title}: ${measures[state.measure].help}.`;
         reach.replaceChildren(reachTable(state, Number(baseSelect.value)));
         equalTime.replaceChildren(equalTimeTable(state));
-        const clock = clocks[state.clock].title.toLowerCase();
-        const which = `${layerTitle(state.layer)}, ${measures[report.measure].title}, ${clock}.`;
+        const which = `${layerTitle(state.layer)}, ${measures[report.measure].title}, ${clocks[state.clock].text}.`;
         titles.forEach((title) => (title.textContent = which));
     }
     const control = (label, key, options) =>

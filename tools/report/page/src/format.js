@@ -31,8 +31,8 @@ export const times = (ratio) => (known(ratio) ? `${number(ratio, ratio < 100 ? 2
 export const layerTitle = (layer) => (layer === "" ? "Beauty" : layer);
 
 export const clocks = {
-    wall: { key: "wall_seconds", title: "Wall time", axis: "wall time [s]" },
-    cpu: { key: "cpu_seconds", title: "CPU time", axis: "CPU time of all threads [s]" },
+    wall: { key: "wall_seconds", title: "Wall time", text: "wall time", axis: "wall time [s]" },
+    cpu: { key: "cpu_seconds", title: "CPU time", text: "CPU time", axis: "CPU time of all threads [s]" },
 };
 
 // Every measure the program took; those in percent are relative to the reference.
