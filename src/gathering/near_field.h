@@ -55,7 +55,6 @@ public:
     const std::vector<Separation>& stencil() const { return stencil_; }
     int margin() const { return margin_; }
     bool shadows() const { return shadows_; }
-    float spacing() const { return spacing_; }
 
 private:
     void tabulate_self_kernel();

@@ -1,6 +1,5 @@
 #include "gathering/near_kernels.h"
 
-#include <algorithm>
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
@@ -76,83 +75,14 @@ HWY_INLINE void add_separation(D d, const FlatStencil& stencil, const FlatSepara
     }
 }
 
-// The hat's light as its node sees it along one direction: the integral over t in [0, 1] of hat * sigma * T, for
-// extinction that is the Bernstein polynomial `sigma` of degree n (a trilinear cell along its diagonal, a face's, or an
-// edge) and the hat (1 - t)^n.
-template <int n>
-float light_along(const float (&sigma)[n + 1], float length) {
-    constexpr int kSteps = 6;
-    float seen = 0.0f, transmittance = 1.0f, depth = 0.0f;
-    for (int i = 0; i < kSteps; ++i) {
-        const float t = (i + 0.5f) / kSteps, u = 1.0f - t;
-        float hat = u, extinction;
-        if constexpr (n == 1) {
-            extinction = u * sigma[0] + t * sigma[1];
-        } else if constexpr (n == 2) {
-            hat = u * u;
-            extinction = u * u * sigma[0] + t * u * sigma[1] + t * t * sigma[2];
-        } else {
-            hat = u * u * u;
-            extinction = u * u * u * sigma[0] + t * u * u * sigma[1] + t * t * u * sigma[2] + t * t * t * sigma[3];
-        }
-        depth += extinction * length / kSteps;
-        const float next = std::exp(-depth);
-        seen += hat * (transmittance - next);
-        transmittance = next;
-    }
-    return seen;
-}
-
-// Weights of the 26 directions to a node's neighbours (Lebedev's rule of degree 7), by how many axes they leave along.
-constexpr float kDirectionWeight[4] = {0.0f, 1.0f / 21.0f, 4.0f / 105.0f, 9.0f / 280.0f};
-
-// How much of its hat's light a node sees, as a part of what it would see were extinction `mean` all around. `at`: the
-// node in the box of extinctions.
-float self_visibility(const NearBrick& b, int at, float mean, float spacing) {
-    const int stride[3] = {b.wide * b.wide, b.wide, 1};
-    const auto sigma = [&](int offset) { return b.extinction[at + offset]; };
-    float found = 0.0f, uniform = 0.0f;
-    for (int k = 0; k < 27; ++k) {
-        const int step[3] = {k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1};
-        int axis[3], n = 0;
-        for (int a = 0; a < 3; ++a)
-            if (step[a] != 0)
-                axis[n++] = step[a] * stride[a];
-        const float weight = kDirectionWeight[n];
-        if (n == 1) {
-            found += weight * light_along<1>({sigma(0), sigma(axis[0])}, spacing);
-            uniform += weight * light_along<1>({mean, mean}, spacing);
-        } else if (n == 2) {
-            const float length = spacing * std::sqrt(2.0f);
-            found += weight * light_along<2>({sigma(0), sigma(axis[0]) + sigma(axis[1]), sigma(axis[0] + axis[1])}, length);
-            uniform += weight * light_along<2>({mean, 2.0f * mean, mean}, length);
-        } else if (n == 3) {
-            const float length = spacing * std::sqrt(3.0f);
-            found += weight * light_along<3>({sigma(0), sigma(axis[0]) + sigma(axis[1]) + sigma(axis[2]),
-                                              sigma(axis[0] + axis[1]) + sigma(axis[1] + axis[2]) + sigma(axis[2] + axis[0]),
-                                              sigma(axis[0] + axis[1] + axis[2])},
-                                             length);
-            uniform += weight * light_along<3>({mean, 3.0f * mean, 3.0f * mean, mean}, length);
-        }
-    }
-    return uniform > 0.0f ? found / uniform : 1.0f;
-}
-
-constexpr float kThinVoxel = 0.05f;  // optical depth below which it does not matter where in its hat light comes from
-
 // The node's own light: isotropic, attenuated by the extinction around it (averaged with the mass matrix's weights).
 void add_self(const NearField& field, const NearBrick& b, int at, int node) {
-    float sigma = 0.0f, least = b.extinction[at], most = least;
+    float sigma = 0.0f;
     constexpr float weight[3] = {1.0f / 6.0f, 2.0f / 3.0f, 1.0f / 6.0f};
-    for (int k = 0; k < 27; ++k) {
-        const float e = b.extinction[at + ((k / 9 - 1) * b.wide + k / 3 % 3 - 1) * b.wide + k % 3 - 1];
-        sigma += weight[k / 9] * weight[k / 3 % 3] * weight[k % 3] * e;
-        least = std::min(least, e);
-        most = std::max(most, e);
-    }
-    float kappa = field.self_kernel(sigma);
-    if (field.shadows() && most > least && most * field.spacing() > kThinVoxel)
-        kappa *= self_visibility(b, at, sigma, field.spacing());
+    for (int k = 0; k < 27; ++k)
+        sigma += weight[k / 9] * weight[k / 3 % 3] * weight[k % 3] *
+                 b.extinction[at + ((k / 9 - 1) * b.wide + k / 3 % 3 - 1) * b.wide + k % 3 - 1];
+    const float kappa = field.self_kernel(sigma);
     for (int c = 0; c < 3; ++c) {
         const float arriving = b.intensity[c * b.plane + at] * kappa;
         b.fluence[c * b.out_plane + node] += arriving;

@@ -52,12 +52,4 @@ void Gathered::scale(const Rgb& factor) {
     }
 }
 
-void Gathered::scale_nodes(const std::vector<float>& factor) {
-    if (factor.empty())
-        return;
-    for (auto* field : {&fluence, &scattered, &moments})
-        for (std::size_t i = 0; i < field->size(); ++i)
-            (*field)[i] *= factor[i % factor.size()];
-}
-
 }  // namespace brisance

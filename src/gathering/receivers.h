@@ -60,7 +60,6 @@ struct Gathered {
     void resize(std::size_t receivers, bool camera, bool directional);
     void add(const Gathered& other);
     void scale(const Rgb& factor);
-    void scale_nodes(const std::vector<float>& factor);  // one per receiver; empty: all 1
 };
 
 }  // namespace brisance

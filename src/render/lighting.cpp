@@ -1,15 +1,21 @@
 #include "render/lighting.h"
 
 #include <algorithm>
+#include <chrono>
 
 #include "core/parallel.h"
-#include "core/stopwatch.h"
 #include "lights/voxel_lights.h"
 #include "medium/phase.h"
 
 namespace brisance {
 
 namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 nlohmann::ordered_json level_table(const std::vector<LevelCost>& costs) {
     auto table = nlohmann::ordered_json::array();
@@ -146,16 +152,16 @@ std::vector<Rgb> Lighting::source_function(const Gathered& g) const {
 
 void Lighting::light_from_fire() {
     progress_.stage("fire to lights");
-    Stopwatch watch;
+    Clock::time_point start = Clock::now();
     HierarchyLights lights = build_hierarchy(medium_, {voxel_lights(medium_), {}}, shot_.lighting.levels);
     const double emitted = luminance(Rgb(total(lights.light.intensity)));
     statistics_.stages.push_back({"lights and hierarchy",
-                                  watch.seconds(),
+                                  seconds_since(start),
                                   lights.grid.bytes(),
                                   {{"intensity_sum", emitted}, {"lattice_and_pyramid_bytes", pyramid_.bytes()}}});
 
     progress_.stage("light from the fire (MV)");
-    watch = Stopwatch();
+    start = Clock::now();
     const bool nodes = !marching() || plan_.multiple || shot_.lighting.energy_balance;
     StageCost stage{"light from the fire (MV)", 0.0, 0, {}};
     Rgb scale(1.0f);
@@ -176,7 +182,7 @@ void Lighting::light_from_fire() {
         }
         stage.bytes = most_held(costs) + (first.fluence.size() + first.scattered.size() + first.moments.size()) * 4;
         stage.detail["levels"] = level_table(costs);
-        stage.seconds = watch.seconds();
+        stage.seconds = seconds_since(start);
         statistics_.stages.push_back(stage);
         if (!marching())
             nodes_.single = source_function(first);
@@ -192,12 +198,11 @@ void Lighting::light_from_fire() {
     }
 }
 
-Gathered Lighting::gather_last_flight(const HierarchyLights& lights, const std::vector<float>& node_scale, int order,
-                                      nlohmann::ordered_json& balances, std::vector<LevelCost>& costs) {
+Gathered Lighting::gather_last_flight(const HierarchyLights& lights, int order, nlohmann::ordered_json& balances,
+                                      std::vector<LevelCost>& costs) {
     const LightField field = lights.field(pyramid_, shot_.scattering.alpha, shot_.lighting, nullptr);
     Gathered g = gather_at_nodes(
         field, {&needed_, plan_.directional ? &toward_camera_ : nullptr, false, medium_.mean_cosine}, costs, progress_);
-    g.scale_nodes(node_scale);
     prepare_interpolation(medium_.lattice, needed_, g);
     if (!shot_.lighting.energy_balance)
         return g;
@@ -211,13 +216,13 @@ Gathered Lighting::gather_last_flight(const HierarchyLights& lights, const std::
     return g;
 }
 
-ScatteringSolution Lighting::orders_of_scattering(const Gathered& first) {
+std::vector<ScatteredLight> Lighting::orders_of_scattering(const Gathered& first) {
     progress_.stage("orders of scattering");
-    const Stopwatch watch;
+    const Clock::time_point start = Clock::now();
     ScatteringCosts costs;
-    ScatteringSolution solution = solve_scattering(
-        {&pyramid_, &first, &needed_, shot_.lighting, shot_.scattering, orders_apart(), marching()}, costs, progress_);
-    StageCost series{"orders of scattering on the coarse lattice", watch.seconds(), costs.bytes, {}};
+    std::vector<ScatteredLight> orders = solve_scattering(
+        {&pyramid_, &first, &needed_, shot_.lighting, shot_.scattering, orders_apart()}, costs, progress_);
+    StageCost series{"orders of scattering on the coarse lattice", seconds_since(start), costs.bytes, {}};
     series.detail = {{"lattice_level", costs.lattice_level},
                      {"nodes", costs.coarse_nodes},
                      {"operator_seconds", costs.operator_seconds},
@@ -228,32 +233,19 @@ ScatteringSolution Lighting::orders_of_scattering(const Gathered& first) {
                      {"estimated_remainder", costs.remainder}};
     series.detail["levels"] = level_table(costs.levels);
     for (const BounceBalance& b : costs.balances)
-        series.detail["balance"].push_back(balance_row(b, b.order < 0 ? "sum" : std::to_string(b.order)));
+        series.detail["balance"].push_back(balance_row(b, std::to_string(b.order)));
     statistics_.stages.push_back(series);
     if (shot_.scattering.bounces < 0 && costs.remainder > shot_.scattering.remainder)
         progress_.warning("series", "multiple scattering stopped after " + std::to_string(costs.bounces) +
                                         " bounces with an estimated " + std::to_string(100.0 * costs.remainder) +
                                         " % of its light missing");
-    return solution;
+    return orders;
 }
 
 void Lighting::light_from_smoke(const Gathered& first) {
-    ScatteringSolution solution = orders_of_scattering(first);
-    if (!solution.lights.empty())
-        return gather_last_flights(solution);
-    // The series' own nodes are the camera's: nothing is left to gather.
-    NodeRadiance sum;
-    for (NodeRadiance& order : solution.sources) {
-        sum.add(order, Rgb(1.0f));
-        if (orders_apart())
-            nodes_.orders.push_back(std::move(order.mean));
-    }
-    nodes_.multiple = std::move(sum.mean);
-}
-
-void Lighting::gather_last_flights(ScatteringSolution& solution) {
+    std::vector<ScatteredLight> orders = orders_of_scattering(first);
     progress_.stage("light from the smoke (MM)");
-    const Stopwatch watch;
+    const Clock::time_point start = Clock::now();
     StageCost last{"light from the smoke (MM)", 0.0, 0, {}};
     auto balances = nlohmann::ordered_json::array();
     std::vector<LevelCost> levels;
@@ -261,14 +253,13 @@ void Lighting::gather_last_flights(ScatteringSolution& solution) {
     sum.resize(needed_.size(), plan_.directional, false);
     if (marching())
         smoke_ = std::make_unique<PointLights>();
-    for (std::size_t k = 0; k < solution.lights.size(); ++k) {
-        solution.lights[k].sharpen(medium_.lattice);
-        HierarchyLights lights = build_hierarchy(medium_, std::move(solution.lights[k]), shot_.lighting.levels);
+    for (std::size_t k = 0; k < orders.size(); ++k) {
+        orders[k].sharpen(medium_.lattice);
+        HierarchyLights lights = build_hierarchy(medium_, std::move(orders[k]), shot_.lighting.levels);
         // Marching gathers at the points later; the nodes then serve the balance alone.
         if (!marching() || shot_.lighting.energy_balance) {
             std::vector<LevelCost> these;
-            const Gathered g = gather_last_flight(lights, solution.node_scale, orders_apart() ? int(k) + 1 : -1,
-                                                  balances, these);
+            const Gathered g = gather_last_flight(lights, orders_apart() ? int(k) + 1 : -1, balances, these);
             if (levels.empty())
                 levels = these;
             if (orders_apart())
@@ -284,7 +275,7 @@ void Lighting::gather_last_flights(ScatteringSolution& solution) {
     } else {
         nodes_.multiple = source_function(sum);
     }
-    last.seconds = watch.seconds();
+    last.seconds = seconds_since(start);
     last.bytes = most_held(levels) + (sum.fluence.size() + sum.scattered.size()) * 4;
     last.detail["levels"] = level_table(levels);
     if (!balances.empty())

@@ -34,11 +34,10 @@ public:
 
 private:
     void light_from_fire();
-    ScatteringSolution orders_of_scattering(const Gathered& first);
+    std::vector<ScatteredLight> orders_of_scattering(const Gathered& first);
     void light_from_smoke(const Gathered& first);
-    void gather_last_flights(ScatteringSolution& solution);
-    Gathered gather_last_flight(const HierarchyLights& lights, const std::vector<float>& node_scale, int order,
-                                nlohmann::ordered_json& balances, std::vector<LevelCost>& costs);
+    Gathered gather_last_flight(const HierarchyLights& lights, int order, nlohmann::ordered_json& balances,
+                                std::vector<LevelCost>& costs);
     std::vector<Rgb> source_function(const Gathered& gathered) const;
     bool orders_apart() const { return shot_.output.bounce_layers && !marching(); }
     bool marching() const { return shot_.lighting.gather == GatherMethod::RayMarch; }

@@ -62,7 +62,7 @@ public:
         }
     }
 
-    // Optical depths to the edge.
+    // Transmittances, in place of optical depths.
     std::vector<float> march(float step_nodes) const {
         std::vector<float> depth(padded_);
         const PackedExtinction view = pyramid_.view(0);
@@ -70,6 +70,8 @@ public:
             const float* begin[3] = {&begin_[0][first], &begin_[1][first], &begin_[2][first]};
             const float* end[3] = {&end_[0][first], &end_[1][first], &end_[2][first]};
             segment_optical_depths(view, begin, end, &metres_[first], step_nodes, last - first, &depth[first]);
+            for (std::size_t i = first; i < last; ++i)
+                depth[i] = std::exp(-depth[i]);
         });
         return depth;
     }
@@ -122,19 +124,16 @@ EscapeEstimate estimate_escape(const ExtinctionPyramid& pyramid, const std::vect
             exits.set(r, vec3(node - medium.reference_node), sphere_direction(u, v));
         },
         1024);
-    const std::vector<float> depth = exits.march(1.0f);
-    dvec3 escaped[2] = {dvec3(0.0), dvec3(0.0)}, emitted[2] = {dvec3(0.0), dvec3(0.0)}, hit(0.0);
+    const std::vector<float> transmittance = exits.march(1.0f);
+    dvec3 escaped[2] = {dvec3(0.0), dvec3(0.0)}, emitted[2] = {dvec3(0.0), dvec3(0.0)};
     for (std::size_t r = 0; r < picks.size(); ++r) {
         const dvec3 colour = dvec3(intensity[picks[r]]) / double(luminance(intensity[picks[r]]));
-        escaped[r & 1] += colour * std::exp(-double(depth[r]));
-        hit += colour * -std::expm1(-double(depth[r]));
+        escaped[r & 1] += colour * double(transmittance[r]);
         emitted[r & 1] += colour;
     }
     for (int c = 0; c < 3; ++c)
-        if (emitted[0][c] + emitted[1][c] > 0.0) {
+        if (emitted[0][c] + emitted[1][c] > 0.0)
             estimate.fraction[c] = (escaped[0][c] + escaped[1][c]) / (emitted[0][c] + emitted[1][c]);
-            estimate.collided[c] = hit[c] / (emitted[0][c] + emitted[1][c]);
-        }
     const auto half = [&](int k) { return luminance(Rgb(escaped[k])) / luminance(Rgb(emitted[k])); };
     estimate.standard_error = picks.size() > 1 ? 0.5 * std::abs(half(0) - half(1)) : 1.0;
     estimate.rays = picks.size();
@@ -145,96 +144,36 @@ dvec3 collided(const Medium& medium, const std::vector<Rgb>& fluence) {
     return total(project_extinction_times(medium, fluence)) / (4.0 * double(kPi));
 }
 
-namespace {
-
-// Rays of one vertex: where they start [nodes] and how much each counts.
-struct Starts {
-    std::vector<vec3> position;
-    std::vector<float> weight;
-};
-
-// Weighted means of the collision probability over every vertex' rays. `make_starts(scratch)` gives a function that
-// fills the starts of a vertex.
-template <class MakeStarts>
-std::vector<float> mean_collisions(const ExtinctionPyramid& pyramid, const std::vector<ivec3>& vertices, int directions,
-                                   const MakeStarts& make_starts) {
-    std::vector<float> probability(vertices.size(), 0.0f);
+std::vector<float> escape_probabilities(const ExtinctionPyramid& pyramid, const std::vector<ivec3>& vertices, int level,
+                                        int directions) {
+    const Medium& medium = pyramid.medium();
+    std::vector<float> probability(vertices.size(), 1.0f);
     const std::size_t batch = std::max<std::size_t>(1, (std::size_t{1} << 20) / directions);
     for (std::size_t first = 0; first < vertices.size(); first += batch) {
         const std::size_t count = std::min(batch, vertices.size() - first);
         ExitRays exits(pyramid, count * directions);
-        std::vector<float> weight(count * directions);
         parallel_blocks(count, 256, [&](std::size_t begin, std::size_t end) {
-            auto fill = make_starts();
-            Starts starts;
+            FootprintPicker picker(medium, medium.extinction, level);
             for (std::size_t k = begin; k < end; ++k) {
+                const std::vector<ivec3>& starts = picker.pick(vertices[first + k], directions);
                 Rng rng(Stream::EscapeRay, vertex_key(vertices[first + k]), 1);
                 const double turn_u = rng.next(), turn_v = rng.next();
-                starts.position.clear();
-                starts.weight.assign(directions, 1.0f);
-                fill(vertices[first + k], rng, starts);
                 // Starts come in space order and directions in order of height: an odd stride parts the two.
-                for (int d = 0; d < directions; ++d) {
-                    const std::size_t s = std::size_t(d) * 27 % starts.position.size();
-                    exits.set(k * directions + d, starts.position[s],
+                for (std::size_t d = 0; d < starts.size(); ++d)
+                    exits.set(k * directions + d, vec3(starts[d * 27 % starts.size()] - medium.reference_node),
                               sphere_direction(std::fmod((d + turn_u) / directions, 1.0),
                                                std::fmod(turn_v + d * kGoldenRatio, 1.0)));
-                    weight[k * directions + d] = starts.weight[s];
-                }
             }
         });
-        const std::vector<float> depth = exits.march(1.0f);
+        const std::vector<float> transmittance = exits.march(1.0f);
         for (std::size_t k = 0; k < count; ++k) {
-            float sum = 0.0f, all = 0.0f;
-            for (std::size_t r = k * directions; r < (k + 1) * directions; ++r) {
-                sum -= weight[r] * std::expm1(-depth[r]);
-                all += weight[r];
-            }
-            probability[first + k] = all > 0.0f ? sum / all : 0.0f;
+            float sum = 0.0f;
+            for (int d = 0; d < directions; ++d)
+                sum += transmittance[k * directions + d];
+            probability[first + k] = sum / directions;
         }
     }
     return probability;
-}
-
-// From [0, 1) to [-1, 1] with the hat's density.
-float hat_offset(double u) {
-    return static_cast<float>(u < 0.5 ? std::sqrt(2.0 * u) - 1.0 : 1.0 - std::sqrt(2.0 * (1.0 - u)));
-}
-
-}  // namespace
-
-std::vector<float> collision_probabilities(const ExtinctionPyramid& pyramid, const std::vector<ivec3>& vertices,
-                                           int level, int directions) {
-    const Medium& medium = pyramid.medium();
-    return mean_collisions(pyramid, vertices, directions, [&] {
-        return [&, picker = FootprintPicker(medium, medium.extinction, level), level](const ivec3& vertex, Rng&,
-                                                                                     Starts& starts) mutable {
-            if (level > 0)
-                for (const ivec3& node : picker.pick(vertex, directions))
-                    starts.position.emplace_back(node - medium.reference_node);
-            if (starts.position.empty())
-                starts.position.emplace_back(vertex * (1 << level) - medium.reference_node);
-        };
-    });
-}
-
-std::vector<float> collision_probabilities_of_hats(const ExtinctionPyramid& pyramid, const std::vector<ivec3>& vertices,
-                                                   int level, int directions) {
-    const Medium& medium = pyramid.medium();
-    return mean_collisions(pyramid, vertices, directions, [&] {
-        return [&, level](const ivec3& vertex, Rng& rng, Starts& starts) {
-            // Additive recurrence in three dimensions (Roberts), shifted at random.
-            const double shift[3] = {rng.next(), rng.next(), rng.next()};
-            for (int d = 0; d < directions; ++d) {
-                const vec3 offset(hat_offset(std::fmod(shift[0] + d * 0.8191725133961645, 1.0)),
-                                  hat_offset(std::fmod(shift[1] + d * 0.6710436067037893, 1.0)),
-                                  hat_offset(std::fmod(shift[2] + d * 0.5497004779019703, 1.0)));
-                const vec3 nodes = float(1 << level) * (vec3(vertex) + offset) - vec3(medium.reference_node);
-                starts.position.push_back(nodes);
-                starts.weight[d] = pyramid.extinction_at(medium.local_from_index * nodes);
-            }
-        };
-    });
 }
 
 }  // namespace brisance

@@ -8,8 +8,7 @@
 namespace brisance {
 
 struct EscapeEstimate {
-    dvec3 fraction{0.0};  // of the emitted power that leaves the medium without a collision, per colour
-    dvec3 collided{0.0};  // the rest, summed by itself: in thin smoke 1 - fraction would be rounding alone
+    dvec3 fraction{0.0};          // of the emitted power that leaves the medium without a collision, per colour
     double standard_error = 0.0;  // of the luminance's
     std::size_t rays = 0;
 };
@@ -22,16 +21,9 @@ EscapeEstimate estimate_escape(const ExtinctionPyramid& pyramid, const std::vect
 // Power absorbed and scattered, over 4 pi: the exact integral of extinction * fluence of the two interpolated fields.
 dvec3 collided(const Medium& medium, const std::vector<Rgb>& fluence);
 
-// Collision probability, averaged over all directions, of light that sets out from vertices of the lattice 2^level
-// coarser than the medium's: `directions` stratified rays each, from the nodes under the vertex' hat picked by
-// extinction, or from the vertex where there is none or the lattices are the same.
-std::vector<float> collision_probabilities(const ExtinctionPyramid& pyramid, const std::vector<ivec3>& vertices,
-                                           int level, int directions);
-
-// The same of the light of a source function that is 1 at the vertex and falls to 0 at its neighbours: rays start
-// anywhere under the hat, in proportion to hat times extinction. Sums of source times this are what the camera sees
-// leave, however steeply extinction rises.
-std::vector<float> collision_probabilities_of_hats(const ExtinctionPyramid& pyramid, const std::vector<ivec3>& vertices,
-                                                   int level, int directions);
+// Escape probability averaged over all directions and over what each vertex stands for: `directions` stratified rays
+// per vertex (of the lattice 2^level coarser than the medium's), each from a node under its hat picked by extinction.
+std::vector<float> escape_probabilities(const ExtinctionPyramid& pyramid, const std::vector<ivec3>& vertices, int level,
+                                        int directions);
 
 }  // namespace brisance

@@ -49,18 +49,11 @@ Medium coarse_medium(const ExtinctionPyramid& fine, int level) {
         lattice = std::move(coarse);
         scattering = std::move(values);
     }
-    // Where nothing is to be averaged the node's own albedo stays: interpolation reaches there.
-    m.albedo_nodes.resize(m.extinction.size(), f.albedo);
-    for (std::size_t i = 0; i < m.extinction.size(); ++i) {
-        const ivec3 vertex = m.lattice.first_node(i / BrickLattice::kNodes) +
-                             BrickLattice::node_in_brick(int(i % BrickLattice::kNodes));
-        const std::int64_t own = f.lattice.find_node(vertex * (1 << level));
+    m.albedo_nodes.resize(m.extinction.size(), Rgb(0.0f));
+    for (std::size_t i = 0; i < m.extinction.size(); ++i)
         if (m.extinction[i] > 0.0f)
             m.albedo_nodes[i] = glm::min(
                 Rgb(scattering[i * 3], scattering[i * 3 + 1], scattering[i * 3 + 2]) / m.extinction[i], Rgb(1.0f));
-        else if (own >= 0)
-            m.albedo_nodes[i] = f.albedo_nodes[own];
-    }
     return m;
 }
 
@@ -111,21 +104,62 @@ struct CoarseSampler {
 
 }  // namespace
 
+void ScatteredLight::add(const ScatteredLight& other, float factor) {
+    for (std::size_t i = 0; i < intensity.size(); ++i)
+        intensity[i] += factor * other.intensity[i];
+    for (std::size_t i = 0; i < directional.size(); ++i)
+        directional[i] += factor * other.directional[i];
+}
+
+void ScatteredLight::sharpen(const BrickLattice& lattice) {
+    const std::vector<Rgb> before = intensity;
+    sharpen_lights(lattice, intensity);
+    for (std::size_t i = 0; i < intensity.size() && !directional.empty(); ++i)
+        for (int k = 0; k < 24; ++k) {
+            const float from = before[i][k % 3];
+            directional[i * 24 + k] *= from > 0.0f ? intensity[i][k % 3] / from : 0.0f;
+        }
+}
+
+ScatteredLight scattered_light(const Medium& medium, const Gathered& arriving, const std::vector<std::uint8_t>& mask) {
+    const std::size_t n = mask.size();
+    const auto projected = [&](const std::vector<float>& field, std::size_t first_plane, float factor) {
+        std::vector<Rgb> source(n, Rgb(0.0f));
+        parallel_for(
+            n,
+            [&](std::size_t i) {
+                if (mask[i])
+                    for (int c = 0; c < 3; ++c)
+                        source[i][c] = factor * medium.albedo_at(i)[c] * field[(first_plane + c) * n + i];
+            },
+            4096);
+        return project_extinction_times(medium, source);
+    };
+    ScatteredLight light;
+    light.intensity = projected(arriving.fluence, 0, 1.0f / (4.0f * kPi));
+    if (arriving.moments.empty())
+        return light;
+    light.directional.resize(n * 24);
+    for (int m = 0; m < kShMoments; ++m) {
+        const std::vector<Rgb> part = projected(arriving.moments, 3 * m, sh_phase_factor(m, medium.mean_cosine));
+        for (std::size_t i = 0; i < n; ++i)
+            for (int c = 0; c < 3; ++c)
+                light.directional[i * 24 + 3 * m + c] = part[i][c];
+    }
+    return light;
+}
+
 CoarseOperator::CoarseOperator(const ExtinctionPyramid& fine, int level, const LightingSettings& lighting, float alpha)
     : level_(level), medium_(coarse_medium(fine, level)), lighting_(lighting), alpha_(alpha) {
     pyramid_ = std::make_unique<ExtinctionPyramid>(medium_, ExtinctionPyramid::kMaxLevels);
     unit_ = project_extinction_times(medium_, std::vector<Rgb>(medium_.extinction.size(), Rgb(1.0f)));
+    sharpen_lights(medium_.lattice, unit_);
     weight_.resize(unit_.size());
     mask_.resize(unit_.size());
-    // Before sharpening, which may leave a node nothing but rounding: then whether a node counts would be chance.
-    mass_.resize(unit_.size());
     for (std::size_t i = 0; i < unit_.size(); ++i) {
-        mass_[i] = unit_[i].x;
-        active_ += mask_[i] = mass_[i] > 0.0f;
-    }
-    sharpen_lights(medium_.lattice, unit_);
-    for (std::size_t i = 0; i < unit_.size(); ++i)
         weight_[i] = unit_[i].x;
+        active_ += mask_[i] = weight_[i] > 0.0f;
+    }
     grid_ = build_lighting_grid(medium_, unit_, &weight_, automatic_levels(medium_));
     factor_.assign(weight_.size(), 1.0f);
     if (lighting_.energy_balance)
@@ -148,31 +182,22 @@ void CoarseOperator::balance_nodes(const ExtinctionPyramid& fine) {
             vertices.push_back(medium_.lattice.first_node(i / BrickLattice::kNodes) +
                                BrickLattice::node_in_brick(int(i % BrickLattice::kNodes)));
         }
-    const std::vector<float> collision = collision_probabilities(fine, vertices, level_, kEscapeDirections);
-    const std::vector<float> of_hat = collision_probabilities_of_hats(fine, vertices, level_, kEscapeDirections);
-    collision_.assign(mask_.size(), 0.0f);
-    hat_collision_.assign(mask_.size(), 0.0f);
-    for (std::size_t k = 0; k < nodes.size(); ++k) {
-        collision_[nodes[k]] = collision[k];
-        hat_collision_[nodes[k]] = of_hat[k];
-    }
+    const std::vector<float> escape = escape_probabilities(fine, vertices, level_, kEscapeDirections);
+    escape_.assign(mask_.size(), 1.0f);
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+        escape_[nodes[k]] = escape[k];
 
-    // D K D (unit source) = 4 pi (collision probability), by the symmetric fixed point D <- D sqrt(wanted / found).
+    // D K D (unit source) = 4 pi (1 - escape), by the symmetric fixed point D <- D sqrt(wanted / found).
     std::vector<LevelCost> costs;
     Progress silent;
     ScatteredLight unit;
     unit.intensity = unit_;
-    node_scale_.assign(mask_.size(), 1.0f);
     for (int sweep = 0; sweep < kBalanceSweeps; ++sweep) {
         const Gathered found = gather(unit, costs, silent);
         for (std::size_t i : nodes) {
-            const float wanted = 4.0f * kPi * collision_[i];
-            if (!(found.fluence[i] > 0.0f && wanted > 0.0f))
-                continue;
-            const float ratio = wanted / found.fluence[i];
-            if (sweep == 0)
-                node_scale_[i] = std::clamp(ratio, 0.2f, 5.0f);
-            factor_[i] = std::clamp(factor_[i] * std::sqrt(ratio), 0.2f, 5.0f);
+            const float wanted = 4.0f * kPi * (1.0f - escape_[i]);
+            if (found.fluence[i] > 0.0f && wanted > 0.0f)
+                factor_[i] = std::clamp(factor_[i] * std::sqrt(wanted / found.fluence[i]), 0.2f, 5.0f);
         }
     }
 }
@@ -207,111 +232,90 @@ Gathered CoarseOperator::gather(const ScatteredLight& lights, std::vector<LevelC
     return out;
 }
 
-Departure CoarseOperator::restricted(const ScatteredLight& fine, const BrickLattice& fine_lattice) const {
-    Departure out;
-    out.light.intensity = out.power = as_colours(splat_down(fine_lattice, flattened(fine.intensity), 3, level_));
+ScatteredLight CoarseOperator::restricted(const ScatteredLight& fine, const BrickLattice& fine_lattice) const {
+    ScatteredLight coarse;
+    coarse.intensity = as_colours(splat_down(fine_lattice, flattened(fine.intensity), 3, level_));
     if (!fine.directional.empty())
-        out.light.directional = splat_down(fine_lattice, fine.directional, 24, level_);
-    out.light.sharpen(medium_.lattice);
-    return out;
+        coarse.directional = splat_down(fine_lattice, fine.directional, 24, level_);
+    coarse.sharpen(medium_.lattice);
+    return coarse;
 }
 
-Departure CoarseOperator::departure_of(const NodeRadiance& source) const {
-    Departure out;
-    out.light = scattered_light(medium_, source);
-    out.light.sharpen(medium_.lattice);
-    out.power.resize(mass_.size());
-    for (std::size_t i = 0; i < mass_.size(); ++i)
-        out.power[i] = mass_[i] * source.mean[i];
-    return out;
-}
-
-// Multiplies what arrives so that `collides` of it does. Deep in thick smoke a gather cannot but be right: what arrives
-// there set out next door. So it is the nodes from which light escapes that answer for what is missing or too much.
-void CoarseOperator::close_balance(const dvec3& collides, const dvec3& hit, Gathered& arriving) const {
-    constexpr float kLeastShare = 1e-3f;
-    constexpr double kMostChange = 0.5;
-    const std::size_t n = mask_.size();
-    std::vector<float> share(n, 0.0f);
-    std::vector<Rgb> shared(n, Rgb(0.0f));
-    for (std::size_t i = 0; i < n; ++i)
-        if (mask_[i]) {
-            share[i] = 1.0f - collision_[i] + kLeastShare;
-            for (int c = 0; c < 3; ++c)
-                shared[i][c] = share[i] * arriving.fluence[c * n + i];
-        }
-    const dvec3 of_shares = collided(medium_, shared);
-    dvec3 change(0.0);
-    for (int c = 0; c < 3; ++c)
-        if (of_shares[c] > 0.0)
-            change[c] = std::clamp((collides[c] - hit[c]) / of_shares[c], -kMostChange, kMostChange);
-    for (auto* field : {&arriving.fluence, &arriving.moments})
-        for (std::size_t k = 0; k < field->size(); ++k)
-            (*field)[k] *= 1.0f + static_cast<float>(change[int(k / n % 3)]) * share[k % n];
-}
-
-NodeRadiance CoarseOperator::bounce(const Departure& departure, BounceBalance& balance, std::vector<LevelCost>& costs,
-                                    Progress& progress) {
-    Gathered arriving = gather(departure.light, costs, progress);
+ScatteredLight CoarseOperator::bounce(const ScatteredLight& lights, BounceBalance& balance,
+                                      std::vector<LevelCost>& costs, Progress& progress) {
+    Gathered arriving = gather(lights, costs, progress);
     prepare_interpolation(medium_.lattice, mask_, arriving);
+    dvec3 emitted(0.0), escaped(0.0);
+    for (std::size_t i = 0; i < mask_.size(); ++i) {
+        emitted += dvec3(lights.intensity[i]);
+        if (mask_[i] && !escape_.empty())
+            escaped += dvec3(lights.intensity[i]) * double(escape_[i]);
+    }
     const dvec3 hit = collided(medium_, fluence_at_nodes(arriving, mask_));
-    const dvec3 emitted = total(departure.power);
     const double y = luminance(Rgb(emitted));
     balance.collided = luminance(Rgb(hit)) / y;
+    balance.escaped = luminance(Rgb(escaped)) / y;
     if (lighting_.energy_balance) {
-        dvec3 collides(0.0);
-        for (std::size_t i = 0; i < mask_.size(); ++i)
-            collides += dvec3(departure.power[i]) * double(hat_collision_[i]);
-        close_balance(collides, hit, arriving);
-        balance.escaped = 1.0 - luminance(Rgb(collides)) / y;
-        balance.scale = luminance(Rgb(collided(medium_, fluence_at_nodes(arriving, mask_)))) / y / balance.collided;
+        Rgb scale(1.0f);
+        for (int c = 0; c < 3; ++c)
+            if (hit[c] > 0.0)
+                scale[c] = static_cast<float>((emitted[c] - escaped[c]) / hit[c]);
+        balance.scale = (1.0 - balance.escaped) / balance.collided;
+        arriving.scale(scale);
     }
-    return scattered_source(medium_, arriving, mask_);
+    ScatteredLight next = scattered_light(medium_, arriving, mask_);
+    next.sharpen(medium_.lattice);
+    return next;
 }
 
-ScatteredLight CoarseOperator::spread_to_fine(const NodeRadiance& coarse, const Medium& fine) const {
+ScatteredLight CoarseOperator::spread_to_fine(const ScatteredLight& coarse, const Medium& fine) const {
     const std::size_t n = fine.lattice.node_count();
     const CoarseSampler sampler{medium_.lattice, level_};
-    const int coefficients = coarse.directional.empty() ? 0 : 3 * kShMoments;
-    NodeRadiance source;
-    source.mean.resize(n, Rgb(0.0f));
-    source.directional.resize(n * coefficients, 0.0f);
-    // Where a coarse node has no extinction its neighbours speak.
+    const bool directional = !coarse.directional.empty();
+    const int channels = directional ? 27 : 3;
+    // Source function: light leaving per volume and extinction; where a coarse node has no extinction its neighbours
+    // speak.
+    std::vector<std::vector<Rgb>> source(channels / 3, std::vector<Rgb>(n, Rgb(0.0f)));
     parallel_for(
         fine.lattice.brick_count(),
         [&](std::size_t b) {
             for (int k = 0; k < BrickLattice::kNodes; ++k) {
                 const std::size_t i = b * BrickLattice::kNodes + k;
-                float* const directional = source.directional.data() + i * coefficients;
-                float mass = 0.0f;
+                float sum[27] = {}, mass = 0.0f;
                 sampler.at(fine.lattice.first_node(b) + BrickLattice::node_in_brick(k), [&](std::size_t q, float w) {
                     if (!mask_[q])
                         return;
+                    const float per_mass = w / weight_[q];
                     mass += w;
-                    source.mean[i] += w * coarse.mean[q];
-                    for (int c = 0; c < coefficients; ++c)
-                        directional[c] += w * coarse.directional[q * coefficients + c];
+                    for (int c = 0; c < 3; ++c)
+                        sum[c] += per_mass * coarse.intensity[q][c];
+                    for (int c = 0; c < channels - 3; ++c)
+                        sum[3 + c] += per_mass * coarse.directional[q * 24 + c];
                 });
-                if (mass <= 0.0f)
-                    continue;
-                source.mean[i] /= mass;
-                for (int c = 0; c < coefficients; ++c)
-                    directional[c] /= mass;
+                if (mass > 0.0f)
+                    for (int c = 0; c < channels; ++c)
+                        source[c / 3][i][c % 3] = sum[c] / mass;
             }
         },
         4);
-    ScatteredLight light = scattered_light(fine, source);
+    ScatteredLight light;
+    light.intensity = project_extinction_times(fine, source[0]);
     // Extinction and source vary together below the coarse voxel, which the product of averages does not see: the power
     // is that of the series.
-    const dvec3 wanted = total(project_extinction_times(medium_, coarse.mean)), found = total(light.intensity);
+    const dvec3 wanted = total(coarse.intensity), found = total(light.intensity);
     Rgb scale(1.0f);
     for (int c = 0; c < 3; ++c)
         if (found[c] > 0.0)
             scale[c] = static_cast<float>(wanted[c] / found[c]);
     for (Rgb& i : light.intensity)
         i *= scale;
-    for (std::size_t i = 0; i < light.directional.size(); ++i)
-        light.directional[i] *= scale[int(i % 3)];
+    light.directional.resize(directional ? n * 24 : 0);
+    for (int m = 0; m < kShMoments && directional; ++m) {
+        const std::vector<Rgb> part = project_extinction_times(fine, source[1 + m]);
+        for (std::size_t i = 0; i < n; ++i)
+            for (int c = 0; c < 3; ++c)
+                light.directional[i * 24 + 3 * m + c] = scale[c] * part[i][c];
+    }
     return light;
 }
 

@@ -1,21 +1,25 @@
 #include "scattering/multiple_scattering.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "core/parallel.h"
-#include "core/stopwatch.h"
 #include "gathering/sh.h"
 #include "lights/voxel_lights.h"
 #include "medium/phase.h"
 #include "scattering/coarse_operator.h"
-#include "scattering/series.h"
 
 namespace brisance {
 
 namespace {
 
 constexpr std::size_t kEscapeRays = std::size_t{1} << 18;
+constexpr int kMostBounces = 96;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
 
 double power(const std::vector<Rgb>& lights) {
     return luminance(Rgb(total(lights)));
@@ -36,6 +40,45 @@ int choose_level(const ExtinctionPyramid& pyramid, int wish) {
     while (level < last && lit(level) > kMostCoarseNodes)
         ++level;
     return level;
+}
+
+// Runs the series on the coarse lattice and hands every order's light (scattered twice, three times, ...) to `take`,
+// the extrapolated tail last.
+template <class Take>
+void run_series(CoarseOperator& op, const ScatteredLight& first, const ScatteringSettings& settings,
+                ScatteringCosts& costs, Progress& progress, const Take& take) {
+    ScatteredLight lights = first;
+    const double start = power(first.intensity);
+    double previous = start, ratio = 0.0, sum = start;
+    const int wanted = settings.bounces < 0 ? kMostBounces : settings.bounces - 2;
+    for (int k = 0; k < wanted && previous > 0.0; ++k) {
+        BounceBalance balance;
+        balance.order = k + 1;
+        balance.emitted = previous / start;
+        lights = op.bounce(lights, balance, costs.levels, progress);
+        costs.balances.push_back(balance);
+        take(lights, 1.0f);
+        ++costs.bounces;
+        const double now = power(lights.intensity);
+        const double drift = std::abs(now / previous - ratio);
+        ratio = now / previous;
+        previous = now;
+        sum += now;
+        if (settings.bounces >= 0)
+            continue;
+        // The tail is now * ratio / (1 - ratio); a ratio still drifting leaves about this much of it unknown.
+        const double room = std::max(1.0 - ratio, 1e-6);
+        costs.remainder = now * drift / (room * room) / sum;
+        progress.fraction(std::min(1.0, settings.remainder / std::max(costs.remainder, 1e-9)));
+        if (costs.remainder < settings.remainder || now < 1e-6 * start)
+            break;
+    }
+    costs.tail_ratio = ratio;
+    if (settings.bounces < 0 && ratio > 0.0 && ratio < 1.0) {
+        const double tail = ratio / (1.0 - ratio);
+        costs.tail_share = tail * previous / (sum + tail * previous);
+        take(lights, static_cast<float>(tail));
+    }
 }
 
 }  // namespace
@@ -72,57 +115,44 @@ Rgb close_balance(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& ligh
     balance.collided = y > 0.0 ? luminance(Rgb(hit)) / y : 0.0;
     balance.escaped = y > 0.0 ? luminance(Rgb(escape.fraction * emitted)) / y : 0.0;
     balance.escape_error = escape.standard_error;
-    if (balance.collided > 0.0)
-        balance.scale = luminance(Rgb(escape.collided * emitted)) / y / balance.collided;
+    balance.scale = balance.collided > 0.0 ? (1.0 - balance.escaped) / balance.collided : 1.0;
     Rgb scale(1.0f);
     for (int c = 0; c < 3; ++c)
         if (hit[c] > 0.0)
-            scale[c] = static_cast<float>(escape.collided[c] * emitted[c] / hit[c]);
+            scale[c] = static_cast<float>((1.0 - escape.fraction[c]) * emitted[c] / hit[c]);
     return scale;
 }
 
-ScatteringSolution solve_scattering(const ScatteringInput& input, ScatteringCosts& costs, Progress& progress) {
+std::vector<ScatteredLight> solve_scattering(const ScatteringInput& input, ScatteringCosts& costs, Progress& progress) {
     const ExtinctionPyramid& pyramid = *input.pyramid;
     const Medium& medium = pyramid.medium();
-    ScatteringSolution out;
-    out.lights.push_back(scattered_light(medium, scattered_source(medium, *input.first, *input.needed)));
-    if (input.settings.bounces == 2 || !(power(out.lights[0].intensity) > 0.0))
-        return out;
+    std::vector<ScatteredLight> orders;
+    orders.push_back(scattered_light(medium, *input.first, *input.needed));
+    if (input.settings.bounces == 2 || !(power(orders[0].intensity) > 0.0))
+        return orders;
 
-    Stopwatch watch;
+    auto start = std::chrono::steady_clock::now();
     costs.lattice_level = choose_level(pyramid, input.settings.lattice_level);
     CoarseOperator op(pyramid, costs.lattice_level, input.lighting, input.settings.alpha);
     costs.coarse_nodes = op.active_nodes();
-    costs.operator_seconds = watch.seconds();
+    costs.operator_seconds = seconds_since(start);
 
-    watch = Stopwatch();
-    const bool at_nodes = costs.lattice_level == 0 && medium.mean_cosine == 0.0f && !input.as_lights;
-    const int single_orders = at_nodes ? input.settings.bounces - 1 : input.settings.bounces - 2;
-    std::vector<NodeRadiance> orders;
-    sum_orders(op, op.restricted(out.lights[0], medium.lattice), input.settings, single_orders, costs, progress,
-               [&](const NodeRadiance& order) {
-                   if (input.separate_orders || orders.empty())
-                       orders.push_back(order);
-                   else
-                       orders[0].add(order, Rgb(1.0f));
-               });
-    if (at_nodes) {
-        out.lights.clear();
-        out.sources = std::move(orders);
-    } else {
-        for (const NodeRadiance& order : orders) {
-            ScatteredLight light = op.spread_to_fine(order, medium);
-            if (input.separate_orders)
-                out.lights.push_back(std::move(light));
-            else
-                out.lights[0].add(light, 1.0f);
-        }
-        if (costs.lattice_level == 0)
-            out.node_scale = op.node_scale();
-    }
-    costs.series_seconds = watch.seconds();
+    start = std::chrono::steady_clock::now();
+    const ScatteredLight first = op.restricted(orders[0], medium.lattice);
+    ScatteredLight sum = first;
+    sum.add(first, -1.0f);
+    run_series(op, first, input.settings, costs, progress, [&](const ScatteredLight& light, float factor) {
+        if (!input.separate_orders)
+            return sum.add(light, factor);
+        ScatteredLight scaled = light;
+        scaled.add(light, factor - 1.0f);
+        orders.push_back(op.spread_to_fine(scaled, medium));
+    });
+    if (!input.separate_orders)
+        orders[0].add(op.spread_to_fine(sum, medium), 1.0f);
+    costs.series_seconds = seconds_since(start);
     costs.bytes = op.bytes();
-    return out;
+    return orders;
 }
 
 LightField HierarchyLights::field(const ExtinctionPyramid& pyramid, float alpha, const LightingSettings& settings,

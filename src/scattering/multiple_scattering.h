@@ -5,8 +5,9 @@
 // centres are weighted by extinction, not by the light of a bounce, so the bounce is one linear operator K and its
 // shadow maps are made once. Then
 //   phi_{k+1} = K (V sigma albedo phi_k / 4 pi),  k = 1, 2, ...
-// until what is left is known well enough (series.h). On a coarser lattice, or with an anisotropic phase function, the
-// last scattering toward the camera is gathered once more on the fine lattice from the sum of all orders.
+// until what is left is known well enough: successive bounces settle on the operator's first eigenvector, so the tail
+// is the geometric series of their ratio. The last scattering toward the camera is gathered once more on the fine
+// lattice from the sum of all orders.
 //
 // Balance. A gather errs by some percent, and bounces multiply it. What is emitted collides or escapes, and escape
 // probabilities are cheap to march exactly; by reciprocity the same number says how bright an isothermal medium is. So
@@ -29,7 +30,7 @@ namespace brisance {
 
 // One bounce's energy, as fractions of the power it set out with (luminance).
 struct BounceBalance {
-    int order = 0;              // scatterings before this flight: 0 is the fire's own light, -1 all orders mixed
+    int order = 0;              // scatterings before this flight: 0 is the fire's own light
     double emitted = 0.0;       // power / 4 pi that set out [W/sr], relative to the fire's
     double collided = 0.0;      // as gathered
     double escaped = 0.0;       // as marched
@@ -45,9 +46,9 @@ struct ScatteringCosts {
     double series_seconds = 0.0;
     std::vector<LevelCost> levels;  // of the first bounce
     std::vector<BounceBalance> balances;
-    int bounces = 0;          // one by one, and of mixed orders
-    double tail_ratio = 0.0;  // of successive bounces' power at the end, of the slowest colour
-    double tail_share = 0.0;  // of the scattered power that the extrapolated tail makes up (or is mixed from)
+    int bounces = 0;          // computed one by one
+    double tail_ratio = 0.0;  // of successive bounces' power at the end
+    double tail_share = 0.0;  // of the scattered power that the extrapolated tail makes up
     double remainder = 0.0;   // estimated share still missing
     std::uint64_t bytes = 0;
 };
@@ -59,20 +60,11 @@ struct ScatteringInput {
     LightingSettings lighting;
     ScatteringSettings settings;
     bool separate_orders = false;
-    bool as_lights = false;  // light to be gathered is asked for even where the answer is known at the nodes
 };
 
-// Orders of scattering above the first. One entry each, or one per order (and the tail last) where they are kept apart.
-struct ScatteringSolution {
-    // Light leaving the nodes after one or more scatterings, to be gathered a last time.
-    std::vector<ScatteredLight> lights;
-    // In place of it, where the series was solved on the medium's own nodes and the phase function is isotropic: what
-    // the last gather would bring, better balanced than a single gather is.
-    std::vector<NodeRadiance> sources;
-    // For gathers from `lights` on the nodes of the series: what balances a gather at each node; empty: unknown.
-    std::vector<float> node_scale;
-};
-ScatteringSolution solve_scattering(const ScatteringInput& input, ScatteringCosts& costs, Progress& progress);
+// Light leaving the medium's nodes after one or more scatterings, ready to be gathered a last time: one entry, or one
+// per order (scattered once, twice, ..., and the tail) where orders are to be kept apart.
+std::vector<ScatteredLight> solve_scattering(const ScatteringInput& input, ScatteringCosts& costs, Progress& progress);
 
 // Lights of all levels made from light leaving nodes.
 struct HierarchyLights {

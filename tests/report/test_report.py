@@ -94,6 +94,24 @@ class CommandLine(Case):
         self.assertEqual(self.names(), ["other.exr"])
 
 
+    def test_given_halves_take_the_place_of_a_reference(self):
+        done = run_program(self.folder, "render", SHOT, *SMALL, "--set", "method=path", "--set", "tracing.samples=32",
+                           "--set", "output.halves=true", "-o", "truth.exr")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = self.expect(0, SHOT, *SMALL, "--methods", "path", "--budgets", "8", "--reference", "truth.A.exr",
+                           "truth.B.exr", "-o", "with halves.html")
+        self.assertIn("two given pictures", done.stdout)
+        data = json.loads((self.folder / "with halves.json").read_text(encoding="utf-8"))
+        self.assertEqual(data["reference"]["files"], ["truth.A.exr", "truth.B.exr"])
+        self.assertGreater(data["reference"]["noise"][""], 0)
+        self.assertIn("other random numbers", data["reference"]["notices"][0])
+        # Eight paths are further from the truth than the 32 of the reference: they share none with it.
+        error = data["methods"][0]["runs"][0]["errors"][""]["noise_free"]
+        self.assertGreater(error, data["reference"]["noise"][""])
+        self.expect(65, SHOT, *SMALL, "--reference", "truth.A.exr", "truth.A.exr", says="no independent halves")
+        self.expect(2, SHOT, *SMALL, "--reference", "truth.A.exr", "-o", "truth.A.exr", says=".html")
+
+
 class Page(unittest.TestCase):
     """One small report, and what it looks like in Chromium."""
 

@@ -91,8 +91,8 @@ TEST(Balance, ColoursEscapeTogetherThroughGreySmoke) {
 TEST(Balance, FromTheMiddleOfABallEscapesOneTransmittance) {
     for (const float depth : {0.1f, 1.0f, 4.0f}) {
         const Lit lit(make_medium(glowing_ball(16, depth)));
-        for (const float p : collision_probabilities(lit.pyramid, std::vector<ivec3>(3, ivec3(0)), 0, 64))
-            EXPECT_NEAR((1.0f - p) / std::exp(-depth), 1.0f, 0.02f);
+        for (const float p : escape_probabilities(lit.pyramid, std::vector<ivec3>(3, ivec3(0)), 0, 64))
+            EXPECT_NEAR(p / std::exp(-depth), 1.0f, 0.02f);
     }
 }
 
@@ -100,9 +100,9 @@ TEST(Balance, FromTheMiddleOfABallEscapesOneTransmittance) {
 TEST(Balance, FromTheSurfaceMoreThanHalfEscapes) {
     const Lit lit(make_medium(glowing_ball(16, 2.0f)));
     const std::vector<ivec3> surface = {{16, 0, 0}, {0, -16, 0}, {0, 0, 16}};
-    for (const float p : collision_probabilities(lit.pyramid, surface, 0, 512)) {
-        EXPECT_GT(1.0f - p, 0.54f);
-        EXPECT_LT(1.0f - p, 0.63f);
+    for (const float p : escape_probabilities(lit.pyramid, surface, 0, 512)) {
+        EXPECT_GT(p, 0.54f);
+        EXPECT_LT(p, 0.63f);
     }
 }
 
@@ -115,12 +115,12 @@ TEST(Balance, CoarseVerticesEscapeAsTheSmokeTheyStandForDoes) {
         for (int y = -reach; y <= reach; ++y)
             for (int z = -reach; z <= reach; ++z)
                 vertices.emplace_back(x, y, z);
-    const std::vector<float> probability = collision_probabilities(lit.pyramid, vertices, level, 256);
+    const std::vector<float> probability = escape_probabilities(lit.pyramid, vertices, level, 256);
     double escaped = 0.0, all = 0.0;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         const std::int64_t n = lit.pyramid.lattice(level).find_node(vertices[i]);
         const double smoke = n < 0 ? 0.0 : lit.pyramid.nodes(level)[n];
-        escaped += smoke * (1.0 - probability[i]);
+        escaped += smoke * probability[i];
         all += smoke;
     }
     EXPECT_NEAR(escaped / all / 0.3324177, 1.0, 0.02);

@@ -49,20 +49,24 @@ Estimate estimate(int numbers, std::uint64_t per_batch, std::uint64_t seed, cons
     return e;
 }
 
+// Where many samples are wanted a second pilot finds out what stratification is worth.
 Estimate estimate_to(double relative, int numbers, std::uint64_t seed, const Sampler& sample, std::uint64_t most) {
-    constexpr double margin = 0.85;  // below what is asked for, because the pilot only guesses
-    Estimate e = estimate(numbers, 8, 2 * seed, sample);
-    for (int attempt = 0; attempt < 4; ++attempt) {
+    constexpr double margin = 0.85;  // below what is asked for, because pilots only guess
+    constexpr double pilot = 8.0, large_pilot = 64.0, many = 4.0 * large_pilot;
+    double per_batch = pilot;
+    for (int attempt = 0;; ++attempt) {
+        const Estimate e = estimate(numbers, static_cast<std::uint64_t>(per_batch), 8 * seed + attempt, sample);
         double worst = 0.0;
         for (int k = 0; k < numbers; ++k)
             worst = std::max(worst, e.mean[k] != 0.0 ? e.error[k] / std::abs(e.mean[k]) : 0.0);
-        if (attempt > 0 && worst <= relative)
+        const bool enough = worst <= relative || per_batch * kBatches >= double(most);
+        if (attempt > 4 || (attempt > 0 && enough))
             return e;
-        const double factor = std::pow(worst / (margin * relative), 2);
-        const double per_batch = std::clamp(std::ceil(factor * e.samples / kBatches), 8.0, double(most) / kBatches);
-        e = estimate(numbers, static_cast<std::uint64_t>(per_batch), 2 * seed + 1, sample);
+        const double wanted = std::ceil(std::pow(worst / (margin * relative), 2) * per_batch);
+        per_batch = std::clamp(wanted, pilot, std::floor(double(most) / kBatches));
+        if (attempt == 0 && wanted > many)
+            per_batch = large_pilot;
     }
-    return e;
 }
 
 Rows::~Rows() {

@@ -32,7 +32,7 @@ using Sampler = std::function<void(const dvec3& place, Rng& rng, double* out)>;
 // `per_batch` samples in each of kBatches batches, on all threads; the same bits for the same seed.
 Estimate estimate(int numbers, std::uint64_t per_batch, std::uint64_t seed, const Sampler& sample);
 
-// As many samples as a pilot says that a relative standard error `relative` of every number needs; the pilot's own
+// As many samples as pilots say that a relative standard error `relative` of every number needs; the pilots' own
 // samples are not used, so that choosing by them biases nothing. At most `most` samples in all.
 Estimate estimate_to(double relative, int numbers, std::uint64_t seed, const Sampler& sample,
                      std::uint64_t most = 4'000'000);

@@ -11,9 +11,10 @@ namespace {
 using namespace testing;
 
 // The ball's lattice: 32 nodes to the radius. Its surface is a ramp of about two voxels: chords through the middle keep
-// their length, but the limb of a thick ball grows opaque outside its radius, by half a percent and 0.2 % for every unit
-// of optical depth. What the lattice's ball should look like is known exactly from its optical depths, because its source
-// function is 1 everywhere: that is what rays are compared with, and the table is met as closely as the lattice allows.
+// their length, but the limb of a thick ball grows opaque outside its radius, by half a percent and 0.2 % for every
+// unit of optical depth. What the lattice's ball should look like is known exactly from its optical depths, because its
+// source function is 1 everywhere: that is what rays are compared with, and the table is met as closely as the lattice
+// allows.
 constexpr int kBallNodes = 32;
 constexpr double kChord = 5e-4, kLimb = 2e-3;
 
@@ -86,8 +87,8 @@ TEST(EmittingLines, BallsRadiateAsTheirChordsAndSurfacesSay) {
     for (const Row& row : kRows) {
         const Traced traced(scattering_ball(kBallNodes, row.depth, Rgb(0.0f)));
         const double limb = 0.5 * kLimb + kLimb * row.depth;
-        const Estimate centre = ball_and_truth(
-            traced, [](const dvec3& place, Rng&) { return ray_through_middle(place.y, place.z); });
+        const Estimate centre =
+            ball_and_truth(traced, [](const dvec3& place, Rng&) { return ray_through_middle(place.y, place.z); });
         expect_ball(rows, "centre, " + depth_of(row.depth), centre, 1.0, row.centre, kChord);
         constexpr double wider = 1.06;
         const Estimate flux = ball_and_truth(

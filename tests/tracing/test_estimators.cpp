@@ -11,12 +11,21 @@ namespace {
 
 using namespace testing;
 
+// The part of a ball of that radius around a node, in nodes, that a node lies in.
+float lump(const ivec3& node, const ivec3& middle, double radius) {
+    return testing::ball(node, dvec3(middle), radius) * testing::noise(node, 2);
+}
+
+// Two small fires, so that there are lines toward them; smoke thin enough for those lines, and a corner of stiff
+// voxels.
 Medium mixed_medium() {
     Recipe r;
     r.box = cube(-10, 10);
     r.world_from_index = cubic(0.1);
-    r.density = [](const ivec3& n) { return n.x > 7 && n.y > 7 ? 300.0f : 12.0f * std::pow(testing::noise(n, 1), 3.0f); };
-    r.flame = [](const ivec3& n) { return n.z < 0 ? std::max(0.0f, testing::noise(n, 2) - 0.7f) : 0.0f; };
+    r.density = [](const ivec3& n) {
+        return n.x > 7 && n.y > 7 ? 300.0f : 6.0f * std::pow(testing::noise(n, 1), 2.0f);
+    };
+    r.flame = [](const ivec3& n) { return lump(n, ivec3(-3, 2, -4), 3.5); };
     r.colour = [](const ivec3& n) { return Rgb(1.0f, 0.7f, 0.3f) * (0.5f + 0.5f * testing::noise(n, 3)); };
     r.settings.smoke.albedo = Rgb(0.95f);
     r.settings.smoke.mean_cosine = 0.5f;
@@ -27,16 +36,17 @@ Medium mixed_medium() {
     for (std::size_t i = 0; i < medium.emission.size(); ++i) {
         const ivec3 n = medium.lattice.first_node(i / BrickLattice::kNodes) +
                         BrickLattice::node_in_brick(static_cast<int>(i % BrickLattice::kNodes));
-        if (glm::length(dvec3(n) - dvec3(3, -4, 5)) < 2.5)
-            medium.emission[i] = Rgb(0.3f, 0.6f, 1.0f);
+        medium.emission[i] = lump(n, ivec3(-5, -2, -3), 2.5) * Rgb(0.3f, 0.6f, 1.0f);
     }
     return medium;
 }
 
 // Mean over rays from everywhere of each order's luminance, and of the three channels of all of them.
-Estimate look_by_orders(const TracingSettings& settings, double sharp) {
+Estimate look_by_orders(const TracingSettings& settings, int seed) {
     const Traced traced(mixed_medium(), settings);
-    return estimate_to(sharp, kPathOrders + 3, 11, [&](const dvec3& place, Rng& rng, double* out) {
+    // The plain tracker's paths are fast and poor.
+    const std::uint64_t per_batch = settings.emission == EmissionEstimator::Collision ? 2000 : 250;
+    return estimate(kPathOrders + 3, per_batch, seed, [&](const dvec3& place, Rng& rng, double* out) {
         PathSum sum{};
         PathStatistics statistics;
         traced.tracer.trace(ray_through_disc(1.2, place.y, place.z, rng), place.x, rng, sum, statistics);
@@ -82,7 +92,7 @@ TEST(Estimators, AgreeOrderByOrder) {
     Rows rows("estimators against one another");
     std::vector<Estimate> found;
     for (const Way& way : ways)
-        found.push_back(look_by_orders(way.settings, 0.01));
+        found.push_back(look_by_orders(way.settings, 100 + static_cast<int>(found.size())));
     for (std::size_t i = 0; i < ways.size(); ++i)
         for (int k = 0; k < kPathOrders + 3; ++k) {
             // Against the mean of all others, weighted by what they are known to.
@@ -93,7 +103,8 @@ TEST(Estimators, AgreeOrderByOrder) {
                 weights += weight;
             }
             rows.expect(ways[i].name + ", " + std::to_string(k), found[i].mean[k],
-                        std::hypot(found[i].error[k], 1.0 / std::sqrt(weights)), sum / weights, 0.0, 0.02);
+                        std::hypot(found[i].error[k], 1.0 / std::sqrt(weights)), sum / weights, 0.0,
+                        k < 3 ? 0.05 : 0.5);
         }
 }
 

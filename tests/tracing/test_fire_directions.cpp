@@ -11,8 +11,8 @@ namespace {
 
 using namespace testing;
 
-// A chi-square test of counts against expectations; cells expecting less than twenty are joined. By chance it fails once
-// in ten thousand times.
+// A chi-square test of counts against expectations; cells expecting less than twenty are joined. By chance it fails
+// once in ten thousand times.
 void expect_counts(const std::vector<double>& counts, const std::vector<double>& expected, const std::string& what) {
     double chi_square = 0.0, rest = 0.0, rest_expected = 0.0;
     int cells = 0;
@@ -42,7 +42,9 @@ Medium some_fire(bool direct) {
     r.box = cube(-11, 14);
     r.world_from_index = transform(some_linear_map(), dvec3(0.1, 0.2, -0.1));
     r.density = [](const ivec3& n) { return testing::noise(n, 1); };
-    r.flame = [](const ivec3& n) { return std::max(0.0f, testing::noise(n / 4, 2) - 0.6f) + (n == ivec3(3) ? 30.f : 0.f); };
+    r.flame = [](const ivec3& n) {
+        return std::max(0.0f, testing::noise(n / 4, 2) - 0.6f) + (n == ivec3(3) ? 30.f : 0.f);
+    };
     r.settings.fire.convention = direct ? EmissionConvention::Direct : EmissionConvention::TimesAbsorption;
     return make_medium(r);
 }
@@ -54,7 +56,8 @@ struct Fire {
     FireDirections directions;
 };
 
-// Inside the fire, at its edge, near it, and far away, where it fills a cone of this cosine about the way to the middle.
+// Inside the fire, at its edge, near it, and far away, where it fills a cone of this cosine about the way to the
+// middle.
 struct View {
     const char* name;
     dvec3 from;
@@ -103,11 +106,12 @@ TEST(FireDirections, SamplesFollowTheirDensity) {
         for (int row = 0; row < kRows * kFine; ++row)
             for (int column = 0; column < kColumns * kFine; ++column) {
                 const dvec3 d = in_cone(view, (row + 0.5) / (kRows * kFine), (column + 0.5) / (kColumns * kFine));
-                expected[row / kFine * kColumns + column / kFine] +=
-                    fire.directions.pdf({view.from, d}) * solid_angle(view) * kSamples /
-                    (kRows * kColumns * kFine * kFine);
+                expected[row / kFine * kColumns + column / kFine] += fire.directions.pdf({view.from, d}) *
+                                                                     solid_angle(view) * kSamples /
+                                                                     (kRows * kColumns * kFine * kFine);
             }
-        const dvec3 axis = in_cone(view, 0.0, 0.0), x = glm::normalize(in_cone(view, 0.5, 0.0) - axis * glm::dot(axis, in_cone(view, 0.5, 0.0)));
+        const dvec3 axis = in_cone(view, 0.0, 0.0),
+                    x = glm::normalize(in_cone(view, 0.5, 0.0) - axis * glm::dot(axis, in_cone(view, 0.5, 0.0)));
         Rng rng(Stream::Path, 3);
         for (int i = 0; i < kSamples; ++i) {
             const dvec3 d = fire.directions.sample(view.from, rng);
@@ -199,7 +203,8 @@ TEST(ScatteredDirections, HaveTheDistributionOfThePhaseFunctionItself) {
             const double a0 = kPi64 * std::pow(double(i) / n, 3), a1 = kPi64 * std::pow((i + 1.0) / n, 3);
             const double middle = 0.5 * (a0 + a1), cosine = g < 0.0f ? -std::cos(middle) : std::cos(middle);
             sum += 2.0 * kPi64 * std::sin(middle) * (a1 - a0) * henyey_greenstein(float(cosine), g);
-            const double truth = g < 0.0f ? cosine_distribution(-std::cos(a1), g) : 1.0 - cosine_distribution(std::cos(a1), g);
+            const double truth =
+                g < 0.0f ? cosine_distribution(-std::cos(a1), g) : 1.0 - cosine_distribution(std::cos(a1), g);
             worst = std::max(worst, std::abs(sum - truth));
         }
         EXPECT_LT(worst, g > 0.99f ? 2e-2 : 1e-4) << g;

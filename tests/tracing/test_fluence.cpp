@@ -14,10 +14,10 @@ constexpr int kNodes = 32;  // to the radius
 // A surface smeared with a variance of a quarter of a voxel: 3/4 / 32^2 of the volume.
 constexpr double kBall = 1e-3;
 
-
 // Looks around from r: `sample` gets a ray uniform over all directions, or over the cone that holds a ball of radius
 // 1.06. The means are times the solid angle of either.
-Estimate look_around(double r, int numbers, const std::function<void(const Ray&, double place, Rng&, double*)>& sample) {
+Estimate look_around(double r, int numbers,
+                     const std::function<void(const Ray&, double place, Rng&, double*)>& sample) {
     const double most = r > 1.1 ? 1.0 - std::sqrt(1.0 - std::pow(1.06 / r, 2)) : 2.0;  // of 1 - cos
     const dvec3 out_there(0.6, -0.48, 0.64), x(0.8, 0.36, -0.48), y(0.0, 0.8, 0.6);
     Estimate e = estimate_to(kSharp, numbers, 1, [&](const dvec3& place, Rng& rng, double* out) {
@@ -65,9 +65,10 @@ constexpr struct {
                   {2.0, {10.86570, 10.71848, 10.20095, 8.97095, 7.36963, 4.74122}},
                   {5.0, {12.48170, 12.44680, 12.27751, 11.56789, 9.97660, 5.65506}}};
 
-// sigma = j = 1: the ball of radius one metre and extinction R has source function 1, and the same fluence as the ball of
-// radius R has in units of j. With source function 1 everywhere, the truth of the lattice's own ball follows from optical
-// depths; on the surface, half way down the ramp, it differs from the table by up to 2 % for each mean free path of R.
+// sigma = j = 1: the ball of radius one metre and extinction R has source function 1, and the same fluence as the ball
+// of radius R has in units of j. With source function 1 everywhere, the truth of the lattice's own ball follows from
+// optical depths; on the surface, half way down the ramp, it differs from the table by up to 2 % for each mean free
+// path of R.
 TEST(FluenceOfBalls, WithAbsorptionMatchesTheTable) {
     Rows rows("fluence, absorbing ball");
     constexpr double at[] = {0.0, 0.25, 0.5, 0.75, 0.9, 1.0};

@@ -150,7 +150,8 @@ TEST_F(Refusals, OfAnotherShotsCheckpoint) {
 }
 
 TEST_F(Refusals, OfAnotherPicturesCheckpoint) {
-    for (const PathFilm& other : {PathFilm(3, 4, true), PathFilm(4, 3, false), PathFilm(12, 1, true), PathFilm(4, 4, true)})
+    for (const PathFilm& other :
+         {PathFilm(3, 4, true), PathFilm(4, 3, false), PathFilm(12, 1, true), PathFilm(4, 4, true)})
         expect_refused(other.serialise("the shot"), "the shot", "another picture size");
 }
 

@@ -24,8 +24,8 @@ double e1(double x) {
     return std::exp(-x) / (x + fraction);
 }
 
-// Smoke of optical depth `depth` and albedo 1/2 before a flame that shines 1 straight ahead, 1 / mu aslant. Returns what
-// is seen of it from the smoke's side along the normal, unscattered and scattered once.
+// Smoke of optical depth `depth` and albedo 1/2 before a flame that shines 1 straight ahead, 1 / mu aslant. Returns
+// what is seen of it from the smoke's side along the normal, unscattered and scattered once.
 Estimate light_through_smoke(double depth, const TracingSettings& settings, double sharp) {
     const auto density = [=](int z) { return float(z <= 24 ? depth / 24 : 0.0); };
     Recipe r = layers(27, density, [](int z) { return z == 27 ? 1.0f : 0.0f; });

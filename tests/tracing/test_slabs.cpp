@@ -107,9 +107,8 @@ void expect_slabs(Rows& rows, const std::array<int, 3>& tables, double sharp) {
         const Traced traced(slab(1 + i % 6, thickness, albedo));
         for (const double mu : {1.0, 0.5}) {
             const Ray ray = ray_into_layers(mu);
-            const Estimate e = estimate_to(sharp, 3, i, [&](const dvec3& place, Rng& rng, double* out) {
-                traced.look(ray, place.x, rng, out);
-            });
+            const Estimate e = estimate_to(
+                sharp, 3, i, [&](const dvec3& place, Rng& rng, double* out) { traced.look(ray, place.x, rng, out); });
             for (int c = 0; c < 3; ++c) {
                 const Emissivity& truth = kSlabs[tables[c]].rows[i];
                 rows.expect(name("albedo", albedo[c]) + name("thickness", thickness) + name("mu", mu), e.mean[c],
@@ -166,16 +165,16 @@ constexpr HTable kH[] = {
 };
 
 // `voxel` is the optical depth of one voxel; six of them are as good as endless.
-void expect_half_space(Rows& rows, const std::array<int, 3>& tables, std::initializer_list<int> mus, double voxel, double sharp) {
+void expect_half_space(Rows& rows, const std::array<int, 3>& tables, std::initializer_list<int> mus, double voxel,
+                       double sharp) {
     Rgb albedo;
     for (int c = 0; c < 3; ++c)
         albedo[c] = static_cast<float>(kH[tables[c]].albedo);
     const Traced traced(slab(6, 6.0 * voxel, albedo));
     for (const int i : mus) {
         const Ray ray = ray_into_layers(kMu[i]);
-        const Estimate e = estimate_to(sharp, 3, 100 + i, [&](const dvec3& place, Rng& rng, double* out) {
-            traced.look(ray, place.x, rng, out);
-        });
+        const Estimate e = estimate_to(
+            sharp, 3, 100 + i, [&](const dvec3& place, Rng& rng, double* out) { traced.look(ray, place.x, rng, out); });
         for (int c = 0; c < 3; ++c) {
             const double cold = std::sqrt(1.0 - kH[tables[c]].albedo);
             rows.expect(name("albedo", albedo[c]) + name("mu", kMu[i]) + name("voxel", voxel), e.mean[c], e.error[c],

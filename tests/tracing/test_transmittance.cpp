@@ -209,9 +209,10 @@ TEST(Trackers, SeeNothingThroughNeedles) {
 
 using Flight = std::optional<Collision> (*)(const TrackingField&, const Ray&, double, Rng&);
 
-// Kolmogorov and Smirnov: the greatest distance between the flights' distribution and 1 - exp(-optical depth). By chance
-// it exceeds 2.23 / sqrt(n) once in ten thousand times.
-void expect_exponential(Flight flight, const TrackingField& field, const Ray& ray, double end, const std::string& what) {
+// Kolmogorov and Smirnov: the greatest distance between the flights' distribution and 1 - exp(-optical depth). By
+// chance it exceeds 2.23 / sqrt(n) once in ten thousand times.
+void expect_exponential(Flight flight, const TrackingField& field, const Ray& ray, double end,
+                        const std::string& what) {
     constexpr int n = 20000;
     std::vector<double> passed;
     Rng rng(Stream::Path, 17);
@@ -283,9 +284,9 @@ TEST(Flights, KnowTheirPlaceInTheLattice) {
 
 // The depth of a cubic never falls, so its inverse is unique; also where the cubic starts or ends at zero.
 TEST(Flights, InvertTheDepthOfACell) {
-    const Cubic cubics[] = {{{1, 0, 0, 0}},     {{0, 2, 0, 0}},      {{2, -2, 0, 0}},    {{0, 0, 3, 0}},
-                            {{0, 3, -6, 4}},    {{1e-8, 0, 0, 1e8}}, {{1, -3, 3, -1}},   {{0.25, -1, 1, 0}},
-                            {{1e8, -1e8, 0, 0}}};
+    const Cubic cubics[] = {{{1, 0, 0, 0}},   {{0, 2, 0, 0}},     {{2, -2, 0, 0}},
+                            {{0, 0, 3, 0}},   {{0, 3, -6, 4}},    {{1e-8, 0, 0, 1e8}},
+                            {{1, -3, 3, -1}}, {{0.25, -1, 1, 0}}, {{1e8, -1e8, 0, 0}}};
     for (const Cubic& c : cubics)
         for (const double metres : {1e-3, 1.0, 50.0})
             for (double part = 0.0; part <= 1.0; part += 1.0 / 64.0) {

@@ -84,8 +84,8 @@ dvec3 emitted_power(const Medium& medium) {
     dvec3 sum(0.0);
     for (std::size_t b = 0; b < field.bricks().brick_count(); ++b)
         for (int n = 0; field.burns(b) && n < BrickLattice::kNodes * 8; ++n) {
-            const vec3 p = vec3(BrickLattice::node_in_brick(n >> 3)) +
-                           vec3(gauss[n >> 2 & 1], gauss[n >> 1 & 1], gauss[n & 1]);
+            const vec3 p =
+                vec3(BrickLattice::node_in_brick(n >> 3)) + vec3(gauss[n >> 2 & 1], gauss[n >> 1 & 1], gauss[n & 1]);
             if (field.has_source())
                 sum += double(field.extinction(b, p)) * dvec3(field.source(b, p));
             if (field.has_emission())

@@ -27,8 +27,8 @@ struct ReportOptions {
     std::vector<std::string> command_line;  // as the page shows it
 };
 
-// Prints the times to reach errors, and the paths of the files, to standard output. Throws Error; nothing is written
-// unless all is.
+// Prints the times to reach errors, and the paths of the files, to standard output. Throws Error. Nothing is written
+// before all is measured; each file appears whole, the page last.
 int run_report(const ReportOptions& options);
 
 }  // namespace brisance

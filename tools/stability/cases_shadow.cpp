@@ -87,7 +87,7 @@ Case scattered() {
         r.settings.smoke.albedo = Rgb(0.5f);
         r.settings.fire.convention = EmissionConvention::Direct;
         const dvec3 target = kEdge * dvec3(0.0, 0.0, kFire / 2);
-        Scene scene = scene_of(r, camera_at(target + dvec3(0.0, -1000.0, 0.0), target, 0.02, 4), 4096);
+        Scene scene = scene_of(r, camera_at(target + dvec3(0.0, -1000.0, 0.0), target, 0.002, 4), 4096);
         scene.shot.scattering.bounces = 1;
         return scene;
     };
