@@ -1,7 +1,10 @@
 // Certificates: what they claim of a picture is as true as they say, for good pictures and bad ones.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "core/parallel.h"
@@ -142,7 +145,7 @@ protected:
 // How often intervals hold the truth, and what the estimates come to on average.
 struct Coverage {
     int error = 0, below = 0, mean = 0, bound_only = 0;
-    double square = 0.0, square_of_square = 0.0, width = 0.0;
+    double square = 0.0, square_of_square = 0.0;
 };
 
 std::vector<Coverage> coverage_of(const std::vector<Certificate>& certificates, const std::vector<TrueError>& truth) {

@@ -172,9 +172,10 @@ TEST(ReadShot, ContradictionsAreFound) {
 }
 
 TEST(ReadShot, RendersWithoutEndAreFound) {
-    EXPECT_EQ(complaint_about({"method=path", "tracing.samples=none"}),
-              "--set tracing.samples=none: tracing.samples: is none: the render would never end; give tracing.seconds or "
-              "tracing.error");
+    EXPECT_EQ(
+        complaint_about({"method=path", "tracing.samples=none"}),
+        "--set tracing.samples=none: tracing.samples: is none: the render would never end; give tracing.seconds or "
+        "tracing.error");
     for (const char* end : {"tracing.samples=2", "tracing.seconds=1", "tracing.error=0.5", "method=lighting_grid"})
         EXPECT_EQ(complaint_about({"method=path", "tracing.samples=none", end}), "") << end;
 }
