@@ -19,12 +19,23 @@ double part(double x) {
     return x - std::floor(x);
 }
 
+// Counts the calls within each test.
+std::uint64_t number_of_call() {
+    static const ::testing::TestInfo* test = nullptr;
+    static std::uint64_t count = 0;
+    const auto* const now = ::testing::UnitTest::GetInstance()->current_test_info();
+    count = now == test ? count + 1 : 0;
+    test = now;
+    return count;
+}
+
 }  // namespace
 
-Estimate estimate(int numbers, std::uint64_t per_batch, std::uint64_t seed, const Sampler& sample) {
+Estimate estimate(int numbers, std::uint64_t per_batch, const Sampler& sample) {
+    const std::uint64_t first_key = number_of_call() * kBatches;
     std::vector<double> sums(std::size_t(kBatches) * numbers);
     parallel_for(kBatches, [&](std::size_t batch) {
-        const std::uint64_t key = seed * kBatches + batch;
+        const std::uint64_t key = first_key + batch;
         Rng shift(Stream::PathRotation, key);
         const dvec3 first(shift.next_double(), shift.next_double(), shift.next_double());
         std::vector<double> out(numbers);
@@ -50,12 +61,12 @@ Estimate estimate(int numbers, std::uint64_t per_batch, std::uint64_t seed, cons
 }
 
 // Where many samples are wanted a second pilot finds out what stratification is worth.
-Estimate estimate_to(double relative, int numbers, std::uint64_t seed, const Sampler& sample, std::uint64_t most) {
+Estimate estimate_to(double relative, int numbers, const Sampler& sample, std::uint64_t most) {
     constexpr double margin = 0.85;  // below what is asked for, because pilots only guess
     constexpr double pilot = 8.0, large_pilot = 64.0, many = 4.0 * large_pilot;
     double per_batch = pilot;
     for (int attempt = 0;; ++attempt) {
-        const Estimate e = estimate(numbers, static_cast<std::uint64_t>(per_batch), 8 * seed + attempt, sample);
+        const Estimate e = estimate(numbers, static_cast<std::uint64_t>(per_batch), sample);
         double worst = 0.0;
         for (int k = 0; k < numbers; ++k)
             worst = std::max(worst, e.mean[k] != 0.0 ? e.error[k] / std::abs(e.mean[k]) : 0.0);
@@ -70,8 +81,13 @@ Estimate estimate_to(double relative, int numbers, std::uint64_t seed, const Sam
 }
 
 Rows::~Rows() {
-    std::printf("%s: %d rows, worst deviation %.2f standard errors (%s), largest standard error %.3f %%\n",
-                what_.c_str(), count_, worst_, worst_row_.c_str(), 100.0 * dullest_);
+    constexpr double alike = 3.0;  // rows that one call estimates, as channels, go up and down together
+    const double together = sum_ / std::sqrt(alike * std::max(count_, 1));
+    EXPECT_LE(std::abs(together), kSigmas) << what_ << ": all rows together";
+    std::printf(
+        "%s: %d rows, worst deviation %.2f standard errors (%s), all together %+.2f, largest standard error "
+        "%.3f %%\n",
+        what_.c_str(), count_, worst_, worst_row_.c_str(), together, 100.0 * dullest_);
 }
 
 void Rows::expect(const std::string& row, double mean, double error, double truth, double allowance, double sharp) {
@@ -83,6 +99,8 @@ void Rows::expect(const std::string& row, double mean, double error, double trut
         worst_ = beyond / error;
         worst_row_ = row;
     }
+    if (error > 0.0)
+        sum_ += std::copysign(beyond / error, mean - truth);
     dullest_ = std::max(dullest_, error / std::abs(truth));
 }
 

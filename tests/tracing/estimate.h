@@ -29,16 +29,17 @@ struct Estimate {
 // One sample: fills `out` from a stratified point of the unit cube and random numbers of its own.
 using Sampler = std::function<void(const dvec3& place, Rng& rng, double* out)>;
 
-// `per_batch` samples in each of kBatches batches, on all threads; the same bits for the same seed.
-Estimate estimate(int numbers, std::uint64_t per_batch, std::uint64_t seed, const Sampler& sample);
+// `per_batch` samples in each of kBatches batches, on all threads. Every call in a test has random numbers of its own,
+// the same whenever the test runs.
+Estimate estimate(int numbers, std::uint64_t per_batch, const Sampler& sample);
 
 // As many samples as pilots say that a relative standard error `relative` of every number needs; the pilots' own
 // samples are not used, so that choosing by them biases nothing. At most `most` samples in all.
-Estimate estimate_to(double relative, int numbers, std::uint64_t seed, const Sampler& sample,
-                     std::uint64_t most = 4'000'000);
+Estimate estimate_to(double relative, int numbers, const Sampler& sample, std::uint64_t most = 4'000'000);
 
-// Rows of a table, met within four standard errors each. `allowance` is what the row itself is known to (rounding, and
-// the discretisation of the medium), absolute. Says at the end how close it was.
+// Rows of a table, met within four standard errors each, and together: deviations of one sign add up to what none of
+// them shows. `allowance` is what the row itself is known to (rounding, and the discretisation of the medium),
+// absolute. Says at the end how close it was.
 class Rows {
 public:
     explicit Rows(std::string what) : what_(std::move(what)) {}
@@ -52,7 +53,7 @@ public:
 private:
     std::string what_, worst_row_;
     int count_ = 0;
-    double worst_ = 0.0, dullest_ = 0.0;
+    double worst_ = 0.0, sum_ = 0.0, dullest_ = 0.0;
 };
 
 // A direction uniform over the sphere, from two numbers in [0, 1).

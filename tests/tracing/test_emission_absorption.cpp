@@ -41,7 +41,7 @@ TEST(EmittingLines, SlabsRadiateOneMinusTransmittance) {
     for (const Row& row : kRows)
         for (const int nodes : {1, 6, 30}) {
             const Traced traced(slab(nodes, row.depth, Rgb(0.0f)));
-            const Estimate e = estimate_to(kSharp, 3, nodes, [&](const dvec3& place, Rng& rng, double* out) {
+            const Estimate e = estimate_to(kSharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
                 traced.look(ray_into_layers(1.0), place.x, rng, out);
             });
             rows.expect(depth_of(row.depth), e.mean[0], e.error[0], row.slab, kDigits + kRounding * row.slab);
@@ -55,7 +55,7 @@ TEST(EmittingLines, ALayerBehindALayerIsSeenThroughIt) {
             const auto density = [=](int z) { return float(z <= 4 ? first / 4 : z > 8 ? second / 6 : 0.0); };
             Recipe r = layers(14, density, [](int z) { return z <= 6 ? 3.0f : 0.5f; });
             const Traced traced(r);
-            const Estimate e = estimate_to(kSharp, 3, 1, [&](const dvec3& place, Rng& rng, double* out) {
+            const Estimate e = estimate_to(kSharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
                 traced.look(ray_into_layers(0.7), place.x, rng, out);
             });
             const double truth =
@@ -66,7 +66,7 @@ TEST(EmittingLines, ALayerBehindALayerIsSeenThroughIt) {
 
 // What rays see of a black ball, and what the same rays' optical depths say they should.
 Estimate ball_and_truth(const Traced& traced, const std::function<Ray(const dvec3&, Rng&)>& ray_at) {
-    return estimate_to(kSharp, 2, 1, [&](const dvec3& place, Rng& rng, double* out) {
+    return estimate_to(kSharp, 2, [&](const dvec3& place, Rng& rng, double* out) {
         const Ray ray = ray_at(place, rng);
         double seen[3];
         traced.look(ray, place.x, rng, seen);
@@ -121,7 +121,7 @@ TEST(EmittingLines, AFlameInSmokeIsDimmedByIt) {
         r.settings.smoke.extinction_per_metre = static_cast<float>(voxel);
         r.settings.fire.convention = EmissionConvention::Direct;
         const Traced traced(r);
-        const Estimate e = estimate_to(kSharp, 3, 1, [&](const dvec3& place, Rng& rng, double* out) {
+        const Estimate e = estimate_to(kSharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
             traced.look(ray_into_layers(0.8), place.x, rng, out);
         });
         const double truth = -std::expm1(-30.0 * voxel / 0.8) / voxel;
@@ -138,7 +138,7 @@ TEST(EmittingLines, AFlameBehindSmokeIsSeenThroughIt) {
         Recipe r = layers(24, density, [](int z) { return z == 23 ? 1.0f : 0.0f; });
         r.settings.fire.convention = EmissionConvention::Direct;
         const Traced traced(r);
-        const Estimate e = estimate_to(sharp, 1, 1, [&](const dvec3& place, Rng& rng, double* out) {
+        const Estimate e = estimate_to(sharp, 1, [&](const dvec3& place, Rng& rng, double* out) {
             double seen[3];
             traced.look(ray_into_layers(1.0), place.x, rng, seen);
             out[0] = seen[0];

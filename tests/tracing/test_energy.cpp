@@ -56,7 +56,7 @@ Ray ray_into_cube(double half, double u, double v, Rng& rng) {
 // The power that leaves, from rays that arrive backwards: area times pi times their mean radiance.
 Estimate leaving_power(const Traced& traced, double sharp) {
     constexpr double half = 13.0 * kSpacing, area = 24.0 * half * half;
-    Estimate e = estimate_to(sharp, 3, 7, [&](const dvec3& place, Rng& rng, double* out) {
+    Estimate e = estimate_to(sharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
         traced.look(ray_into_cube(half, place.y, place.z, rng), place.x, rng, out);
     });
     for (int c = 0; c < 3; ++c) {
@@ -101,7 +101,7 @@ Place place_in(const Traced& traced, const dvec3& local) {
 // Absorbed power: the integral of absorption times fluence, at random points of the box.
 Estimate absorbed_power(const Traced& traced, double sharp) {
     constexpr double side = 26.0 * kSpacing;
-    Estimate e = estimate_to(sharp, 3, 8, [&](const dvec3& place, Rng& rng, double* out) {
+    Estimate e = estimate_to(sharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
         const double x = rng.next_double(), y = rng.next_double(), u = rng.next_double();
         const dvec3 point = side * (dvec3(x, y, place.y) - 0.5);
         traced.look({point, uniform_direction(u, place.z)}, place.x, rng, out);
@@ -144,7 +144,7 @@ TEST(Energy, InsideAThickIsothermalMediumEverythingLooksAlike) {
             r.settings.smoke.albedo = Rgb(0.2f, 0.5f, 0.8f);
             r.settings.smoke.mean_cosine = g;
             const Traced traced(r);
-            const Estimate e = estimate_to(kSharp, 3, 9, [&](const dvec3& place, Rng& rng, double* out) {
+            const Estimate e = estimate_to(kSharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
                 traced.look({dvec3(0.3, 0.1, -0.2), uniform_direction(place.y, place.z)}, place.x, rng, out);
             });
             for (int c = 0; c < 3; ++c)
@@ -164,7 +164,7 @@ TEST(Energy, OpaqueBlackSmokeIsABlackBody) {
         r.flame = [](const ivec3&) { return 1.0f; };
         r.settings = black_smoke();
         const Traced traced(r);
-        const Estimate e = estimate_to(kSharp, 3, 3, [&](const dvec3& place, Rng& rng, double* out) {
+        const Estimate e = estimate_to(kSharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
             traced.look(ray_through_disc(4.0, place.y, place.z, rng), place.x, rng, out);
         });
         rows.expect("voxel " + std::to_string(voxel), e.mean[0], e.error[0], 1.0, 1e-5);

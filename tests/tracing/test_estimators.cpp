@@ -42,11 +42,11 @@ Medium mixed_medium() {
 }
 
 // Mean over rays from everywhere of each order's luminance, and of the three channels of all of them.
-Estimate look_by_orders(const TracingSettings& settings, int seed) {
+Estimate look_by_orders(const TracingSettings& settings) {
     const Traced traced(mixed_medium(), settings);
     // The plain tracker's paths are fast and poor.
     const std::uint64_t per_batch = settings.emission == EmissionEstimator::Collision ? 2000 : 250;
-    return estimate(kPathOrders + 3, per_batch, seed, [&](const dvec3& place, Rng& rng, double* out) {
+    return estimate(kPathOrders + 3, per_batch, [&](const dvec3& place, Rng& rng, double* out) {
         PathSum sum{};
         PathStatistics statistics;
         traced.tracer.trace(ray_through_disc(1.2, place.y, place.z, rng), place.x, rng, sum, statistics);
@@ -92,7 +92,7 @@ TEST(Estimators, AgreeOrderByOrder) {
     Rows rows("estimators against one another");
     std::vector<Estimate> found;
     for (const Way& way : ways)
-        found.push_back(look_by_orders(way.settings, 100 + static_cast<int>(found.size())));
+        found.push_back(look_by_orders(way.settings));
     for (std::size_t i = 0; i < ways.size(); ++i)
         for (int k = 0; k < kPathOrders + 3; ++k) {
             // Against the mean of all others, weighted by what they are known to.
@@ -113,7 +113,7 @@ TEST(Estimators, FewerBouncesAreTheFirstOrders) {
     const Medium medium = mixed_medium();
     const auto orders = [&](int bounces) {
         const PathTracer tracer(medium, {}, bounces);
-        return estimate(kPathOrders, 64, 12, [&](const dvec3& place, Rng& rng, double* out) {
+        return estimate(kPathOrders, 64, [&](const dvec3& place, Rng& rng, double* out) {
             PathSum sum{};
             PathStatistics statistics;
             tracer.trace(ray_through_disc(1.2, place.y, place.z, rng), place.x, rng, sum, statistics);

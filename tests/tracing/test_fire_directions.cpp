@@ -89,7 +89,7 @@ TEST(FireDirections, TheirDensityIntegratesToOne) {
     for (const bool direct : {false, true}) {
         const Fire fire(direct);
         for (const View& view : kViews) {
-            const Estimate e = estimate_to(kSharp, 1, 1, [&](const dvec3& place, Rng&, double* out) {
+            const Estimate e = estimate_to(kSharp, 1, [&](const dvec3& place, Rng&, double* out) {
                 out[0] = fire.directions.pdf({view.from, in_cone(view, place.x, place.y)}) * solid_angle(view);
             });
             rows.expect(view.name, e.mean[0], e.error[0], 1.0, 1e-6);
@@ -131,7 +131,7 @@ TEST(FireDirections, SamplesFollowTheirDensity) {
 TEST(FireDirections, TheirInverseDensityFillsTheSphere) {
     const Fire fire(false);
     Rows rows("inverse density");
-    const Estimate e = estimate_to(kSharp, 1, 1, [&](const dvec3&, Rng& rng, double* out) {
+    const Estimate e = estimate_to(kSharp, 1, [&](const dvec3&, Rng& rng, double* out) {
         const dvec3 d = fire.directions.sample(kViews[0].from, rng);
         out[0] = 1.0 / fire.directions.pdf({kViews[0].from, d});
     });
@@ -144,7 +144,7 @@ TEST(FireDirections, MeasureWhatUniformDirectionsMeasure) {
     Rows rows("some function of directions");
     const auto some = [](const dvec3& d) { return std::exp(d.x - 0.5 * d.y) + d.z * d.z; };
     for (const View& view : {kViews[0], kViews[1]}) {
-        const Estimate e = estimate_to(kSharp, 2, 1, [&](const dvec3& place, Rng& rng, double* out) {
+        const Estimate e = estimate_to(kSharp, 2, [&](const dvec3& place, Rng& rng, double* out) {
             const dvec3 d = fire.directions.sample(view.from, rng);
             out[0] = some(d) / fire.directions.pdf({view.from, d});
             out[1] = some(uniform_direction(place.x, place.y)) * 4.0 * kPi64;

@@ -20,7 +20,7 @@ Estimate look_around(double r, int numbers,
                      const std::function<void(const Ray&, double place, Rng&, double*)>& sample) {
     const double most = r > 1.1 ? 1.0 - std::sqrt(1.0 - std::pow(1.06 / r, 2)) : 2.0;  // of 1 - cos
     const dvec3 out_there(0.6, -0.48, 0.64), x(0.8, 0.36, -0.48), y(0.0, 0.8, 0.6);
-    Estimate e = estimate_to(kSharp, numbers, 1, [&](const dvec3& place, Rng& rng, double* out) {
+    Estimate e = estimate_to(kSharp, numbers, [&](const dvec3& place, Rng& rng, double* out) {
         const dvec3 d = uniform_direction(0.5 * most * place.y, place.z);
         sample({r * out_there, -(d.z * out_there + d.x * x + d.y * y)}, place.x, rng, out);
     });

@@ -138,7 +138,7 @@ void expect_fluence(Rows& rows, int first, int distance) {
         r.settings.smoke.albedo[c] = static_cast<float>(kPoints[first + c].albedo);
     const Traced traced(r);
     const double sharp = radius > 4.0 ? 0.005 : kSharp;
-    const Estimate e = estimate_to(sharp, 3, distance, [&](const dvec3& place, Rng& rng, double* out) {
+    const Estimate e = estimate_to(sharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
         traced.look({dvec3(0.0), uniform_direction(place.y, place.z)}, place.x, rng, out);
     });
     for (int c = 0; c < 3; ++c) {
@@ -154,6 +154,74 @@ TEST(PointSource, LightsAnInfiniteMediumAsCaseAndZweifelSay) {
     for (const int first : {0, 3})
         for (const int distance : {2, 3, 4, 5})
             expect_fluence(rows, first, distance);
+}
+
+// One glowing node, so small that lines are drawn toward it: a tent of two voxels' width. Voxels of an eighth of a mean
+// free path, so that its brick is no thicker than one.
+constexpr double kFine = 0.125;
+constexpr int kNear = 3;  // rows of the table: albedo 0.9 and less, at distances up to one
+
+Recipe one_node() {
+    Recipe r;
+    r.box = cube(-kHalf, kHalf);
+    r.world_from_index = cubic(kFine);
+    r.density = [](const ivec3&) { return 1.0f; };
+    r.flame = [](const ivec3& n) { return n == ivec3(4) ? 1.0f : 0.0f; };
+    r.settings.fire.convention = EmissionConvention::Direct;
+    for (int c = 0; c < 3; ++c)
+        r.settings.smoke.albedo[c] = static_cast<float>(kPoints[kNear - c].albedo);
+    return r;
+}
+
+// The mean over the node's tent of the point's fluence.
+double fluence_of_tent(double c, const dvec3& from_node) {
+    const double r = glm::length(from_node);
+    const FluenceTable table(c, r - 2.0 * kFine, r + 2.0 * kFine);
+    const auto along = [](const auto& f) {
+        const auto weighted = [&](double s) { return (1.0 - std::abs(s)) * f(s * kFine); };
+        return integral(-1.0, 0.0, weighted) + integral(0.0, 1.0, weighted);
+    };
+    return along([&](double x) {
+        return along(
+            [&](double y) { return along([&](double z) { return table(glm::length(from_node - dvec3(x, y, z))); }); });
+    });
+}
+
+// Half of the directions toward the node, half to all other sides; 4 pi times their mean.
+Estimate fluence_at(const Traced& traced, const dvec3& from_node, double sharp) {
+    const double r = glm::length(from_node), cosine = std::sqrt(1.0 - 3.0 * kFine * kFine / (r * r));
+    const dvec3 axis = -from_node / r, x = glm::normalize(glm::cross(axis, dvec3(0, 1, 0))), y = glm::cross(axis, x);
+    const double toward = 0.5 * (1.0 - cosine);  // of all directions
+    return estimate_to(sharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
+        const bool near = place.y < 0.5;
+        const double u = near ? 2.0 * place.y * toward : toward + (2.0 * place.y - 1.0) * (1.0 - toward);
+        const dvec3 d = uniform_direction(u, place.z);
+        traced.look({from_node + dvec3(4.0 * kFine), d.z * axis + d.x * x + d.y * y}, place.x, rng, out);
+        for (int c = 0; c < 3; ++c)
+            out[c] *= 8.0 * kPi64 * (near ? toward : 1.0 - toward);
+    });
+}
+
+// By every estimate of the transmittance on the lines to the fire. To a percent: light from so small a source is noisy.
+TEST(PointSource, ThatIsSmallLightsTheMediumTheSame) {
+    Rows rows("small source");
+    constexpr double sharp = 0.01;
+    for (const auto transmittance :
+         {TransmittanceEstimator::Exact, TransmittanceEstimator::RayMarch, TransmittanceEstimator::Ratio}) {
+        TracingSettings settings;
+        settings.transmittance = transmittance;
+        const Traced traced(one_node(), settings);
+        const double power = emitted_power(*traced.medium).x;
+        for (const int i : {1, 2}) {
+            const dvec3 from_node = kRadii[i] * glm::normalize(dvec3(0.64, 0.36, -0.68));
+            const Estimate e = fluence_at(traced, from_node, sharp);
+            for (int c = 0; c < 3; ++c) {
+                const double albedo = kPoints[kNear - c].albedo, truth = power * fluence_of_tent(albedo, from_node);
+                rows.expect("albedo " + std::to_string(albedo) + ", r " + std::to_string(kRadii[i]), e.mean[c],
+                            e.error[c], truth, kMissing * truth, sharp);
+            }
+        }
+    }
 }
 
 }  // namespace

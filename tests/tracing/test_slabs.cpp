@@ -98,17 +98,19 @@ constexpr SlabTable kSlabs[] = {
 constexpr double kSlabDigits = 1e-5;
 
 // Three rows of the table at once, in the three channels.
-void expect_slabs(Rows& rows, const std::array<int, 3>& tables, double sharp) {
+void expect_slabs(Rows& rows, const std::array<int, 3>& tables, double sharp, FreeFlight flight) {
+    TracingSettings settings;
+    settings.free_flight = flight;
     Rgb albedo;
     for (int c = 0; c < 3; ++c)
         albedo[c] = static_cast<float>(kSlabs[tables[c]].albedo);
     for (int i = 0; i < 8; ++i) {
         const double thickness = kSlabs[0].rows[i].thickness;
-        const Traced traced(slab(1 + i % 6, thickness, albedo));
+        const Traced traced(slab(1 + i % 6, thickness, albedo), settings);
         for (const double mu : {1.0, 0.5}) {
             const Ray ray = ray_into_layers(mu);
             const Estimate e = estimate_to(
-                sharp, 3, i, [&](const dvec3& place, Rng& rng, double* out) { traced.look(ray, place.x, rng, out); });
+                sharp, 3, [&](const dvec3& place, Rng& rng, double* out) { traced.look(ray, place.x, rng, out); });
             for (int c = 0; c < 3; ++c) {
                 const Emissivity& truth = kSlabs[tables[c]].rows[i];
                 rows.expect(name("albedo", albedo[c]) + name("thickness", thickness) + name("mu", mu), e.mean[c],
@@ -120,18 +122,23 @@ void expect_slabs(Rows& rows, const std::array<int, 3>& tables, double sharp) {
 
 TEST(Slabs, ShineByTheirEmissivity) {
     Rows rows("slabs");
-    expect_slabs(rows, {0, 1, 2}, kSharp);
+    expect_slabs(rows, {0, 1, 2}, kSharp, FreeFlight::NullCollision);
+}
+
+TEST(Slabs, ShineByTheirEmissivityWithExactFlights) {
+    Rows rows("slabs, exact flights");
+    expect_slabs(rows, {0, 1, 2}, kSharp, FreeFlight::Exact);
 }
 
 TEST(Slabs, OfBrightSmokeShineByTheirEmissivity) {
     Rows rows("slabs, high albedo");
-    expect_slabs(rows, {3, 4, 4}, kSharp);
+    expect_slabs(rows, {3, 4, 4}, kSharp, FreeFlight::NullCollision);
 }
 
 // Hundreds of scatterings to a path: sampled to half a percent.
 TEST(Slabs, OfTheBrightestSmokeShineByTheirEmissivity) {
     Rows rows("slabs, highest albedo");
-    expect_slabs(rows, {5, 5, 6}, 0.005);
+    expect_slabs(rows, {5, 5, 6}, 0.005, FreeFlight::NullCollision);
 }
 
 // Van de Hulst's slab, as quoted with MCML: reflection 0.097395, transmission 0.660958.
@@ -140,7 +147,7 @@ TEST(Slabs, ThatScatterForwardShineByTheirEmissivity) {
     Recipe r = slab(5, 2.0, Rgb(0.9f));
     r.settings.smoke.mean_cosine = 0.75f;
     const Traced traced(r);
-    const Estimate e = estimate_to(kSharp, 3, 1, [&](const dvec3& place, Rng& rng, double* out) {
+    const Estimate e = estimate_to(kSharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
         traced.look(ray_into_layers(1.0), place.x, rng, out);
     });
     rows.expect("albedo 0.9, thickness 2", e.mean[0], e.error[0], 1.0 - 0.097395 - 0.660958, 1e-6);
@@ -174,7 +181,7 @@ void expect_half_space(Rows& rows, const std::array<int, 3>& tables, std::initia
     for (const int i : mus) {
         const Ray ray = ray_into_layers(kMu[i]);
         const Estimate e = estimate_to(
-            sharp, 3, 100 + i, [&](const dvec3& place, Rng& rng, double* out) { traced.look(ray, place.x, rng, out); });
+            sharp, 3, [&](const dvec3& place, Rng& rng, double* out) { traced.look(ray, place.x, rng, out); });
         for (int c = 0; c < 3; ++c) {
             const double cold = std::sqrt(1.0 - kH[tables[c]].albedo);
             rows.expect(name("albedo", albedo[c]) + name("mu", kMu[i]) + name("voxel", voxel), e.mean[c], e.error[c],

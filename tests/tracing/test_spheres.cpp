@@ -44,11 +44,11 @@ void expect_ball(Rows& rows, const Fireball* three) {
     const double radius = three[0].radius;
     const Traced traced(
         scattering_ball(kNodes, radius, Rgb(float(three[0].albedo), float(three[1].albedo), float(three[2].albedo))));
-    const Estimate centre = estimate_to(kSharp, 3, 1, [&](const dvec3& place, Rng& rng, double* out) {
+    const Estimate centre = estimate_to(kSharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
         traced.look(ray_through_middle(place.y, place.z), place.x, rng, out);
     });
     constexpr double wider = 1.05, area = wider * wider;
-    const Estimate flux = estimate_to(kSharp, 3, 2, [&](const dvec3& place, Rng& rng, double* out) {
+    const Estimate flux = estimate_to(kSharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
         traced.look(ray_through_disc(wider, place.y, place.z, rng), place.x, rng, out);
     });
     for (int c = 0; c < 3; ++c) {

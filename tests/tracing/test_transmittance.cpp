@@ -132,7 +132,7 @@ TEST(RatioTracking, HasTheMeanAndVarianceOfTheory) {
             out[0] = ratio_tracking(f.field, f.field.enter(kRays[0]), rng);
             out[1] = out[0] * out[0];
         };
-        const Estimate e = estimate_to(kSharp, 1, 1, sample), moments = estimate(2, 2000, 2, sample);
+        const Estimate e = estimate_to(kSharp, 1, sample), moments = estimate(2, 2000, sample);
         means.expect(p.name, e.mean[0], e.error[0], std::exp(-depth), 3e-6 * std::exp(-depth));
         const double square = std::exp(integral_of_squares(f.field, kRays[0]) - 2.0 * depth);
         squares.expect(p.name, moments.mean[1], moments.error[1], square, 1e-5 * square, 0.02);
@@ -151,7 +151,7 @@ TEST(RatioTracking, OfHalfTheMajorantHasRelativeVarianceEMinusOne) {
     r.settings.smoke.extinction_per_metre = static_cast<float>(2.0 / kLong);
     const Field f(r);
     const Ray ray = along_pipe(3.3, 3.6);
-    const Estimate e = estimate(2, 4000, 1, [&](const dvec3&, Rng& rng, double* out) {
+    const Estimate e = estimate(2, 4000, [&](const dvec3&, Rng& rng, double* out) {
         out[0] = ratio_tracking(f.field, f.field.enter(ray), rng);
         out[1] = out[0] * out[0];
     });
@@ -172,7 +172,7 @@ TEST(UnbiasedRayMarch, HasTheMeanOfTheOpticalDepth) {
             if (p.marched == 0.0)
                 continue;
             const double truth = std::exp(-depth_of_nodes(p) / ray.direction.z);
-            const Estimate e = estimate_to(p.marched, 1, 3, [&](const dvec3&, Rng& rng, double* out) {
+            const Estimate e = estimate_to(p.marched, 1, [&](const dvec3&, Rng& rng, double* out) {
                 out[0] = unbiased_ray_march(f.field, f.field.enter(ray), rng);
             });
             rows.expect(p.name, e.mean[0], e.error[0], truth, 3e-6 * truth, p.marched);
@@ -188,7 +188,7 @@ TEST(DeltaTracking, LetsThroughWhatTheOpticalDepthSays) {
         if (truth < 1e-6)
             continue;
         const Field f(pipe([&](int z) { return 0.3f * p.extinction(z); }));
-        const Estimate e = estimate_to(2.0 * kSharp, 1, 4, [&](const dvec3&, Rng& rng, double* out) {
+        const Estimate e = estimate_to(2.0 * kSharp, 1, [&](const dvec3&, Rng& rng, double* out) {
             out[0] = null_collision_flight(f.field, kRays[0], kEverywhere, rng) ? 0.0 : 1.0;
         });
         rows.expect(p.name, e.mean[0], e.error[0], truth, 3e-6 * truth, 2.0 * kSharp);

@@ -18,6 +18,7 @@
 #include "render_command.h"
 #include "shot/read_shot.h"
 #include "shot/write_shot.h"
+#include "stability_command.h"
 #include "trace_path_command.h"
 #ifdef BRISANCE_REPORT
 #include "report_command.h"
@@ -226,6 +227,15 @@ int run(int argc, char** argv) {
 #endif
 
     TracePathOptions traced;
+    StabilityOptions extreme;
+    CLI::App* const stability = app.add_subcommand("stability", "Stiff and extreme cases through every method: a table");
+    stability->add_option("--methods", extreme.methods, "lighting_grid, path")
+        ->check(CLI::IsMember({"lighting_grid", "path"}))
+        ->delimiter(',');
+    stability->add_option("--case", extreme.part, "Only cases whose name has this in it");
+    stability->add_flag("--markdown", extreme.markdown, "As a table for a document");
+    stability->add_flag("--json", extreme.json, "As JSON");
+
     CLI::App* const trace_path = app.add_subcommand("trace-path", "Prints one path of method path, to find its faults");
     add_trace_path_options(*trace_path, traced);
 
@@ -246,6 +256,8 @@ int run(int argc, char** argv) {
         return run_inspect(file, as_json);
     if (compare->parsed())
         return run_compare(comparison);
+    if (stability->parsed())
+        return run_stability(extreme);
     if (trace_path->parsed())
         return run_trace_path(traced);
 #ifdef BRISANCE_REPORT

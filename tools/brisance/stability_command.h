@@ -1,0 +1,20 @@
+// `brisance stability`: stiff and extreme cases through every method.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace brisance {
+
+struct StabilityOptions {
+    std::vector<std::string> methods = {"lighting_grid", "path"};
+    std::string part;  // of a case's name; empty: all
+    bool markdown = false;
+    bool json = false;
+};
+
+// Prints a table to standard output. Returns 1 when a case misses its tolerance, else 0. Throws Error Usage when no
+// case has such a name.
+int run_stability(const StabilityOptions& options);
+
+}  // namespace brisance
