@@ -1,6 +1,7 @@
 #include "tracing/fire_directions.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/parallel.h"
 
@@ -8,7 +9,8 @@ namespace brisance {
 
 namespace {
 
-// A number that is above zero wherever the cell glows at all: products of means, not means of products.
+// A number that is above zero wherever the cell glows at all: products of means, not means of products. A cell that is
+// not finite is no aim, so that it spoils those paths alone that meet it.
 double glow_of_cell(const TrackingField& field, std::size_t brick, const ivec3& cell) {
     const vec3 middle = vec3(cell) + 0.5f;
     double glow = 0.0;
@@ -16,7 +18,7 @@ double glow_of_cell(const TrackingField& field, std::size_t brick, const ivec3& 
         glow += double(field.extinction(brick, middle)) * luminance(field.source(brick, middle));
     if (field.has_emission())
         glow += luminance(field.emission(brick, middle));
-    return glow;
+    return std::isfinite(glow) ? glow : 0.0;
 }
 
 }  // namespace

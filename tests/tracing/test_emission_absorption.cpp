@@ -16,7 +16,7 @@ using namespace testing;
 // source function is 1 everywhere: that is what rays are compared with, and the table is met as closely as the lattice
 // allows.
 constexpr int kBallNodes = 32;
-constexpr double kChord = 5e-4, kLimb = 2e-3;
+constexpr double kChord = 5e-4, kLimb = 5e-3, kLimbPerDepth = 2e-3;
 
 std::string depth_of(double depth) {
     return "optical depth " + std::to_string(depth);
@@ -86,7 +86,7 @@ TEST(EmittingLines, BallsRadiateAsTheirChordsAndSurfacesSay) {
     Rows rows("emitting balls");
     for (const Row& row : kRows) {
         const Traced traced(scattering_ball(kBallNodes, row.depth, Rgb(0.0f)));
-        const double limb = 0.5 * kLimb + kLimb * row.depth;
+        const double limb = kLimb + kLimbPerDepth * row.depth;
         const Estimate centre =
             ball_and_truth(traced, [](const dvec3& place, Rng&) { return ray_through_middle(place.y, place.z); });
         expect_ball(rows, "centre, " + depth_of(row.depth), centre, 1.0, row.centre, kChord);
