@@ -104,11 +104,11 @@ struct CoarseSampler {
 
 }  // namespace
 
-void ScatteredLight::add(const ScatteredLight& other, float factor) {
+void ScatteredLight::add(const ScatteredLight& other, const Rgb& factor) {
     for (std::size_t i = 0; i < intensity.size(); ++i)
         intensity[i] += factor * other.intensity[i];
     for (std::size_t i = 0; i < directional.size(); ++i)
-        directional[i] += factor * other.directional[i];
+        directional[i] += factor[int(i % 3)] * other.directional[i];
 }
 
 void ScatteredLight::sharpen(const BrickLattice& lattice) {

@@ -12,9 +12,9 @@ struct BounceBalance;
 
 // Light leaving the nodes of a lattice after a scattering.
 struct ScatteredLight {
-    std::vector<Rgb> intensity;      // mean over directions [W/sr]
-    std::vector<float> directional;  // degrees 1 and 2, 24 per node (sh.h); empty: isotropic
-    void add(const ScatteredLight& other, float factor);
+    std::vector<Rgb> intensity;                                // mean over directions [W/sr]
+    std::vector<float> directional;                            // degrees 1 and 2, 24 per node (sh.h); empty: isotropic
+    void add(const ScatteredLight& other, const Rgb& factor);  // a factor per colour
     // sharpen_lights; the directional part keeps its proportion to the mean at every node.
     void sharpen(const BrickLattice& lattice);
 };

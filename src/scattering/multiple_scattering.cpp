@@ -1,10 +1,10 @@
 #include "scattering/multiple_scattering.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "gathering/sh.h"
 #include "lights/voxel_lights.h"
 #include "medium/phase.h"
@@ -16,10 +16,7 @@ namespace {
 
 constexpr std::size_t kEscapeRays = std::size_t{1} << 18;
 constexpr int kMostBounces = 96;
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
+constexpr double kDark = 1e-6;  // of the power scattered once: bounces below it are left to the tail
 
 double power(const std::vector<Rgb>& lights) {
     return luminance(Rgb(total(lights)));
@@ -42,43 +39,91 @@ int choose_level(const ExtinctionPyramid& pyramid, int wish) {
     return level;
 }
 
+// What is known of the bounces still to come, colour by colour: the geometric series of the last ratio of successive
+// bounces' power, and how much of it the drift of that ratio leaves unknown.
+class SeriesTail {
+public:
+    explicit SeriesTail(const ScatteredLight& first) : last_(total(first.intensity)), sum_(last_) {}
+
+    void add(const ScatteredLight& bounce) {
+        const dvec3 now = total(bounce.intensity);
+        before_last_drift_ = drift_;
+        for (int c = 0; c < 3; ++c) {
+            const double ratio = last_[c] > 0.0 ? now[c] / last_[c] : 0.0;
+            drift_[c] = std::abs(ratio - ratio_[c]);
+            ratio_[c] = ratio;
+        }
+        last_ = now;
+        sum_ += now;
+    }
+
+    double ratio() const { return std::max({ratio_.x, ratio_.y, ratio_.z}); }
+
+    // Of the last bounce's light: the sum of all that follow.
+    dvec3 factor() const {
+        dvec3 f(0.0);
+        for (int c = 0; c < 3; ++c)
+            if (ratio_[c] > 0.0 && ratio_[c] < 1.0)
+                f[c] = ratio_[c] / (1.0 - ratio_[c]);
+        return f;
+    }
+
+    // Of the scattered power (luminance), that of the bounces still to come.
+    double share() const {
+        const double tail = luminance(Rgb(factor() * last_));
+        return tail > 0.0 ? tail / (luminance(Rgb(sum_)) + tail) : 0.0;
+    }
+
+    // Of each colour's power, what is unknown; the worst. By chance a ratio can stand still for once, so that the
+    // larger of its last two steps counts.
+    double remainder() const {
+        double worst = 0.0;
+        for (int c = 0; c < 3; ++c) {
+            const double room = std::max(1.0 - ratio_[c], 1e-6);
+            const double drift = std::max(drift_[c], before_last_drift_[c]);
+            if (sum_[c] > 0.0)
+                worst = std::max(worst, last_[c] * drift / (room * room) / sum_[c]);
+        }
+        return worst;
+    }
+
+private:
+    dvec3 last_, sum_;
+    dvec3 ratio_{0.0}, drift_{0.0}, before_last_drift_{1.0};
+};
+
 // Runs the series on the coarse lattice and hands every order's light (scattered twice, three times, ...) to `take`,
 // the extrapolated tail last.
 template <class Take>
 void run_series(CoarseOperator& op, const ScatteredLight& first, const ScatteringSettings& settings,
                 ScatteringCosts& costs, Progress& progress, const Take& take) {
-    ScatteredLight lights = first;
+    const bool endless = settings.bounces < 0;
+    const int wanted = endless ? kMostBounces : settings.bounces - 2;
     const double start = power(first.intensity);
-    double previous = start, ratio = 0.0, sum = start;
-    const int wanted = settings.bounces < 0 ? kMostBounces : settings.bounces - 2;
-    for (int k = 0; k < wanted && previous > 0.0; ++k) {
+    ScatteredLight lights = first;
+    SeriesTail tail(first);
+    for (double left = start; costs.bounces < wanted && left > (endless ? kDark * start : 0.0);) {
         BounceBalance balance;
-        balance.order = k + 1;
-        balance.emitted = previous / start;
+        balance.order = costs.bounces + 1;
+        balance.emitted = left / start;
         lights = op.bounce(lights, balance, costs.levels, progress);
+        left = power(lights.intensity);
+        tail.add(lights);
         costs.balances.push_back(balance);
-        take(lights, 1.0f);
+        take(lights, Rgb(1.0f));
         ++costs.bounces;
-        const double now = power(lights.intensity);
-        const double drift = std::abs(now / previous - ratio);
-        ratio = now / previous;
-        previous = now;
-        sum += now;
-        if (settings.bounces >= 0)
+        if (!endless)
             continue;
-        // The tail is now * ratio / (1 - ratio); a ratio still drifting leaves about this much of it unknown.
-        const double room = std::max(1.0 - ratio, 1e-6);
-        costs.remainder = now * drift / (room * room) / sum;
+        costs.remainder = tail.remainder();
         progress.fraction(std::min(1.0, settings.remainder / std::max(costs.remainder, 1e-9)));
-        if (costs.remainder < settings.remainder || now < 1e-6 * start)
+        if (costs.remainder < settings.remainder)
             break;
     }
-    costs.tail_ratio = ratio;
-    if (settings.bounces < 0 && ratio > 0.0 && ratio < 1.0) {
-        const double tail = ratio / (1.0 - ratio);
-        costs.tail_share = tail * previous / (sum + tail * previous);
-        take(lights, static_cast<float>(tail));
-    }
+    costs.tail_ratio = tail.ratio();
+    if (!endless || tail.share() == 0.0)
+        return;
+    costs.tail_share = tail.share();
+    take(lights, Rgb(tail.factor()));
 }
 
 }  // namespace
@@ -131,17 +176,17 @@ std::vector<ScatteredLight> solve_scattering(const ScatteringInput& input, Scatt
     if (input.settings.bounces == 2 || !(power(orders[0].intensity) > 0.0))
         return orders;
 
-    auto start = std::chrono::steady_clock::now();
+    Stopwatch watch;
     costs.lattice_level = choose_level(pyramid, input.settings.lattice_level);
     CoarseOperator op(pyramid, costs.lattice_level, input.lighting, input.settings.alpha);
     costs.coarse_nodes = op.active_nodes();
-    costs.operator_seconds = seconds_since(start);
+    costs.operator_seconds = watch.seconds();
 
-    start = std::chrono::steady_clock::now();
+    watch = Stopwatch();
     const ScatteredLight first = op.restricted(orders[0], medium.lattice);
     ScatteredLight sum = first;
-    sum.add(first, -1.0f);
-    run_series(op, first, input.settings, costs, progress, [&](const ScatteredLight& light, float factor) {
+    sum.add(first, Rgb(-1.0f));
+    run_series(op, first, input.settings, costs, progress, [&](const ScatteredLight& light, const Rgb& factor) {
         if (!input.separate_orders)
             return sum.add(light, factor);
         ScatteredLight scaled = light;
@@ -149,8 +194,8 @@ std::vector<ScatteredLight> solve_scattering(const ScatteringInput& input, Scatt
         orders.push_back(op.spread_to_fine(scaled, medium));
     });
     if (!input.separate_orders)
-        orders[0].add(op.spread_to_fine(sum, medium), 1.0f);
-    costs.series_seconds = seconds_since(start);
+        orders[0].add(op.spread_to_fine(sum, medium), Rgb(1.0f));
+    costs.series_seconds = watch.seconds();
     costs.bytes = op.bytes();
     return orders;
 }

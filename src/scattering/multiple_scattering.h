@@ -6,8 +6,8 @@
 // shadow maps are made once. Then
 //   phi_{k+1} = K (V sigma albedo phi_k / 4 pi),  k = 1, 2, ...
 // until what is left is known well enough: successive bounces settle on the operator's first eigenvector, so the tail
-// is the geometric series of their ratio. The last scattering toward the camera is gathered once more on the fine
-// lattice from the sum of all orders.
+// is the geometric series of their ratio, colour by colour. The last scattering toward the camera is gathered once more
+// on the fine lattice from the sum of all orders.
 //
 // Balance. A gather errs by some percent, and bounces multiply it. What is emitted collides or escapes, and escape
 // probabilities are cheap to march exactly; by reciprocity the same number says how bright an isothermal medium is. So
@@ -47,7 +47,7 @@ struct ScatteringCosts {
     std::vector<LevelCost> levels;  // of the first bounce
     std::vector<BounceBalance> balances;
     int bounces = 0;          // computed one by one
-    double tail_ratio = 0.0;  // of successive bounces' power at the end
+    double tail_ratio = 0.0;  // of successive bounces' power at the end, the largest of the colours'
     double tail_share = 0.0;  // of the scattered power that the extrapolated tail makes up
     double remainder = 0.0;   // estimated share still missing
     std::uint64_t bytes = 0;
