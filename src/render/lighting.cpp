@@ -43,8 +43,8 @@ nlohmann::ordered_json balance_row(const BounceBalance& b, const std::string& or
     return {{"order", order},
             {"emitted", b.emitted},
             {"collided", b.collided},
-            {"escaped", b.escaped},
-            {"escape_standard_error", b.escape_error},
+            {"escaped", b.escaped()},
+            {"escape_standard_error", b.expected_error},
             {"scale", b.scale},
             {"corrected", b.corrected()}};
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/parallel.h"
 #include "core/rng.h"
@@ -14,6 +15,7 @@ namespace brisance {
 
 namespace {
 
+constexpr std::size_t kBatches = 16;
 constexpr double kGoldenRatio = 0.61803398874989484820;
 
 vec3 sphere_direction(double u, double v) {
@@ -62,7 +64,7 @@ public:
         }
     }
 
-    // Transmittances, in place of optical depths.
+    // What collides on the way: 1 - transmittance.
     std::vector<float> march(float step_nodes) const {
         std::vector<float> depth(padded_);
         const PackedExtinction view = pyramid_.view(0);
@@ -71,7 +73,7 @@ public:
             const float* end[3] = {&end_[0][first], &end_[1][first], &end_[2][first]};
             segment_optical_depths(view, begin, end, &metres_[first], step_nodes, last - first, &depth[first]);
             for (std::size_t i = first; i < last; ++i)
-                depth[i] = std::exp(-depth[i]);
+                depth[i] = -std::expm1(-depth[i]);
         });
         return depth;
     }
@@ -105,8 +107,9 @@ std::vector<std::size_t> pick_nodes(const std::vector<Rgb>& intensity, std::size
 
 }  // namespace
 
-EscapeEstimate estimate_escape(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& intensity, std::size_t rays) {
-    EscapeEstimate estimate;
+CollisionEstimate estimate_collisions(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& intensity,
+                                      std::size_t rays) {
+    CollisionEstimate estimate;
     const Medium& medium = pyramid.medium();
     const std::vector<std::size_t> picks = pick_nodes(intensity, rays);
     if (picks.empty())
@@ -124,19 +127,29 @@ EscapeEstimate estimate_escape(const ExtinctionPyramid& pyramid, const std::vect
             exits.set(r, vec3(node - medium.reference_node), sphere_direction(u, v));
         },
         1024);
-    const std::vector<float> transmittance = exits.march(1.0f);
-    dvec3 escaped[2] = {dvec3(0.0), dvec3(0.0)}, emitted[2] = {dvec3(0.0), dvec3(0.0)};
+    const std::vector<float> collided = exits.march(1.0f);
+    dvec3 hit[kBatches] = {}, emitted[kBatches] = {};
     for (std::size_t r = 0; r < picks.size(); ++r) {
         const dvec3 colour = dvec3(intensity[picks[r]]) / double(luminance(intensity[picks[r]]));
-        escaped[r & 1] += colour * double(transmittance[r]);
-        emitted[r & 1] += colour;
+        hit[r % kBatches] += colour * double(collided[r]);
+        emitted[r % kBatches] += colour;
     }
+    const dvec3 all_hit = std::accumulate(hit, hit + kBatches, dvec3(0.0)),
+                all_emitted = std::accumulate(emitted, emitted + kBatches, dvec3(0.0));
     for (int c = 0; c < 3; ++c)
-        if (emitted[0][c] + emitted[1][c] > 0.0)
-            estimate.fraction[c] = (escaped[0][c] + escaped[1][c]) / (emitted[0][c] + emitted[1][c]);
-    const auto half = [&](int k) { return luminance(Rgb(escaped[k])) / luminance(Rgb(emitted[k])); };
-    estimate.standard_error = picks.size() > 1 ? 0.5 * std::abs(half(0) - half(1)) : 1.0;
+        if (all_emitted[c] > 0.0)
+            estimate.fraction[c] = all_hit[c] / all_emitted[c];
     estimate.rays = picks.size();
+    if (picks.size() < kBatches) {
+        estimate.standard_error = 1.0;
+        return estimate;
+    }
+    double square = 0.0;
+    for (std::size_t b = 0; b < kBatches; ++b)
+        square += std::pow(
+            luminance(Rgb(hit[b])) / luminance(Rgb(emitted[b])) - luminance(Rgb(all_hit)) / luminance(Rgb(all_emitted)),
+            2);
+    estimate.standard_error = std::sqrt(square / (kBatches - 1.0) / kBatches);
     return estimate;
 }
 
@@ -144,10 +157,10 @@ dvec3 collided(const Medium& medium, const std::vector<Rgb>& fluence) {
     return total(project_extinction_times(medium, fluence)) / (4.0 * double(kPi));
 }
 
-std::vector<float> escape_probabilities(const ExtinctionPyramid& pyramid, const std::vector<ivec3>& vertices, int level,
-                                        int directions) {
+std::vector<float> collision_probabilities(const ExtinctionPyramid& pyramid, const std::vector<ivec3>& vertices,
+                                           int level, int directions) {
     const Medium& medium = pyramid.medium();
-    std::vector<float> probability(vertices.size(), 1.0f);
+    std::vector<float> probability(vertices.size(), 0.0f);
     const std::size_t batch = std::max<std::size_t>(1, (std::size_t{1} << 20) / directions);
     for (std::size_t first = 0; first < vertices.size(); first += batch) {
         const std::size_t count = std::min(batch, vertices.size() - first);
@@ -165,11 +178,11 @@ std::vector<float> escape_probabilities(const ExtinctionPyramid& pyramid, const 
                                                std::fmod(turn_v + d * kGoldenRatio, 1.0)));
             }
         });
-        const std::vector<float> transmittance = exits.march(1.0f);
+        const std::vector<float> collided = exits.march(1.0f);
         for (std::size_t k = 0; k < count; ++k) {
             float sum = 0.0f;
             for (int d = 0; d < directions; ++d)
-                sum += transmittance[k * directions + d];
+                sum += collided[k * directions + d];
             probability[first + k] = sum / directions;
         }
     }

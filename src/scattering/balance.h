@@ -7,23 +7,25 @@
 
 namespace brisance {
 
-struct EscapeEstimate {
-    dvec3 fraction{0.0};          // of the emitted power that leaves the medium without a collision, per colour
+// Collisions are counted themselves, not as what does not escape: in thin smoke 1 - escape would be rounding.
+struct CollisionEstimate {
+    dvec3 fraction{0.0};          // of the emitted power that collides before it leaves the medium, per colour
     double standard_error = 0.0;  // of the luminance's
     std::size_t rays = 0;
 };
 
 // `rays` rays start at the lights' nodes in proportion to luminance, systematically over the nodes' order, and leave in
-// stratified directions; each carries its marched transmittance to the edge of the medium. Unbiased for the node lights
-// but for the march's step. Two halves give the standard error.
-EscapeEstimate estimate_escape(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& intensity, std::size_t rays);
+// stratified directions; each carries what its march to the edge of the medium absorbs and scatters. Unbiased for the
+// node lights but for the march's step. The spread of interleaved batches gives the standard error.
+CollisionEstimate estimate_collisions(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& intensity,
+                                      std::size_t rays);
 
 // Power absorbed and scattered, over 4 pi: the exact integral of extinction * fluence of the two interpolated fields.
 dvec3 collided(const Medium& medium, const std::vector<Rgb>& fluence);
 
-// Escape probability averaged over all directions and over what each vertex stands for: `directions` stratified rays
+// Collision probability averaged over all directions and over what each vertex stands for: `directions` stratified rays
 // per vertex (of the lattice 2^level coarser than the medium's), each from a node under its hat picked by extinction.
-std::vector<float> escape_probabilities(const ExtinctionPyramid& pyramid, const std::vector<ivec3>& vertices, int level,
-                                        int directions);
+std::vector<float> collision_probabilities(const ExtinctionPyramid& pyramid, const std::vector<ivec3>& vertices,
+                                           int level, int directions);
 
 }  // namespace brisance

@@ -14,7 +14,7 @@ namespace brisance {
 
 namespace {
 
-constexpr int kEscapeDirections = 32;
+constexpr int kCollisionDirections = 32;
 constexpr int kBalanceSweeps = 3;
 
 // The medium of a pyramid level: coarse nodes at every 2^level-th index, mean extinction, mean albedo by extinction.
@@ -182,12 +182,12 @@ void CoarseOperator::balance_nodes(const ExtinctionPyramid& fine) {
             vertices.push_back(medium_.lattice.first_node(i / BrickLattice::kNodes) +
                                BrickLattice::node_in_brick(int(i % BrickLattice::kNodes)));
         }
-    const std::vector<float> escape = escape_probabilities(fine, vertices, level_, kEscapeDirections);
-    escape_.assign(mask_.size(), 1.0f);
+    const std::vector<float> collision = collision_probabilities(fine, vertices, level_, kCollisionDirections);
+    collision_.assign(mask_.size(), 0.0f);
     for (std::size_t k = 0; k < nodes.size(); ++k)
-        escape_[nodes[k]] = escape[k];
+        collision_[nodes[k]] = collision[k];
 
-    // D K D (unit source) = 4 pi (1 - escape), by the symmetric fixed point D <- D sqrt(wanted / found).
+    // D K D (unit source) = 4 pi collision, by the symmetric fixed point D <- D sqrt(wanted / found).
     std::vector<LevelCost> costs;
     Progress silent;
     ScatteredLight unit;
@@ -195,7 +195,7 @@ void CoarseOperator::balance_nodes(const ExtinctionPyramid& fine) {
     for (int sweep = 0; sweep < kBalanceSweeps; ++sweep) {
         const Gathered found = gather(unit, costs, silent);
         for (std::size_t i : nodes) {
-            const float wanted = 4.0f * kPi * (1.0f - escape_[i]);
+            const float wanted = 4.0f * kPi * collision_[i];
             if (found.fluence[i] > 0.0f && wanted > 0.0f)
                 factor_[i] = std::clamp(factor_[i] * std::sqrt(wanted / found.fluence[i]), 0.2f, 5.0f);
         }
@@ -245,22 +245,22 @@ ScatteredLight CoarseOperator::bounce(const ScatteredLight& lights, BounceBalanc
                                       std::vector<LevelCost>& costs, Progress& progress) {
     Gathered arriving = gather(lights, costs, progress);
     prepare_interpolation(medium_.lattice, mask_, arriving);
-    dvec3 emitted(0.0), escaped(0.0);
+    dvec3 emitted(0.0), wanted(0.0);
     for (std::size_t i = 0; i < mask_.size(); ++i) {
         emitted += dvec3(lights.intensity[i]);
-        if (mask_[i] && !escape_.empty())
-            escaped += dvec3(lights.intensity[i]) * double(escape_[i]);
+        if (!collision_.empty())
+            wanted += dvec3(lights.intensity[i]) * double(collision_[i]);
     }
     const dvec3 hit = collided(medium_, fluence_at_nodes(arriving, mask_));
     const double y = luminance(Rgb(emitted));
     balance.collided = luminance(Rgb(hit)) / y;
-    balance.escaped = luminance(Rgb(escaped)) / y;
+    balance.expected = luminance(Rgb(wanted)) / y;
     if (lighting_.energy_balance) {
         Rgb scale(1.0f);
         for (int c = 0; c < 3; ++c)
             if (hit[c] > 0.0)
-                scale[c] = static_cast<float>((emitted[c] - escaped[c]) / hit[c]);
-        balance.scale = (1.0 - balance.escaped) / balance.collided;
+                scale[c] = static_cast<float>(wanted[c] / hit[c]);
+        balance.scale = balance.collided > 0.0 ? balance.expected / balance.collided : 1.0;
         arriving.scale(scale);
     }
     ScatteredLight next = scattered_light(medium_, arriving, mask_);

@@ -14,7 +14,8 @@ namespace brisance {
 
 namespace {
 
-constexpr std::size_t kEscapeRays = std::size_t{1} << 18;
+constexpr std::size_t kCollisionRays = std::size_t{1} << 18;
+constexpr double kGatherError = 0.03;  // of a gather's collisions, typically
 constexpr int kMostBounces = 96;
 constexpr double kDark = 1e-6;  // of the power scattered once: bounces below it are left to the tail
 
@@ -153,18 +154,23 @@ void prepare_interpolation(const BrickLattice& lattice, const std::vector<std::u
 
 Rgb close_balance(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& lights, const std::vector<Rgb>& fluence,
                   BounceBalance& balance) {
-    const EscapeEstimate escape = estimate_escape(pyramid, lights, kEscapeRays);
+    const CollisionEstimate marched = estimate_collisions(pyramid, lights, kCollisionRays);
     const dvec3 emitted = total(lights);
     const dvec3 hit = collided(pyramid.medium(), fluence);
     const double y = luminance(Rgb(emitted));
-    balance.collided = y > 0.0 ? luminance(Rgb(hit)) / y : 0.0;
-    balance.escaped = y > 0.0 ? luminance(Rgb(escape.fraction * emitted)) / y : 0.0;
-    balance.escape_error = escape.standard_error;
-    balance.scale = balance.collided > 0.0 ? (1.0 - balance.escaped) / balance.collided : 1.0;
+    if (!(y > 0.0))
+        return Rgb(1.0f);
+    balance.collided = luminance(Rgb(hit)) / y;
+    balance.expected = luminance(Rgb(marched.fraction * emitted)) / y;
+    balance.expected_error = marched.standard_error;
+    const double noise = balance.expected > 0.0 ? balance.expected_error / balance.expected : 1.0;
+    const double trust = kGatherError * kGatherError / (kGatherError * kGatherError + noise * noise);
     Rgb scale(1.0f);
     for (int c = 0; c < 3; ++c)
         if (hit[c] > 0.0)
-            scale[c] = static_cast<float>((1.0 - escape.fraction[c]) * emitted[c] / hit[c]);
+            scale[c] = static_cast<float>(1.0 + trust * (marched.fraction[c] * emitted[c] / hit[c] - 1.0));
+    if (balance.collided > 0.0)
+        balance.scale = luminance(Rgb(dvec3(scale) * hit)) / luminance(Rgb(hit));
     return scale;
 }
 

@@ -30,13 +30,14 @@ namespace brisance {
 
 // One bounce's energy, as fractions of the power it set out with (luminance).
 struct BounceBalance {
-    int order = 0;              // scatterings before this flight: 0 is the fire's own light
-    double emitted = 0.0;       // power / 4 pi that set out [W/sr], relative to the fire's
-    double collided = 0.0;      // as gathered
-    double escaped = 0.0;       // as marched
-    double escape_error = 0.0;  // standard error of `escaped`
-    double scale = 1.0;         // applied: (1 - escaped) / collided
-    double corrected() const { return collided * scale + escaped; }  // 1 after correction
+    int order = 0;                // scatterings before this flight: 0 is the fire's own light
+    double emitted = 0.0;         // power / 4 pi that set out [W/sr], relative to the fire's
+    double collided = 0.0;        // as gathered
+    double expected = 0.0;        // as marched: what does not escape
+    double expected_error = 0.0;  // standard error of `expected`
+    double scale = 1.0;           // applied: expected / collided, as far as `expected` is known
+    double escaped() const { return 1.0 - expected; }
+    double corrected() const { return collided * scale + escaped(); }  // 1 after correction
 };
 
 struct ScatteringCosts {
@@ -76,7 +77,8 @@ struct HierarchyLights {
 };
 HierarchyLights build_hierarchy(const Medium& medium, ScatteredLight light, int levels);
 
-// The factor that closes a bounce's balance, from a gather at all nodes with extinction; fills `balance`.
+// The factor that closes a bounce's balance, from a gather at all nodes with extinction; fills `balance`. Where rays
+// hardly ever meet the medium they know its collisions worse than the gather does, and are believed the less.
 Rgb close_balance(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& lights, const std::vector<Rgb>& fluence,
                   BounceBalance& balance);
 

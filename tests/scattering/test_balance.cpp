@@ -26,11 +26,21 @@ constexpr Ball kBalls[] = {{0.01f, 0.9925398}, {0.1f, 0.9288389}, {0.5f, 0.70727
 TEST(Balance, EscapeFromABallIsAsTabulated) {
     for (const Ball& b : kBalls) {
         const Lit lit(make_medium(glowing_ball(16, b.depth)));
-        const EscapeEstimate e = estimate_escape(lit.pyramid, lit.intensity, 40000);
+        const CollisionEstimate e = estimate_collisions(lit.pyramid, lit.intensity, 40000);
         EXPECT_EQ(e.rays, 40000u);
         // A voxel of haze round the ball lets more escape, the more a voxel absorbs: sigma h = depth / 16.
-        EXPECT_NEAR(e.fraction.x / b.escape, 1.0, 0.004 + 0.012 * b.depth) << "optical radius " << b.depth;
+        EXPECT_NEAR((1.0 - e.fraction.x) / b.escape, 1.0, 0.004 + 0.012 * b.depth) << "optical radius " << b.depth;
         EXPECT_EQ(e.fraction.x, e.fraction.y);
+    }
+}
+
+// The mean way out of a ball is 3/4 of its radius; however little collides there, it is known as well as ever.
+TEST(Balance, CollisionsInTheThinnestSmokeKeepTheirDigits) {
+    for (const float depth : {1e-3f, 1e-6f, 1e-12f}) {
+        const Lit lit(make_medium(glowing_ball(16, depth)));
+        const CollisionEstimate e = estimate_collisions(lit.pyramid, lit.intensity, 40000);
+        EXPECT_NEAR(e.fraction.x / (0.75 * depth), 1.0, 0.02) << "optical radius " << depth;
+        EXPECT_LT(e.standard_error, 0.01 * e.fraction.x);
     }
 }
 
@@ -51,8 +61,8 @@ TEST(Balance, EscapeIsThatOfTheFieldTheCameraSees) {
             escaped += extinction * std::exp(-lit.pyramid.optical_depth(from, to));
             emitted += extinction;
         }
-        const EscapeEstimate e = estimate_escape(lit.pyramid, lit.intensity, 40000);
-        EXPECT_NEAR(e.fraction.x / (escaped / emitted), 1.0, 0.02) << "optical radius " << depth;
+        const CollisionEstimate e = estimate_collisions(lit.pyramid, lit.intensity, 40000);
+        EXPECT_NEAR((1.0 - e.fraction.x) / (escaped / emitted), 1.0, 0.02) << "optical radius " << depth;
     }
 }
 
@@ -66,11 +76,11 @@ TEST(Balance, EscapeFromTheTableIsThreeEpsilonOverFourTau) {
 
 TEST(Balance, TheStandardErrorIsHonest) {
     const Lit lit(make_medium(glowing_ball(10, 1.0f)));
-    const double truth = estimate_escape(lit.pyramid, lit.intensity, 400000).fraction.x;
+    const double truth = estimate_collisions(lit.pyramid, lit.intensity, 400000).fraction.x;
     double square_error = 0.0, square_claim = 0.0;
     int runs = 0;
     for (std::size_t rays = 900; rays < 1300; rays += 7, ++runs) {
-        const EscapeEstimate e = estimate_escape(lit.pyramid, lit.intensity, rays);
+        const CollisionEstimate e = estimate_collisions(lit.pyramid, lit.intensity, rays);
         square_error += (e.fraction.x - truth) * (e.fraction.x - truth);
         square_claim += e.standard_error * e.standard_error;
     }
@@ -79,11 +89,11 @@ TEST(Balance, TheStandardErrorIsHonest) {
     EXPECT_LT(ratio, 2.0) << "claims less error than there is";
 }
 
-TEST(Balance, ColoursEscapeTogetherThroughGreySmoke) {
+TEST(Balance, ColoursCollideTogetherInGreySmoke) {
     Lit lit(make_medium(glowing_ball(10, 2.0f)));
     for (Rgb& i : lit.intensity)
         i *= Rgb(1.0f, 0.3f, 0.0f);
-    const EscapeEstimate e = estimate_escape(lit.pyramid, lit.intensity, 5000);
+    const CollisionEstimate e = estimate_collisions(lit.pyramid, lit.intensity, 5000);
     EXPECT_NEAR(e.fraction.x, e.fraction.y, 1e-6);
     EXPECT_EQ(e.fraction.z, 0.0);
 }
@@ -91,8 +101,8 @@ TEST(Balance, ColoursEscapeTogetherThroughGreySmoke) {
 TEST(Balance, FromTheMiddleOfABallEscapesOneTransmittance) {
     for (const float depth : {0.1f, 1.0f, 4.0f}) {
         const Lit lit(make_medium(glowing_ball(16, depth)));
-        for (const float p : escape_probabilities(lit.pyramid, std::vector<ivec3>(3, ivec3(0)), 0, 64))
-            EXPECT_NEAR(p / std::exp(-depth), 1.0f, 0.02f);
+        for (const float p : collision_probabilities(lit.pyramid, std::vector<ivec3>(3, ivec3(0)), 0, 64))
+            EXPECT_NEAR((1.0f - p) / std::exp(-depth), 1.0f, 0.02f);
     }
 }
 
@@ -100,9 +110,9 @@ TEST(Balance, FromTheMiddleOfABallEscapesOneTransmittance) {
 TEST(Balance, FromTheSurfaceMoreThanHalfEscapes) {
     const Lit lit(make_medium(glowing_ball(16, 2.0f)));
     const std::vector<ivec3> surface = {{16, 0, 0}, {0, -16, 0}, {0, 0, 16}};
-    for (const float p : escape_probabilities(lit.pyramid, surface, 0, 512)) {
-        EXPECT_GT(p, 0.54f);
-        EXPECT_LT(p, 0.63f);
+    for (const float p : collision_probabilities(lit.pyramid, surface, 0, 512)) {
+        EXPECT_GT(1.0f - p, 0.54f);
+        EXPECT_LT(1.0f - p, 0.63f);
     }
 }
 
@@ -115,12 +125,12 @@ TEST(Balance, CoarseVerticesEscapeAsTheSmokeTheyStandForDoes) {
         for (int y = -reach; y <= reach; ++y)
             for (int z = -reach; z <= reach; ++z)
                 vertices.emplace_back(x, y, z);
-    const std::vector<float> probability = escape_probabilities(lit.pyramid, vertices, level, 256);
+    const std::vector<float> probability = collision_probabilities(lit.pyramid, vertices, level, 256);
     double escaped = 0.0, all = 0.0;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         const std::int64_t n = lit.pyramid.lattice(level).find_node(vertices[i]);
         const double smoke = n < 0 ? 0.0 : lit.pyramid.nodes(level)[n];
-        escaped += smoke * probability[i];
+        escaped += smoke * (1.0 - probability[i]);
         all += smoke;
     }
     EXPECT_NEAR(escaped / all / 0.3324177, 1.0, 0.02);
@@ -136,10 +146,10 @@ TEST(Balance, CollisionsAreTheIntegralOfExtinctionTimesFluence) {
     EXPECT_EQ(sum.z, 0.0);
 }
 
-TEST(Balance, WithoutLightsNothingEscapes) {
+TEST(Balance, WithoutLightsNothingCollides) {
     const Lit lit(make_medium(glowing_ball(10, 1.0f)));
     const std::vector<Rgb> dark(lit.intensity.size(), Rgb(0.0f));
-    const EscapeEstimate e = estimate_escape(lit.pyramid, dark, 100);
+    const CollisionEstimate e = estimate_collisions(lit.pyramid, dark, 100);
     EXPECT_EQ(e.rays, 0u);
     EXPECT_EQ(e.fraction, dvec3(0.0));
 }

@@ -9,11 +9,11 @@
 namespace brisance {
 namespace {
 
-void print(const std::string& text) {
-    std::fputs(text.c_str(), stdout);
+void print(const std::string& text, std::FILE* to = stdout) {
+    std::fputs(text.c_str(), to);
     if (!text.ends_with('\n'))
-        std::fputc('\n', stdout);
-    std::fflush(stdout);
+        std::fputc('\n', to);
+    std::fflush(to);
 }
 
 }  // namespace
@@ -23,9 +23,9 @@ int run_stability(const StabilityOptions& options) {
     std::erase_if(cases, [&](const auto& c) { return c.name.find(options.part) == std::string::npos; });
     if (cases.empty())
         throw Error(ExitCode::Usage, "no case is called " + options.part);
-    const bool lines = !options.markdown && !options.json;
-    if (lines)
-        print(stability::table_head());
+    // Line by line as it grows; beside a document, as a sign of life.
+    std::FILE* const lines = options.markdown || options.json ? stderr : stdout;
+    print(stability::table_head(), lines);
     std::vector<stability::Result> results;
     for (const stability::Case& c : cases)
         for (const RenderMethod method : {RenderMethod::LightingGrid, RenderMethod::Path}) {
@@ -33,8 +33,7 @@ int run_stability(const StabilityOptions& options) {
             if (!c.tolerance.of(method) || std::ranges::find(options.methods, name) == options.methods.end())
                 continue;
             results.push_back(stability::run_case(c, method));
-            if (lines)
-                print(stability::table_line(results.back()));
+            print(stability::table_line(results.back()), lines);
         }
     if (options.markdown)
         print(stability::markdown_table(cases, results));

@@ -28,10 +28,10 @@ Case absorbing(int decade) {
 }
 
 // The middle of an isothermal ball while that can be looked through; then the face of a block, since a ball's surface is
-// steps of voxels, which see each other.
+// steps of voxels, which see each other (1.6 % at an optical depth of 1 per voxel).
 Case scattering(int decade) {
     const double voxel = std::pow(10.0, decade), radius = kBallNodes * voxel;
-    const bool thin = decade <= 0;
+    const bool thin = decade < 0;
     Case c;
     c.name = "depth/scattering-1e" + std::to_string(decade);
     c.truth = thin ? "integral equation of the isothermal ball" : "sqrt(1 - albedo) H(1)";
