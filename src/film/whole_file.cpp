@@ -7,8 +7,11 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <climits>
+#include <csignal>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <thread>
@@ -92,20 +95,48 @@ fs::path final_name(const fs::path& file) {
     return error ? file : target;
 }
 
-std::string temporary_name(const fs::path& file) {
+// A temporary file's name is this, with the number of its process between the two.
+struct TemporaryName {
+    std::string begin, end;
+    bool shortened;  // other files may then have the same
+};
+
+TemporaryName temporary_name(const fs::path& file) {
     std::array<char, 65> host{};
     if (gethostname(host.data(), host.size() - 1) != 0)
         host = {'h', 'o', 's', 't'};
     // Long names leave no room for host and process within the system's limit: their end is dropped.
-    const std::string stem = file.stem().string().substr(0, 100);
-    const std::string extension = file.extension().string().substr(0, 32);
-    const fs::path name = fmt::format(".{}.{}.{}.tmp{}", stem, host.data(), getpid(), extension);
+    const std::string stem = file.stem().string(), extension = file.extension().string();
+    const std::string short_stem = stem.substr(0, 100), short_extension = extension.substr(0, 32);
+    return {fmt::format(".{}.{}.", short_stem, host.data()), ".tmp" + short_extension,
+            short_stem != stem || short_extension != extension};
+}
+
+std::string temporary_file(const fs::path& file) {
+    const TemporaryName parts = temporary_name(file);
+    const fs::path name = fmt::format("{}{}{}", parts.begin, getpid(), parts.end);
     return (file.has_parent_path() ? file.parent_path() / name : name).string();
+}
+
+// The process in a temporary file's name; absent where the name is of another form.
+std::optional<pid_t> process_in(const std::string& name, const TemporaryName& parts) {
+    if (name.size() <= parts.begin.size() + parts.end.size() || !name.starts_with(parts.begin) ||
+        !name.ends_with(parts.end))
+        return std::nullopt;
+    const char* const first = name.data() + parts.begin.size();
+    const char* const last = name.data() + name.size() - parts.end.size();
+    pid_t process = 0;
+    const auto [stop, error] = std::from_chars(first, last, process);
+    return error == std::errc() && stop == last && process > 0 ? std::optional(process) : std::nullopt;
+}
+
+bool has_ended(pid_t process) {
+    return kill(process, 0) != 0 && errno == ESRCH;
 }
 
 class TemporaryFile {
 public:
-    explicit TemporaryFile(const fs::path& file) : file_(final_name(file)), name_(temporary_name(file_)) {
+    explicit TemporaryFile(const fs::path& file) : file_(final_name(file)), name_(temporary_file(file_)) {
         if (name_.size() >= PATH_MAX)
             throw_write_error(file_, ENAMETOOLONG);
         slot_ = &claim(name_);
@@ -189,6 +220,21 @@ void write_whole_file(const std::filesystem::path& file, std::string_view bytes)
 
 void check_writable(const std::filesystem::path& file) {
     TemporaryFile probe(file);
+}
+
+// What cannot be looked up or deleted stays: it harms nobody.
+void remove_leftovers(const std::filesystem::path& file) noexcept try {
+    const fs::path whole = final_name(file);
+    const TemporaryName parts = temporary_name(whole);
+    if (parts.shortened)
+        return;
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_of(whole), ignored)) {
+        const std::optional<pid_t> process = process_in(entry.path().filename().string(), parts);
+        if (process && has_ended(*process) && entry.is_regular_file(ignored))
+            fs::remove(entry.path(), ignored);
+    }
+} catch (const std::exception&) {
 }
 
 void remove_unfinished_files() noexcept {

@@ -13,6 +13,10 @@ void write_whole_file(const std::filesystem::path& file, std::string_view bytes)
 // Throws Error as write_whole_file would before its first byte: to be asked before an expensive computation.
 void check_writable(const std::filesystem::path& file);
 
+// Deletes the temporary files that writes of `file` left behind when their process was killed: those of this machine's
+// processes that have ended, and of no other file.
+void remove_leftovers(const std::filesystem::path& file) noexcept;
+
 // Deletes the temporary files of writes under way and keeps others from being made. Async-signal-safe: for a handler
 // that ends the process next, and for nothing else.
 void remove_unfinished_files() noexcept;

@@ -107,6 +107,7 @@ Image draw(const Shot& shot, const Plan& plan, const Medium& medium, const Camer
 std::string checkpoint_key(Shot shot, const std::filesystem::path& volume, int frame) {
     const TracingSettings given = shot.tracing;
     shot.tracing = TracingSettings{};
+    shot.tracing.seed = given.seed;
     shot.tracing.emission = given.emission;
     shot.tracing.light_sampling = given.light_sampling;
     shot.tracing.free_flight = given.free_flight;

@@ -1,7 +1,9 @@
 #include "render/trace_path.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "core/error.h"
 #include "render/camera.h"
@@ -10,9 +12,21 @@
 
 namespace brisance {
 
-bool TracedPath::finite() const {
-    return std::all_of(orders.begin(), orders.end(),
+namespace {
+
+bool all_finite(std::span<const Rgb> colours) {
+    return std::all_of(colours.begin(), colours.end(),
                        [](const Rgb& c) { return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z); });
+}
+
+}  // namespace
+
+bool TracedPath::finite() const {
+    return all_finite(orders);
+}
+
+bool finite(const TracedVertex& vertex) {
+    return all_finite(std::array{vertex.throughput, vertex.along_segment, vertex.from_fire});
 }
 
 TracedPath trace_path(const Shot& shot, const std::filesystem::path& volume, int x, int y, std::uint64_t sample,
@@ -28,9 +42,12 @@ TracedPath trace_path(const Shot& shot, const std::filesystem::path& volume, int
     const std::size_t pixel = std::size_t(y) * shot.camera.width + x;
     TracedPath out;
     PathStatistics counts;
+    counts.vertices = &out.vertices;
     out.orders = trace_sample(tracer, camera, pixel, sample, counts);
     out.scatterings = counts.scatterings;
-    const Ray local = sample_ray(camera, pixel, sample);
+    for (TracedVertex& vertex : out.vertices)
+        vertex.position += medium.world_of_local(vec3(0.0f));
+    const Ray local = sample_ray(camera, shot.tracing.seed, pixel, sample);
     out.ray = {dvec3(glm::inverse(camera.camera_from_world())[3]), local.direction};  // local space is not turned
     return out;
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <vector>
 
 #include "core/progress.h"
 #include "medium/cell_walk.h"
@@ -12,11 +13,15 @@
 namespace brisance {
 
 struct TracedPath {
-    Ray ray;                        // of the camera, through the pixel; world space [m]
-    PathSum orders{};               // what it brings, by the number of scatterings [W/(m^2 sr)]
-    std::uint64_t scatterings = 0;  // followed; more than orders may hold
+    Ray ray;                             // of the camera, through the pixel; world space [m]
+    PathSum orders{};                    // what it brings, by the number of scatterings [W/(m^2 sr)]
+    std::uint64_t scatterings = 0;       // followed; more than orders may hold
+    std::vector<TracedVertex> vertices;  // in the order they were followed; positions in world space [m]
     bool finite() const;
 };
+
+// What the vertex carries and what it gathered.
+bool finite(const TracedVertex& vertex);
 
 // The path that method path gives number `sample` in the pixel at (x, y), counted from the top left. The same bits as
 // in the picture. Throws Error Usage for a pixel outside of the picture, and as render_frame.

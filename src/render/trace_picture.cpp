@@ -28,9 +28,14 @@ struct Place {
     double x, y, first_collision;
 };
 
-Place place_of(std::size_t pixel, std::uint64_t sample) {
+// Names a pixel's random numbers: a picture has less than 2^32 pixels.
+std::uint64_t seeded(int seed, std::size_t pixel) {
+    return std::uint64_t(seed) << 32 | pixel;
+}
+
+Place place_of(int seed, std::size_t pixel, std::uint64_t sample) {
     constexpr double g1 = 0.8191725133961645, g2 = 0.6710436067037893, g3 = 0.5497004779019703;
-    Rng shift(Stream::PathRotation, pixel, sample & 1);
+    Rng shift(Stream::PathRotation, seeded(seed, pixel), sample & 1);
     const double k = static_cast<double>(sample >> 1);
     const auto at = [&](double step) {
         const double v = shift.next_double() + std::fmod(k * step, 1.0);
@@ -59,6 +64,8 @@ public:
           film_(camera.settings().width, camera.settings().height, shot.output.bounce_layers) {
         if (!checkpoint.file.empty() && std::filesystem::exists(checkpoint.file))
             resume();
+        if (!checkpoint.file.empty())
+            remove_leftovers(checkpoint.file);
         before_ = film_.work.seconds;
     }
 
@@ -301,6 +308,16 @@ Image sampled_layers(const Medium& medium, const Camera& camera) {
     return render_picture(field, camera, settings, {}, silent);
 }
 
+void weigh(PathSum& sum, PathStatistics& statistics, float weight) {
+    for (Rgb& order : sum)
+        order *= weight;
+    if (!statistics.vertices)
+        return;
+    for (TracedVertex& vertex : *statistics.vertices)
+        for (Rgb* part : {&vertex.throughput, &vertex.along_segment, &vertex.from_fire})
+            *part *= weight;
+}
+
 void report_bad_samples(const PathFilm& film, Progress& progress) {
     const PathFilm::Work& w = film.work;
     if (w.not_finite == 0)
@@ -314,20 +331,20 @@ void report_bad_samples(const PathFilm& film, Progress& progress) {
 
 }  // namespace
 
-Ray sample_ray(const Camera& camera, std::size_t pixel, std::uint64_t sample) {
-    return ray_at(camera, pixel, place_of(pixel, sample));
+Ray sample_ray(const Camera& camera, int seed, std::size_t pixel, std::uint64_t sample) {
+    return ray_at(camera, pixel, place_of(seed, pixel, sample));
 }
 
 PathSum trace_sample(const PathTracer& tracer, const Camera& camera, std::size_t pixel, std::uint64_t sample,
                      PathStatistics& statistics) {
-    const Place place = place_of(pixel, sample);
-    Rng rng(Stream::Path, pixel, sample);
+    const int seed = tracer.settings().seed;
+    const Place place = place_of(seed, pixel, sample);
+    Rng rng(Stream::Path, seeded(seed, pixel), sample);
     PathSum sum{};
     tracer.trace(ray_at(camera, pixel, place), place.first_collision, rng, sum, statistics);
     const PixelFilter filter = camera.settings().filter;
     if (filter != PixelFilter::Box)
-        for (Rgb& order : sum)
-            order *= filter_weight(filter, place.x - 0.5, place.y - 0.5);
+        weigh(sum, statistics, filter_weight(filter, place.x - 0.5, place.y - 0.5));
     return sum;
 }
 

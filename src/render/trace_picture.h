@@ -27,10 +27,12 @@ struct TracedPicture {
     double samples_per_pixel = 0.0;
 };
 
-// The camera's ray of a path, in local space: where in the pixel it lies is the same for the same pixel and number.
-Ray sample_ray(const Camera& camera, std::size_t pixel, std::uint64_t sample);
+// The camera's ray of a path, in local space: where in the pixel it lies is the same for the same seed, pixel and
+// number.
+Ray sample_ray(const Camera& camera, int seed, std::size_t pixel, std::uint64_t sample);
 
-// One path of a pixel, the same for the same picture size, pixel, and number. Even numbers belong to the first half.
+// One path of a pixel, the same for the same picture size, seed, pixel, and number. Even numbers belong to the first
+// half. What its vertices gathered is weighted by the pixel's filter as the sum is.
 PathSum trace_sample(const PathTracer& tracer, const Camera& camera, std::size_t pixel, std::uint64_t sample,
                      PathStatistics& statistics);
 

@@ -16,6 +16,8 @@ namespace {
 
 constexpr int kCollisionDirections = 32;
 constexpr int kBalanceSweeps = 3;
+// A node that sharpening leaves less of its unit light than this is about to be emptied.
+constexpr float kEmptied = 0.1f;
 
 // The medium of a pyramid level: coarse nodes at every 2^level-th index, mean extinction, mean albedo by extinction.
 Medium coarse_medium(const ExtinctionPyramid& fine, int level) {
@@ -153,13 +155,16 @@ CoarseOperator::CoarseOperator(const ExtinctionPyramid& fine, int level, const L
     : level_(level), medium_(coarse_medium(fine, level)), lighting_(lighting), alpha_(alpha) {
     pyramid_ = std::make_unique<ExtinctionPyramid>(medium_, ExtinctionPyramid::kMaxLevels);
     unit_ = project_extinction_times(medium_, std::vector<Rgb>(medium_.extinction.size(), Rgb(1.0f)));
-    sharpen_lights(medium_.lattice, unit_);
     weight_.resize(unit_.size());
+    least_weight_.resize(unit_.size());
     mask_.resize(unit_.size());
     for (std::size_t i = 0; i < unit_.size(); ++i) {
-        weight_[i] = unit_[i].x;
-        active_ += mask_[i] = weight_[i] > 0.0f;
+        least_weight_[i] = kEmptied * unit_[i].x;
+        active_ += mask_[i] = unit_[i].x > 0.0f;
     }
+    sharpen_lights(medium_.lattice, unit_);
+    for (std::size_t i = 0; i < unit_.size(); ++i)
+        weight_[i] = unit_[i].x;
     grid_ = build_lighting_grid(medium_, unit_, &weight_, automatic_levels(medium_));
     factor_.assign(weight_.size(), 1.0f);
     if (lighting_.energy_balance)
@@ -167,7 +172,7 @@ CoarseOperator::CoarseOperator(const ExtinctionPyramid& fine, int level, const L
 }
 
 std::uint64_t CoarseOperator::bytes() const {
-    std::uint64_t sum = medium_.bytes() + pyramid_->bytes() + grid_.bytes() + weight_.size() * 13;
+    std::uint64_t sum = medium_.bytes() + pyramid_->bytes() + grid_.bytes() + weight_.size() * 17;
     for (const auto& m : maps_.levels)
         sum += m.size() * 2;
     return sum;
@@ -274,7 +279,7 @@ ScatteredLight CoarseOperator::spread_to_fine(const ScatteredLight& coarse, cons
     const bool directional = !coarse.directional.empty();
     const int channels = directional ? 27 : 3;
     // Source function: light leaving per volume and extinction; where a coarse node has no extinction its neighbours
-    // speak.
+    // speak. A node that sharpening has emptied says next to nothing: its quotient would be rounding.
     std::vector<std::vector<Rgb>> source(channels / 3, std::vector<Rgb>(n, Rgb(0.0f)));
     parallel_for(
         fine.lattice.brick_count(),
@@ -285,7 +290,7 @@ ScatteredLight CoarseOperator::spread_to_fine(const ScatteredLight& coarse, cons
                 sampler.at(fine.lattice.first_node(b) + BrickLattice::node_in_brick(k), [&](std::size_t q, float w) {
                     if (!mask_[q])
                         return;
-                    const float per_mass = w / weight_[q];
+                    const float per_mass = w / std::max(weight_[q], least_weight_[q]);
                     mass += w;
                     for (int c = 0; c < 3; ++c)
                         sum[c] += per_mass * coarse.intensity[q][c];

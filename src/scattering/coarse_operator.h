@@ -51,11 +51,12 @@ private:
     LightingSettings lighting_;
     float alpha_;
     std::size_t active_ = 0;
-    std::vector<std::uint8_t> mask_;
-    std::vector<Rgb> unit_;         // light of a source function of 1: integral of hat * extinction [m^2]
-    std::vector<float> weight_;     // the same as a scalar: centres do not depend on a bounce's light
-    std::vector<float> collision_;  // per node: probability of a collision before leaving the medium
-    std::vector<float> factor_;     // D
+    std::vector<std::uint8_t> mask_;   // nodes with extinction in their hat
+    std::vector<Rgb> unit_;            // light of a source function of 1: integral of hat * extinction [m^2]
+    std::vector<float> weight_;        // the same as a scalar: centres do not depend on a bounce's light
+    std::vector<float> least_weight_;  // what a source function is divided by at least
+    std::vector<float> collision_;     // per node: probability of a collision before leaving the medium
+    std::vector<float> factor_;        // D
     LightingGrid grid_;
     ShadowMapCache maps_;
 };

@@ -8,6 +8,9 @@ void add_tracing_keys(std::vector<Key>& keys) {
         choice<RenderMethod>({{"lighting_grid", RenderMethod::LightingGrid}, {"path", RenderMethod::Path}}),
         [](Shot & s) -> auto& { return s.method; }));
     keys.push_back(make_key(
+        "tracing.seed", "other seeds draw other random numbers: independent renders of one picture", whole(0, 1 << 30),
+        [](Shot & s) -> auto& { return s.tracing.seed; }));
+    keys.push_back(make_key(
         "tracing.samples",
         "camera rays per pixel, each the start of several paths; none: until tracing.seconds or tracing.error",
         or_word(whole(2, 1 << 30), "none", 0), [](Shot & s) -> auto& { return s.tracing.samples; }));

@@ -34,6 +34,11 @@ void add(PathSum& sum, int order, const Rgb& radiance) {
     sum[std::min(order, kPathOrders - 1)] += radiance;
 }
 
+void note(PathStatistics& statistics, const TracedVertex& vertex) {
+    if (statistics.vertices) [[unlikely]]
+        statistics.vertices->push_back(vertex);
+}
+
 // Ends the path, or makes up for those that ended. False: ended.
 bool survives(Rgb& throughput, float begin, Rng& rng) {
     const float part = largest(throughput) / begin;
@@ -101,6 +106,7 @@ void PathTracer::trace_lines(const Ray& camera_ray, double place, Rng& rng, Path
     thread_local CameraLine seen;
     lines_.follow_camera(camera_ray, rng, seen);
     add(sum, 0, seen.radiance);
+    note(statistics, {0, camera_ray.origin, Rgb(1.0f), seen.radiance, Rgb(0.0f)});
     if (bounces_ == 0 || !(seen.opacity() > 0.0))
         return;
     const Rgb arriving(static_cast<float>(seen.opacity() / kFirstCollisions));
@@ -115,16 +121,22 @@ void PathTracer::trace_from(Vertex vertex, Rng& rng, PathSum& sum, PathStatistic
     const float begin = largest(vertex.throughput);
     while (survives(vertex.throughput, begin, rng)) {
         ++statistics.scatterings;
-        if (vertex.light_lines > 0.0f && rng.next() < vertex.light_lines)
-            add(sum, vertex.order, vertex.throughput * light_from_fire(vertex, rng));
+        Rgb from_fire(0.0f), along_segment(0.0f);
+        if (vertex.light_lines > 0.0f && rng.next() < vertex.light_lines) {
+            from_fire = vertex.throughput * light_from_fire(vertex, rng);
+            add(sum, vertex.order, from_fire);
+        }
         const Ray ray{vertex.position, sample_henyey_greenstein(vertex.arriving, field_.mean_cosine(), rng)};
         LineResult line;
         if (bounces_ < 0 || vertex.order < bounces_)
             line = lines_.follow_path(ray, rng);
         else
             line.radiance = lines_.follow_line(ray, rng);
-        if (line.radiance != Rgb(0.0f))
-            add(sum, vertex.order, share_of_phase(vertex, ray) * vertex.throughput * line.radiance);
+        if (line.radiance != Rgb(0.0f)) {
+            along_segment = share_of_phase(vertex, ray) * vertex.throughput * line.radiance;
+            add(sum, vertex.order, along_segment);
+        }
+        note(statistics, {vertex.order, vertex.position, vertex.throughput, along_segment, from_fire});
         if (!line.collision)
             return;
         vertex = vertex_at(ray, *line.collision, vertex.throughput, vertex.order + 1);
@@ -154,6 +166,7 @@ void PathTracer::trace_plain(Ray ray, Rng& rng, PathSum& sum, PathStatistics& st
     Rgb throughput(1.0f);
     for (int order = 0;; ++order) {
         std::optional<Collision> collision;
+        note(statistics, {order, ray.origin, throughput, Rgb(0.0f), Rgb(0.0f)});
         walk_bricks(field_.bricks(), field_.enter(ray), [&](const CellSegment& s) {
             const bool burns = field_.burns(s.brick);
             const double per_cell = glm::length(s.direction) / 4.0;
@@ -169,7 +182,10 @@ void PathTracer::trace_plain(Ray ray, Rng& rng, PathSum& sum, PathStatistics& st
                     glow += sigma * field_.source(s.brick, p);
                 if (burns && field_.has_emission())
                     glow += field_.emission(s.brick, p);
-                add(sum, order, throughput * glow / float(majorant));
+                const Rgb gathered = throughput * glow / float(majorant);
+                add(sum, order, gathered);
+                if (statistics.vertices) [[unlikely]]
+                    statistics.vertices->back().along_segment += gathered;
                 if (rng.next_double() * majorant < sigma) {
                     collision = Collision{t, s.brick, p};
                     return false;

@@ -21,9 +21,20 @@ namespace brisance {
 constexpr int kPathOrders = 10;
 using PathSum = std::array<Rgb, kPathOrders>;
 
+// A scattering of a path, and what is gathered there; number 0 is the camera, from which all paths of its ray begin.
+// What the vertices gathered adds up to the PathSum.
+struct TracedVertex {
+    int order;          // scatterings with this one
+    dvec3 position;     // local [m]
+    Rgb throughput;     // with the albedo of this scattering
+    Rgb along_segment;  // gathered along the ray that leaves it [W/(m^2 sr)]
+    Rgb from_fire;      // gathered by a line toward the fire [W/(m^2 sr)]
+};
+
 struct PathStatistics {
     std::uint64_t paths = 0;
     std::uint64_t scatterings = 0;
+    std::vector<TracedVertex>* vertices = nullptr;  // where they are kept for somebody who wants to see them
 };
 
 class PathTracer {
@@ -36,6 +47,7 @@ public:
     void trace(const Ray& ray, double place, Rng& rng, PathSum& sum, PathStatistics& statistics) const;
 
     const TrackingField& field() const { return field_; }
+    const TracingSettings& settings() const { return settings_; }
     std::uint64_t bytes() const { return field_.bytes() + fire_.bytes(); }
 
 private:

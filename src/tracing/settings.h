@@ -20,6 +20,7 @@ enum class TransmittanceEstimator {
 };
 
 struct TracingSettings {
+    int seed = 0;                      // other seeds draw other random numbers
     int samples = 64;                  // camera rays per pixel, each with its paths; 0: until `seconds` or `error`
     double seconds = 0.0;              // stop after this time, at the end of a pass; 0: no limit
     double error = 0.0;                // stop at this relative standard error (rRMSE) of the picture; 0: never

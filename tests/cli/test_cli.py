@@ -8,9 +8,11 @@ import os
 import pathlib
 import pty
 import random
+import re
 import resource
 import shutil
 import signal
+import socket
 import struct
 import subprocess
 import sys
@@ -546,6 +548,23 @@ class PathTracer(VolumeCase):
         self.expect(0, "render", self.volume, *self.TRACED, "-o", self.out / "b.exr")
         self.assertNotIn("certificate", self.statistics("b"))
 
+    def numbers_of(self, text, pattern):
+        return [[float(word) for word in re.search(pattern, line)[1].split()] for line in text]
+
+    def test_vertices_add_up_to_their_path(self):
+        for more in ([], ["--set", "camera.filter=gaussian"], ["--set", "tracing.emission=collision"]):
+            text = self.expect(0, "trace-path", self.volume, 12, 9, 5, *self.SHOT, *more).stdout.splitlines()
+            vertices = [line for line in text if " throughput " in line and line.startswith("  ")]
+            along = self.numbers_of(vertices, r" along ([^a-z]+)")
+            fire = self.numbers_of(vertices, r" from fire ([^a-z]+)$")
+            orders = [line.split() for line in text if re.match(r"  \d\+? +(V|MV|MM) +[-\d]", line)]
+            self.assertGreater(len(vertices), 1)
+            self.assertGreater(len(orders), 1)
+            for channel in range(3):
+                gathered = sum(line[channel] for line in along + fire)
+                path = sum(float(words[2 + channel]) for words in orders)
+                self.assertAlmostEqual(gathered, path, delta=1e-5 * abs(path))
+
     def test_one_path(self):
         arguments = [self.volume, 12, 9, 5, *self.SHOT]
         text = self.expect(0, "trace-path", *arguments).stdout
@@ -604,6 +623,25 @@ class Checkpoints(VolumeCase):
         self.assertGreaterEqual(stopped, 1)
         self.render("parts.exr", samples, "--checkpoint", self.state, says="going on from")
         self.assertEqual(self.bytes_of("parts.exr"), self.bytes_of("whole.exr"))
+        self.assertEqual(self.names(), ["out", "state"])
+
+    def temporary(self, name, process, host=socket.gethostname()):
+        return self.folder / f".{name}.{host}.{process}.tmp"
+
+    def test_leftovers_of_killed_runs(self):
+        with subprocess.Popen(["true"]) as ended:
+            ended.wait()
+        left = self.temporary("state", ended.pid)
+        others = [self.temporary("state", os.getpid()), self.temporary("other", ended.pid),
+                  self.temporary("state", ended.pid, "elsewhere")]
+        for path in (left, *others):
+            path.write_bytes(b"half a checkpoint")
+        self.render("a.exr", 2, "--checkpoint", self.state)
+        self.assertEqual(self.names(), sorted(["out", "state", *(path.name for path in others)]))
+        # Also where there is nothing left to render.
+        left.write_bytes(b"half a checkpoint")
+        self.render("a.exr", 2, "--checkpoint", self.state, says="going on from")
+        self.assertFalse(left.exists())
 
     def test_more_paths_than_before(self):
         self.render("whole.exr", 12, "--set", "output.halves=true")
@@ -629,7 +667,8 @@ class Checkpoints(VolumeCase):
     def test_of_another_render(self):
         self.render("a.exr", 4, "--checkpoint", self.state)
         kept = self.state.read_bytes()
-        for other in ("smoke.albedo=0.6", "camera.width=66", "output.layers.bounces=true", "tracing.light_sampling=false"):
+        for other in ("smoke.albedo=0.6", "camera.width=66", "output.layers.bounces=true", "tracing.light_sampling=false",
+                      "tracing.seed=1"):
             self.render("b.exr", 8, "--checkpoint", self.state, "--set", other, code=65,
                         says=[str(self.state), "belongs to another"])
             self.assertEqual(self.state.read_bytes(), kept)

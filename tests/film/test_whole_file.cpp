@@ -160,6 +160,65 @@ TEST(WholeFile, AFullDiskIsNamedAndLeftClean) {
     EXPECT_EQ(old, "old");
 }
 
+// The name of the temporary file that a process of this machine writes `file` under.
+std::string temporary_of(const fs::path& folder, const std::string& file, pid_t process) {
+    char host[65] = {};
+    gethostname(host, sizeof host - 1);
+    const fs::path name(file);
+    return (folder / ("." + name.stem().string() + "." + host + "." + std::to_string(process) + ".tmp" +
+                      name.extension().string()))
+        .string();
+}
+
+pid_t process_that_has_ended() {
+    const pid_t child = fork();
+    if (child == 0)
+        _exit(0);
+    waitpid(child, nullptr, 0);
+    return child;
+}
+
+TEST(WholeFile, LeftoversOfKilledProcessesAreRemovedAndNoOthers) {
+    const TemporaryFolder folder;
+    const pid_t ended = process_that_has_ended();
+    const std::vector<std::string> kept = {
+        temporary_of(folder.path(), "state.bin", getpid()),  // under way
+        temporary_of(folder.path(), "state.bin", 1),         // alive, and another user's
+        temporary_of(folder.path(), "other.bin", ended),
+        temporary_of(folder.path(), "state", ended),
+        temporary_of(folder.path(), "state.bin.bin", ended),
+        temporary_of(folder.path(), "state.bin", ended) + "x",
+        (folder.path() / (".state.elsewhere." + std::to_string(ended) + ".tmp.bin")).string(),
+    };
+    for (const std::string& name : kept)
+        std::ofstream(name) << "x";
+    std::ofstream(temporary_of(folder.path(), "state.bin", ended)) << "half a check";
+    remove_leftovers(folder / "state.bin");
+    for (const std::string& name : kept)
+        EXPECT_TRUE(fs::exists(name)) << name;
+    EXPECT_EQ(folder.names().size(), kept.size());
+    remove_leftovers(folder / "absent" / "state.bin");  // nothing to do, and no error
+}
+
+TEST(WholeFile, LeftoversOfAKilledWriteAreRemoved) {
+    const TemporaryFolder folder;
+    for (int round = 0; round < 20 && folder.names().size() < 2; ++round) {
+        const pid_t child = fork();
+        if (child == 0) {
+            const std::string much(64 << 20, 'x');
+            for (;;)
+                write_whole_file(folder / "a.txt", much);
+        }
+        usleep(static_cast<useconds_t>(50000 + 7000 * round));
+        kill(child, SIGKILL);
+        waitpid(child, nullptr, 0);
+    }
+    const bool whole = fs::exists(folder / "a.txt");
+    EXPECT_GT(folder.names().size(), whole ? 1u : 0u) << "never killed while it wrote";
+    remove_leftovers(folder / "a.txt");
+    EXPECT_EQ(folder.names(), whole ? std::vector<std::string>{"a.txt"} : std::vector<std::string>{});
+}
+
 TEST(WholeFile, AnInterruptedWriteLeavesNothing) {
     const TemporaryFolder folder;
     for (int round = 0; round < 5; ++round) {

@@ -6,7 +6,6 @@
 #include "core/error.h"
 #include "expect.h"
 #include "film/write_image.h"
-#include "independent_draw.h"
 #include "measure_runs.h"
 #include "media/node_media.h"
 #include "metrics/layers.h"
@@ -55,14 +54,16 @@ double correlation(const Picture& a, const Picture& b, const Picture& truth) {
     return ab / std::sqrt(aa * bb);
 }
 
-TEST(IndependentDraw, SharesNoNoiseWithAnOrdinaryOne) {
+TEST(Seeds, ShareNoNoise) {
     Progress silent;
     Shot exact = shot();
     exact.tracing.samples = 2048;
+    exact.tracing.seed = 2;
     const Picture truth = beauty(render_medium(exact, medium(), silent).image);
     const Picture ordinary = beauty(render_medium(shot(), medium(), silent).image);
-    const Picture other = without_margin(beauty(render_medium(drawn_independently(shot()), medium(), silent).image));
-    ASSERT_EQ(other.width, ordinary.width);
+    Shot reseeded = shot();
+    reseeded.tracing.seed = 1;
+    const Picture other = beauty(render_medium(reseeded, medium(), silent).image);
     EXPECT_NE(other.pixels, ordinary.pixels);
     // 432 independent pixels: a correlation of 0.25 would be five standard deviations.
     EXPECT_NEAR(correlation(ordinary, other, truth), 0.0, 0.25);
@@ -77,6 +78,7 @@ TEST(Measuring, FindsTheErrorsOfThePathTracerHalvedByFourTimesThePaths) {
     Shot base = shot();
     Shot long_one = base;
     long_one.tracing.samples = 1024;
+    long_one.tracing.seed = 1;
     const ReportReference reference = trace_reference(long_one, medium(), silent);
     EXPECT_TRUE(reference.summary.halves);
     EXPECT_EQ(reference.layers.size(), 4u);
@@ -138,7 +140,7 @@ TEST_F(GivenReference, IsTakenWithItsNoise) {
     const auto a = write("a.exr", shot(), 0.9f), b = write("b.exr", shot(), 1.1f);
     const ReportReference reference = read_reference({a, b}, shot(), 1);
     EXPECT_TRUE(reference.summary.halves);
-    EXPECT_TRUE(reference.ordinary_draw) << "of method path";
+    EXPECT_EQ(reference.seeds, std::set<int>{0});
     EXPECT_NEAR(reference.summary.noise.at(""), 0.1, 1e-6);
     EXPECT_NEAR(mean_picture(reference.layers.at("")).pixels[0].x, 1.0f, 1e-6f);
     EXPECT_TRUE(read_reference({a}, shot(), 1).summary.noise.empty());
@@ -157,6 +159,11 @@ TEST_F(GivenReference, OfAnotherPictureIsRefusedWithWhatDiffers) {
     const auto first = write("1.A.exr", shot(), 1.0f, 1, "A"), second = write("2.A.exr", shot(), 1.1f, 1, "A");
     EXPECT_HAS(refusal({first, second}), "are both half A: they are no independent halves");
     EXPECT_EQ(refusal({first, write("1.B.exr", shot(), 1.1f, 1, "B")}), "");
+    other = shot();
+    other.tracing.seed = 5;
+    const auto reseeded = write("3.A.exr", other, 1.1f, 1, "A");
+    EXPECT_EQ(refusal({first, reseeded}), "") << "of another seed";
+    EXPECT_EQ(read_reference({first, reseeded}, shot(), 1).seeds, (std::set<int>{0, 5}));
 }
 
 }  // namespace

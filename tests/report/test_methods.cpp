@@ -172,6 +172,18 @@ TEST(Runs, OfEveryBuiltInMethodAreShots) {
     EXPECT_HAS(joined(planned[2].runs[1].settings), "tracing.seconds=none");
 }
 
+TEST(Runs, ShareNoSeedWithTheReference) {
+    const auto settings = [](const std::set<int>& taken, const std::string& method) {
+        return plan_runs(shot(), parse({method}, {}), taken)[0].runs[0];
+    };
+    EXPECT_EQ(settings({}, "path").shot.tracing.seed, 0);
+    EXPECT_EQ(settings({0, 1}, "path").shot.tracing.seed, 2);
+    EXPECT_HAS(joined(settings({0, 1}, "path").settings), "tracing.seed=2");
+    EXPECT_EQ(settings({0, 1}, "p=path,tracing.seed=1").shot.tracing.seed, 2);
+    EXPECT_EQ(settings({0, 1}, "p=path,tracing.seed=7").shot.tracing.seed, 7);
+    EXPECT_LACKS(joined(settings({0, 1}, "lighting_grid").settings), "tracing.seed");
+}
+
 TEST(Runs, ThatWouldShowSomethingElseAreRefused) {
     const std::string thin = refusal([] { plan_runs(shot(), parse({"thin=path,smoke.albedo=0.1"})); });
     EXPECT_HAS(thin, "thin, 4 spp");

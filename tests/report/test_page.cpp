@@ -5,7 +5,6 @@
 #include <cstdlib>
 
 #include "expect.h"
-#include "independent_draw.h"
 #include "machine.h"
 #include "page.h"
 #include "page_pictures.h"
@@ -139,17 +138,6 @@ TEST(Page, NeedsNothingFromElsewhere) {
         EXPECT_LACKS(page, text);
     for (const char* text : {"Leon Sorokin", "Dmitry Snisarenko", "Permission is hereby granted"})
         EXPECT_HAS(page, text) << "the licences stay with the code";
-}
-
-TEST(Margin, IsTakenAway) {
-    Shot shot;
-    shot.camera_given = true;
-    EXPECT_EQ(drawn_independently(shot).camera.width, shot.camera.width + 2);
-    EXPECT_EQ(drawn_independently(shot).camera.height, shot.camera.height);
-    const Picture wide{4, 2, {Rgb(0), Rgb(1), Rgb(2), Rgb(0), Rgb(0), Rgb(3), Rgb(4), Rgb(0)}};
-    const Picture inner = without_margin(wide);
-    EXPECT_EQ(inner.width, 2);
-    EXPECT_EQ(inner.pixels, (std::vector<Rgb>{Rgb(1), Rgb(2), Rgb(3), Rgb(4)}));
 }
 
 TEST(ShellWords, AreQuotedWhereTheyMustBe) {

@@ -99,6 +99,8 @@ TEST(Keys, BoundsAreChecked) {
         "output.frames_per_second=0",
         "certify.samples=1023",
         "certify.seed=-1",
+        "tracing.seed=-1",
+        "tracing.seed=1.5",
         "volume.file=",
         "colour_role=smoke",
     };
@@ -114,6 +116,7 @@ TEST(Keys, BoundsAreChecked) {
         "camera.width=640.0",
         "lighting.alpha=1",
         "certify.samples=1024",
+        "tracing.seed=1073741824",
         "lighting.levels=auto",
         "scattering.bounces=0",
         "scattering.bounces=all",

@@ -184,6 +184,36 @@ TEST(TracedPicture, VarianceIsThatOfTheHalvesOrMore) {
     }
 }
 
+// Sum over the picture, all channels, and its standard error by the spread of paths.
+std::pair<double, double> whole(const Image& image) {
+    double sum = 0.0, variance = 0.0;
+    for (const float v : colour(image, ""))
+        sum += v;
+    // Channels of a pixel go up and down together, pixels do not.
+    const std::vector<float> v = colour(image, "variance");
+    for (std::size_t i = 0; i < v.size(); i += 3)
+        variance += std::pow(std::sqrt(v[i]) + std::sqrt(v[i + 1]) + std::sqrt(v[i + 2]), 2);
+    return {sum, std::sqrt(variance)};
+}
+
+TEST(TracedPicture, OfAnotherSeedHasOtherNoiseAndTheSameMean) {
+    Shot shot = shot_of(16);
+    shot.tracing.seed = 1;
+    const Image other = render(shot, cloud()).picture.image;
+    const Image& first = a_render().picture.image;
+    const std::vector<float> a = colour(first, ""), b = colour(other, "");
+    std::size_t same = 0, lit = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        lit += a[i] > 0.0f;
+        same += a[i] > 0.0f && a[i] == b[i];
+    }
+    EXPECT_LT(same, lit / 100);
+    const auto [sum_a, error_a] = whole(first);
+    const auto [sum_b, error_b] = whole(other);
+    EXPECT_LE(std::abs(sum_a - sum_b), 4.0 * std::hypot(error_a, error_b));
+    EXPECT_LT(error_a, 0.01 * sum_a) << "not sampled enough";
+}
+
 TEST(TracedPicture, MorePathsAreLessNoise) {
     const Medium medium = cloud();
     const auto error = [&](int samples) {

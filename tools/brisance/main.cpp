@@ -170,10 +170,11 @@ void add_report_options(CLI::App& command, ReportOptions& options) {
 
 void add_render_options(CLI::App& command, RenderOptions& options) {
     add_shot_options(command, options);
-    command.add_option("--checkpoint", options.checkpoint,
-                       "Method path: keeps the state of the render in this file, with #### for the frame number, every "
-                       "tracing.checkpoint_seconds, and goes on from it where it exists: after being stopped, or for "
-                       "more paths than before. Its picture has the same bits as that of one uninterrupted render")
+    command
+        .add_option("--checkpoint", options.checkpoint,
+                    "Method path: keeps the state of the render in this file, with #### for the frame number, every "
+                    "tracing.checkpoint_seconds, and goes on from it where it exists: after being stopped, or for "
+                    "more paths than before. Its picture has the same bits as that of one uninterrupted render")
         ->type_name("FILE");
     command.add_flag("--certify", options.certify,
                      "Estimates the finished picture's error against the truth, with 95 % confidence intervals, from "
@@ -228,7 +229,8 @@ int run(int argc, char** argv) {
 
     TracePathOptions traced;
     StabilityOptions extreme;
-    CLI::App* const stability = app.add_subcommand("stability", "Stiff and extreme cases through every method: a table");
+    CLI::App* const stability =
+        app.add_subcommand("stability", "Stiff and extreme cases through every method: a table");
     stability->add_option("--methods", extreme.methods, "lighting_grid, path")
         ->check(CLI::IsMember({"lighting_grid", "path"}))
         ->delimiter(',');
@@ -236,7 +238,7 @@ int run(int argc, char** argv) {
     stability->add_flag("--markdown", extreme.markdown, "As a table for a document");
     stability->add_flag("--json", extreme.json, "As JSON");
 
-    CLI::App* const trace_path = app.add_subcommand("trace-path", "Prints one path of method path, to find its faults");
+    CLI::App* const trace_path = app.add_subcommand("trace-path", "Prints one path of method path, vertex by vertex");
     add_trace_path_options(*trace_path, traced);
 
     bool keys = false;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <set>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -88,11 +89,22 @@ int largest_budget(const std::vector<PlannedMethod>& methods) {
     return most;
 }
 
+// Runs and reference of one seed would begin with the same paths.
+int seed_of_reference(const std::vector<PlannedMethod>& methods) {
+    std::set<int> taken;
+    for (const PlannedMethod& method : methods)
+        for (const PlannedRun& run : method.runs)
+            if (run.shot.method == RenderMethod::Path)
+                taken.insert(run.shot.tracing.seed);
+    return free_seed(taken);
+}
+
 std::vector<std::string> reference_settings(const ReportOptions& options, const std::vector<PlannedMethod>& methods) {
     int samples = options.reference_samples;
     if (samples == 0 && options.reference_seconds == 0.0)
         samples = std::max(kLeastReferenceSamples, kReferenceOverBudget * largest_budget(methods));
     return {"method=path",
+            fmt::format("tracing.seed={}", seed_of_reference(methods)),
             samples > 0 ? fmt::format("tracing.samples={}", samples) : "tracing.samples=none",
             options.reference_seconds > 0.0 ? fmt::format("tracing.seconds={}", options.reference_seconds)
                                             : "tracing.seconds=none",
@@ -205,7 +217,7 @@ int run_report(const ReportOptions& options) {
     const Medium medium = load_medium(shot, frame.file, loading, progress);
     report.loading_seconds = watch.seconds();
     fix_camera(shot, medium);
-    const std::vector<PlannedMethod> planned = plan_runs(shot, methods);
+    const std::vector<PlannedMethod> planned = plan_runs(shot, methods, reference ? reference->seeds : std::set<int>());
     if (!reference)
         reference = make_reference(options, planned, shot, medium, progress);
     report.reference = reference->summary;

@@ -21,14 +21,32 @@ FrameFile only_frame(const Shot& shot, const TracePathOptions& options) {
     return frames.front();
 }
 
+const char* cell_name(int order) {
+    return order == 0 ? "V" : order == 1 ? "MV" : "MM";
+}
+
 std::string order_name(int order) {
-    const char* const cell = order == 0 ? "V" : order == 1 ? "MV" : "MM";
-    return fmt::format("{}{} {}", order, order + 1 == kPathOrders ? "+" : "", cell);
+    return fmt::format("{}{} {}", order, order + 1 == kPathOrders ? "+" : "", cell_name(order));
 }
 
 template <class T>
 std::string triple(const T& v) {
     return fmt::format("{} {} {}", v.x, v.y, v.z);
+}
+
+std::string place(const dvec3& p) {
+    return fmt::format("{:.9g} {:.9g} {:.9g}", p.x, p.y, p.z);
+}
+
+void print_vertices(const TracedPath& path) {
+    fmt::print(
+        "vertices: scatterings, place [m], throughput, radiance gathered along the segment that leaves it and "
+        "by a line toward the fire:\n");
+    for (const TracedVertex& vertex : path.vertices)
+        fmt::print("  {:<6} at {}  throughput {}  along {}  from fire {}{}\n",
+                   fmt::format("{} {}", vertex.order, cell_name(vertex.order)), place(vertex.position),
+                   triple(vertex.throughput), triple(vertex.along_segment), triple(vertex.from_fire),
+                   finite(vertex) ? "" : "  NOT FINITE");
 }
 
 }  // namespace
@@ -43,6 +61,7 @@ int run_trace_path(const TracePathOptions& options) {
     fmt::print("frame {}, pixel {} {}, sample {} (half {})\n", frame.frame, options.x, options.y, options.sample,
                options.sample % 2 == 0 ? "A" : "B");
     fmt::print("ray from {} m along {}\n", triple(path.ray.origin), triple(path.ray.direction));
+    print_vertices(path);
     fmt::print("{} scatterings followed; radiance R G B [W/(m^2 sr)] by scatterings:\n", path.scatterings);
     for (int order = 0; order < kPathOrders; ++order)
         if (path.orders[order] != Rgb(0.0f))

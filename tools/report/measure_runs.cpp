@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "independent_draw.h"
 #include "metrics/layers.h"
 #include "named_progress.h"
 #include "render/render_frame.h"
@@ -32,12 +31,16 @@ void complete(const Shot& shot, std::vector<std::string>& settings) {
         settings.push_back("output.layers.cells=true");
 }
 
-PlannedRun plan_run(const Shot& shot, const Method& method, const MethodStep& step) {
+PlannedRun plan_run(const Shot& shot, const Method& method, const MethodStep& step, const std::set<int>& taken) {
     PlannedRun run{step, method.settings, {}};
     run.settings.insert(run.settings.end(), step.settings.begin(), step.settings.end());
     complete(shot, run.settings);
     const std::string name = fmt::format("{}, {}", method.label, step.label);
     run.shot = shot_with(shot, name, run.settings);
+    if (run.shot.method == RenderMethod::Path && taken.contains(run.shot.tracing.seed)) {
+        run.settings.push_back(fmt::format("tracing.seed={}", free_seed(taken)));
+        run.shot = shot_with(shot, name, run.settings);
+    }
     const std::vector<std::string> changes = scene_differences(to_json(shot), to_json(run.shot));
     if (!changes.empty())
         throw Error(ExitCode::Usage, fmt::format("{}: a method may not change what is to be computed: {}", name,
@@ -76,14 +79,12 @@ LayerErrors errors_of(const Comparison& comparison, const std::optional<double>&
     return errors;
 }
 
-void compare_layers(const Image& image, bool margin, const ReportReference& reference, MeasuredRun& run,
-                    PagePictures& pictures) {
+void compare_layers(const Image& image, const ReportReference& reference, MeasuredRun& run, PagePictures& pictures) {
     const std::vector<std::string> there = picture_layers(image);
     for (const auto& [layer, target] : reference.layers) {
         if (std::find(there.begin(), there.end(), layer) == there.end())
             continue;
-        const Picture whole = picture_of(image, {layer}).picture;
-        const Picture picture = margin ? without_margin(whole) : whole;
+        const Picture picture = picture_of(image, {layer}).picture;
         const Comparison comparison = compare(picture, target);
         const auto noise = reference.summary.noise.find(layer);
         run.errors[layer] =
@@ -103,12 +104,19 @@ Shot shot_with(const Shot& shot, const std::string& source, const std::vector<st
     return result;
 }
 
-std::vector<PlannedMethod> plan_runs(const Shot& shot, const std::vector<Method>& methods) {
+int free_seed(const std::set<int>& taken) {
+    int seed = 0;
+    while (taken.contains(seed))
+        ++seed;
+    return seed;
+}
+
+std::vector<PlannedMethod> plan_runs(const Shot& shot, const std::vector<Method>& methods, const std::set<int>& taken) {
     std::vector<PlannedMethod> planned;
     for (const Method& method : methods) {
         planned.push_back({method, {}});
         for (const MethodStep& step : method.steps)
-            planned.back().runs.push_back(plan_run(shot, method, step));
+            planned.back().runs.push_back(plan_run(shot, method, step, taken));
     }
     return planned;
 }
@@ -116,13 +124,11 @@ std::vector<PlannedMethod> plan_runs(const Shot& shot, const std::vector<Method>
 void measure_runs(const std::vector<PlannedMethod>& methods, const Medium& medium, const ReportReference& reference,
                   const MeasureOptions& options, Report& report, PagePictures& pictures, Progress& progress) {
     for (std::size_t m = 0; m < methods.size(); ++m) {
-        const bool margin = reference.ordinary_draw && methods[m].method.unbiased;
         MethodResult result{methods[m].method, {}};
         for (std::size_t s = 0; s < methods[m].runs.size(); ++s) {
             const PlannedRun& planned = methods[m].runs[s];
             NamedProgress named(progress, fmt::format("{}, {}", result.method.label, planned.step.label));
-            Rendered rendered = render_repeatedly(margin ? drawn_independently(planned.shot) : planned.shot, medium,
-                                                  options.repeats, named);
+            Rendered rendered = render_repeatedly(planned.shot, medium, options.repeats, named);
             MeasuredRun run;
             run.id = fmt::format("method{}step{}", m + 1, s + 1);
             run.step = planned.step;
@@ -130,7 +136,7 @@ void measure_runs(const std::vector<PlannedMethod>& methods, const Medium& mediu
             run.samples_per_pixel = rendered.frame.metadata.samples_per_pixel;
             run.statistics = std::move(rendered.frame.statistics);
             named.stage("measuring");
-            compare_layers(rendered.frame.image, margin, reference, run, pictures);
+            compare_layers(rendered.frame.image, reference, run, pictures);
             result.runs.push_back(std::move(run));
         }
         report.methods.push_back(std::move(result));

@@ -1,6 +1,7 @@
 // Renders every step of every method and measures it.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,13 @@ struct PlannedMethod {
 };
 
 // The shots of all runs, from the one that was asked for. Throws Error Usage for settings that no shot accepts, and for
-// those that would change what is true instead of how it is computed.
-std::vector<PlannedMethod> plan_runs(const Shot& shot, const std::vector<Method>& methods);
+// those that would change what is true instead of how it is computed. Path-traced runs whose seed is `taken` get
+// another.
+std::vector<PlannedMethod> plan_runs(const Shot& shot, const std::vector<Method>& methods,
+                                     const std::set<int>& taken = {});
+
+// The smallest seed that is not taken.
+int free_seed(const std::set<int>& taken);
 
 // `shot` with settings over it; `source` stands for it in messages.
 Shot shot_with(const Shot& shot, const std::string& source, const std::vector<std::string>& settings);

@@ -9,7 +9,6 @@
 
 #include "core/error.h"
 #include "film/write_image.h"
-#include "independent_draw.h"
 #include "metrics/differences.h"
 #include "metrics/layers.h"
 #include "named_progress.h"
@@ -93,15 +92,26 @@ void check_given(const std::vector<GivenFile>& given, const Shot& shot, int fram
         throw Error(ExitCode::BadData, fmt::format("--reference: {}", fmt::join(lines, "; ")));
 }
 
+// Of a file that says it was path traced.
+std::optional<int> seed_of(const GivenFile& given) {
+    const auto stored = given.metadata.text.find(kShot);
+    if (stored == given.metadata.text.end())
+        return std::nullopt;
+    const auto json = nlohmann::json::parse(stored->second, nullptr, false);
+    if (!json.is_object() || json.value("method", "lighting_grid") != "path")
+        return std::nullopt;
+    return json.value("/tracing/seed"_json_pointer, 0);
+}
+
 void check_halves(const std::vector<GivenFile>& given, const ReportReference& reference) {
     const Reference& beauty = reference.layers.at("");
     if (!beauty.second)
         return;
-    // Half A of one render and half A of another begin with the same paths.
+    // Half A of one render and half A of another begin with the same paths when they have the same seed.
     const auto half = given[0].metadata.text.find("brisance/half"),
                other = given[1].metadata.text.find("brisance/half");
-    const bool same_half =
-        half != given[0].metadata.text.end() && other != given[1].metadata.text.end() && half->second == other->second;
+    const bool same_half = half != given[0].metadata.text.end() && other != given[1].metadata.text.end() &&
+                           half->second == other->second && seed_of(given[0]) == seed_of(given[1]);
     if (same_half || beauty.first.pixels == beauty.second->pixels)
         throw Error(ExitCode::BadData,
                     fmt::format("--reference: {} and {} {}: they are no independent halves", given[0].file.string(),
@@ -111,24 +121,18 @@ void check_halves(const std::vector<GivenFile>& given, const ReportReference& re
 
 void notice_origin(const std::vector<GivenFile>& given, ReportReference& reference) {
     for (const GivenFile& file : given) {
-        const auto stored = file.metadata.text.find(kShot);
-        if (stored == file.metadata.text.end()) {
+        if (!file.metadata.text.contains(kShot)) {
             reference.summary.notices.push_back(fmt::format(
                 "{} does not say of which shot it is: that it shows this one is taken on trust", file.file.string()));
             continue;
         }
-        const auto json = nlohmann::json::parse(stored->second, nullptr, false);
-        reference.ordinary_draw =
-            reference.ordinary_draw || (json.is_object() && json.value("method", "lighting_grid") == "path");
-        if (!json.is_object() || json.value("method", "lighting_grid") != "path")
+        if (const std::optional<int> seed = seed_of(file))
+            reference.seeds.insert(*seed);
+        else
             reference.summary.notices.push_back(
                 fmt::format("{} is no path-traced picture: errors are differences from it, not from the truth",
                             file.file.string()));
     }
-    if (reference.ordinary_draw)
-        reference.summary.notices.push_back(
-            "the path tracer's runs draw other random numbers than brisance render, so that they share none with the "
-            "reference");
 }
 
 }  // namespace
@@ -148,8 +152,9 @@ Picture mean_picture(const Reference& reference) {
 ReportReference trace_reference(const Shot& shot, const Medium& medium, Progress& progress) {
     const CostMeter meter;
     NamedProgress named(progress, "reference");
-    const RenderedFrame frame = render_medium(drawn_independently(shot), medium, named);
+    const RenderedFrame frame = render_medium(shot, medium, named);
     ReportReference reference;
+    reference.seeds = {shot.tracing.seed};
     ReferenceSummary& summary = reference.summary;
     summary.cost = meter.cost();
     summary.samples_per_pixel = frame.metadata.samples_per_pixel;
@@ -162,8 +167,8 @@ ReportReference trace_reference(const Shot& shot, const Medium& medium, Progress
         summary.notices.push_back(warning);
     for (const std::string& layer : report_layers())
         if (has_layer(frame.halves[0], layer))
-            reference.layers[layer] = {without_margin(picture_of(frame.halves[0], {layer}).picture),
-                                       without_margin(picture_of(frame.halves[1], {layer}).picture)};
+            reference.layers[layer] = {picture_of(frame.halves[0], {layer}).picture,
+                                       picture_of(frame.halves[1], {layer}).picture};
     measure_noise(reference);
     return reference;
 }

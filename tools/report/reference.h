@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -17,13 +18,13 @@ namespace brisance {
 struct ReportReference {
     ReferenceSummary summary;
     std::map<std::string, Reference> layers;  // "" the beauty, and the ledger's cells it has
-    bool ordinary_draw = false;               // traced with the random numbers of an ordinary render
+    std::set<int> seeds;                      // path-traced with these: a run that shares one looks better than it is
 };
 
 // Layers that a report compares, in this order: the beauty and the ledger's cells.
 const std::vector<std::string>& report_layers();
 
-// Both halves of a path-traced picture of `shot`, whose method and stop are set. The camera is given.
+// Both halves of a path-traced picture of `shot`, whose method, seed and stop are set.
 ReportReference trace_reference(const Shot& shot, const Medium& medium, Progress& progress);
 
 // One EXR, or two independent halves. Throws Error MissingInput or BadData; the latter names all in which it differs
