@@ -176,7 +176,7 @@ void Lighting::light_from_fire() {
         if (shot_.lighting.energy_balance) {
             BounceBalance balance;
             balance.emitted = 1.0;
-            scale = close_balance(pyramid_, lights.light.intensity, fluence_at_nodes(first, needed_), balance);
+            scale = close_balance(pyramid_, lights.light, fluence_at_nodes(first, needed_), balance);
             first.scale(scale);
             stage.detail["balance"].push_back(balance_row(balance, "0"));
         }
@@ -208,7 +208,7 @@ Gathered Lighting::gather_last_flight(const HierarchyLights& lights, int order, 
         return g;
     BounceBalance balance;
     balance.emitted = 1.0;
-    const Rgb scale = close_balance(pyramid_, lights.light.intensity, fluence_at_nodes(g, needed_), balance);
+    const Rgb scale = close_balance(pyramid_, lights.light, fluence_at_nodes(g, needed_), balance);
     g.scale(scale);
     if (smoke_)
         smoke_->scale = scale;

@@ -105,10 +105,24 @@ std::vector<std::size_t> pick_nodes(const std::vector<Rgb>& intensity, std::size
     return picks;
 }
 
+// Golden-ratio rotation of consecutive rays: well spread for any run of them.
+vec3 ray_direction(std::size_t ray) {
+    return sphere_direction(std::fmod(0.5 + ray * 0.7548776662466927, 1.0),
+                            std::fmod(0.5 + ray * 0.5698402909980532, 1.0));
+}
+
+Rgb directional_part(const float* coefficients, const std::array<float, kShMoments>& basis) {
+    Rgb sum(0.0f);
+    for (int m = 0; m < kShMoments; ++m)
+        for (int c = 0; c < 3; ++c)
+            sum[c] += coefficients[3 * m + c] * basis[m];
+    return sum;
+}
+
 }  // namespace
 
 CollisionEstimate estimate_collisions(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& intensity,
-                                      std::size_t rays) {
+                                      std::span<const float> directional, std::size_t rays) {
     CollisionEstimate estimate;
     const Medium& medium = pyramid.medium();
     const std::vector<std::size_t> picks = pick_nodes(intensity, rays);
@@ -121,18 +135,19 @@ CollisionEstimate estimate_collisions(const ExtinctionPyramid& pyramid, const st
             const std::size_t i = picks[r];
             const ivec3 node = medium.lattice.first_node(i / BrickLattice::kNodes) +
                                BrickLattice::node_in_brick(static_cast<int>(i % BrickLattice::kNodes));
-            // Golden-ratio rotation of consecutive rays: well spread for any run of them.
-            const double u = std::fmod(0.5 + r * 0.7548776662466927, 1.0),
-                         v = std::fmod(0.5 + r * 0.5698402909980532, 1.0);
-            exits.set(r, vec3(node - medium.reference_node), sphere_direction(u, v));
+            exits.set(r, vec3(node - medium.reference_node), ray_direction(r));
         },
         1024);
     const std::vector<float> collided = exits.march(1.0f);
     dvec3 hit[kBatches] = {}, emitted[kBatches] = {};
     for (std::size_t r = 0; r < picks.size(); ++r) {
-        const dvec3 colour = dvec3(intensity[picks[r]]) / double(luminance(intensity[picks[r]]));
-        hit[r % kBatches] += colour * double(collided[r]);
-        emitted[r % kBatches] += colour;
+        const std::size_t i = picks[r];
+        const double y = luminance(intensity[i]);
+        dvec3 toward(intensity[i]);
+        if (!directional.empty())
+            toward += dvec3(directional_part(&directional[i * 3 * kShMoments], sh_basis(ray_direction(r))));
+        hit[r % kBatches] += toward * (collided[r] / y);
+        emitted[r % kBatches] += dvec3(intensity[i]) / y;
     }
     const dvec3 all_hit = std::accumulate(hit, hit + kBatches, dvec3(0.0)),
                 all_emitted = std::accumulate(emitted, emitted + kBatches, dvec3(0.0));
@@ -160,31 +175,39 @@ dvec3 collided(const Medium& medium, const std::vector<Rgb>& fluence) {
 std::vector<float> collision_probabilities(const ExtinctionPyramid& pyramid, const std::vector<ivec3>& vertices,
                                            int level, int directions) {
     const Medium& medium = pyramid.medium();
-    std::vector<float> probability(vertices.size(), 0.0f);
+    std::vector<float> probability(vertices.size() * kCollisionMoments, 0.0f);
     const std::size_t batch = std::max<std::size_t>(1, (std::size_t{1} << 20) / directions);
+    // Starts come in space order and directions in order of height: an odd stride parts the two.
+    const auto start_of = [](std::size_t d, std::size_t starts) { return d * 27 % starts; };
     for (std::size_t first = 0; first < vertices.size(); first += batch) {
         const std::size_t count = std::min(batch, vertices.size() - first);
         ExitRays exits(pyramid, count * directions);
+        std::vector<vec3> way(count * directions);
         parallel_blocks(count, 256, [&](std::size_t begin, std::size_t end) {
             FootprintPicker picker(medium, medium.extinction, level);
             for (std::size_t k = begin; k < end; ++k) {
                 const std::vector<ivec3>& starts = picker.pick(vertices[first + k], directions);
                 Rng rng(Stream::EscapeRay, vertex_key(vertices[first + k]), 1);
                 const double turn_u = rng.next(), turn_v = rng.next();
-                // Starts come in space order and directions in order of height: an odd stride parts the two.
-                for (std::size_t d = 0; d < starts.size(); ++d)
-                    exits.set(k * directions + d, vec3(starts[d * 27 % starts.size()] - medium.reference_node),
-                              sphere_direction(std::fmod((d + turn_u) / directions, 1.0),
-                                               std::fmod(turn_v + d * kGoldenRatio, 1.0)));
+                for (std::size_t d = 0; d < starts.size(); ++d) {
+                    const std::size_t ray = k * directions + d;
+                    way[ray] = sphere_direction(std::fmod((d + turn_u) / directions, 1.0),
+                                                std::fmod(turn_v + d * kGoldenRatio, 1.0));
+                    exits.set(ray, vec3(starts[start_of(d, starts.size())] - medium.reference_node), way[ray]);
+                }
             }
         });
         const std::vector<float> collided = exits.march(1.0f);
-        for (std::size_t k = 0; k < count; ++k) {
-            float sum = 0.0f;
-            for (int d = 0; d < directions; ++d)
-                sum += collided[k * directions + d];
-            probability[first + k] = sum / directions;
-        }
+        parallel_blocks(count, 256, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t ray = begin * directions; ray < end * directions; ++ray) {
+                float* sums = &probability[(first + ray / directions) * kCollisionMoments];
+                const float share = collided[ray] / directions;
+                const auto basis = sh_basis(way[ray]);
+                sums[0] += share;
+                for (int m = 0; m < kShMoments; ++m)
+                    sums[1 + m] += share * basis[m];
+            }
+        });
     }
     return probability;
 }

@@ -1,8 +1,10 @@
 // The energy balance of a bounce: what is emitted either collides or escapes.
 #pragma once
 
+#include <span>
 #include <vector>
 
+#include "gathering/sh.h"
 #include "medium/extinction_pyramid.h"
 
 namespace brisance {
@@ -15,16 +17,20 @@ struct CollisionEstimate {
 };
 
 // `rays` rays start at the lights' nodes in proportion to luminance, systematically over the nodes' order, and leave in
-// stratified directions; each carries what its march to the edge of the medium absorbs and scatters. Unbiased for the
-// node lights but for the march's step. The spread of interleaved batches gives the standard error.
+// stratified directions; each carries what its march to the edge of the medium absorbs and scatters. `directional`:
+// degrees 1 and 2 of the lights, 24 per node (sh.h), or none. Unbiased for the node lights but for the march's step.
+// The spread of interleaved batches gives the standard error.
 CollisionEstimate estimate_collisions(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& intensity,
-                                      std::size_t rays);
+                                      std::span<const float> directional, std::size_t rays);
 
 // Power absorbed and scattered, over 4 pi: the exact integral of extinction * fluence of the two interpolated fields.
 dvec3 collided(const Medium& medium, const std::vector<Rgb>& fluence);
 
-// Collision probability averaged over all directions and over what each vertex stands for: `directions` stratified rays
-// per vertex (of the lattice 2^level coarser than the medium's), each from a node under its hat picked by extinction.
+// Collision probability over all directions and over what each vertex stands for: `directions` stratified rays per
+// vertex (of the lattice 2^level coarser than the medium's), each from a node under its hat picked by extinction.
+// kCollisionMoments numbers per vertex: the mean, and those of the probability times sh_basis. What collides of a
+// directional light is the sum of its coefficients times these.
+constexpr int kCollisionMoments = 1 + kShMoments;
 std::vector<float> collision_probabilities(const ExtinctionPyramid& pyramid, const std::vector<ivec3>& vertices,
                                            int level, int directions);
 

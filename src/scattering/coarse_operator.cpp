@@ -188,9 +188,9 @@ void CoarseOperator::balance_nodes(const ExtinctionPyramid& fine) {
                                BrickLattice::node_in_brick(int(i % BrickLattice::kNodes)));
         }
     const std::vector<float> collision = collision_probabilities(fine, vertices, level_, kCollisionDirections);
-    collision_.assign(mask_.size(), 0.0f);
+    collision_.assign(mask_.size() * kCollisionMoments, 0.0f);
     for (std::size_t k = 0; k < nodes.size(); ++k)
-        collision_[nodes[k]] = collision[k];
+        std::copy_n(&collision[k * kCollisionMoments], kCollisionMoments, &collision_[nodes[k] * kCollisionMoments]);
 
     // D K D (unit source) = 4 pi collision, by the symmetric fixed point D <- D sqrt(wanted / found).
     std::vector<LevelCost> costs;
@@ -200,7 +200,7 @@ void CoarseOperator::balance_nodes(const ExtinctionPyramid& fine) {
     for (int sweep = 0; sweep < kBalanceSweeps; ++sweep) {
         const Gathered found = gather(unit, costs, silent);
         for (std::size_t i : nodes) {
-            const float wanted = 4.0f * kPi * collision_[i];
+            const float wanted = 4.0f * kPi * collision_[i * kCollisionMoments];
             if (found.fluence[i] > 0.0f && wanted > 0.0f)
                 factor_[i] = std::clamp(factor_[i] * std::sqrt(wanted / found.fluence[i]), 0.2f, 5.0f);
         }
@@ -246,16 +246,23 @@ ScatteredLight CoarseOperator::restricted(const ScatteredLight& fine, const Bric
     return coarse;
 }
 
+dvec3 CoarseOperator::expected_collisions(const ScatteredLight& lights) const {
+    dvec3 sum(0.0);
+    for (std::size_t i = 0; i < mask_.size(); ++i) {
+        const float* collision = &collision_[i * kCollisionMoments];
+        sum += dvec3(lights.intensity[i]) * double(collision[0]);
+        for (int k = 0; k < 24 && !lights.directional.empty(); ++k)
+            sum[k % 3] += double(lights.directional[i * 24 + k]) * collision[1 + k / 3];
+    }
+    return sum;
+}
+
 ScatteredLight CoarseOperator::bounce(const ScatteredLight& lights, BounceBalance& balance,
                                       std::vector<LevelCost>& costs, Progress& progress) {
     Gathered arriving = gather(lights, costs, progress);
     prepare_interpolation(medium_.lattice, mask_, arriving);
-    dvec3 emitted(0.0), wanted(0.0);
-    for (std::size_t i = 0; i < mask_.size(); ++i) {
-        emitted += dvec3(lights.intensity[i]);
-        if (!collision_.empty())
-            wanted += dvec3(lights.intensity[i]) * double(collision_[i]);
-    }
+    const dvec3 emitted = total(lights.intensity);
+    const dvec3 wanted = collision_.empty() ? dvec3(0.0) : expected_collisions(lights);
     const dvec3 hit = collided(medium_, fluence_at_nodes(arriving, mask_));
     const double y = luminance(Rgb(emitted));
     balance.collided = luminance(Rgb(hit)) / y;

@@ -44,6 +44,7 @@ public:
 private:
     Gathered gather(const ScatteredLight& lights, std::vector<LevelCost>& costs, Progress& progress);
     void balance_nodes(const ExtinctionPyramid& fine);
+    dvec3 expected_collisions(const ScatteredLight& lights) const;  // power over 4 pi
 
     int level_;
     Medium medium_;  // coarse

@@ -152,10 +152,11 @@ void prepare_interpolation(const BrickLattice& lattice, const std::vector<std::u
             v = std::max(v, 0.0f);
 }
 
-Rgb close_balance(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& lights, const std::vector<Rgb>& fluence,
+Rgb close_balance(const ExtinctionPyramid& pyramid, const ScatteredLight& lights, const std::vector<Rgb>& fluence,
                   BounceBalance& balance) {
-    const CollisionEstimate marched = estimate_collisions(pyramid, lights, kCollisionRays);
-    const dvec3 emitted = total(lights);
+    const CollisionEstimate marched =
+        estimate_collisions(pyramid, lights.intensity, lights.directional, kCollisionRays);
+    const dvec3 emitted = total(lights.intensity);
     const dvec3 hit = collided(pyramid.medium(), fluence);
     const double y = luminance(Rgb(emitted));
     if (!(y > 0.0))

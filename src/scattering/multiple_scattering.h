@@ -79,7 +79,7 @@ HierarchyLights build_hierarchy(const Medium& medium, ScatteredLight light, int 
 
 // The factor that closes a bounce's balance, from a gather at all nodes with extinction; fills `balance`. Where rays
 // hardly ever meet the medium they know its collisions worse than the gather does, and are believed the less.
-Rgb close_balance(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& lights, const std::vector<Rgb>& fluence,
+Rgb close_balance(const ExtinctionPyramid& pyramid, const ScatteredLight& lights, const std::vector<Rgb>& fluence,
                   BounceBalance& balance);
 
 // Node fluence as colour triples, 0 where `mask` is 0.

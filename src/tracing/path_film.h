@@ -15,7 +15,8 @@ public:
     // With `orders` every order of scattering is kept apart, otherwise the ledger's cells V, MV, MM.
     PathFilm(int width, int height, bool orders);
 
-    // Adds what one camera ray brought to a pixel's half (0 or 1). Not for two threads on one pixel. False: not finite, and left out.
+    // Adds what one camera ray brought to a pixel's half (0 or 1). Not for two threads on one pixel. False: not finite,
+    // and left out.
     bool add(std::size_t pixel, int half, const PathSum& path);
 
     int width() const { return width_; }

@@ -2,6 +2,7 @@
 
 #include "film/whole_file.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/mount.h>
 #include <sys/resource.h>
@@ -165,9 +166,7 @@ std::string temporary_of(const fs::path& folder, const std::string& file, pid_t 
     char host[65] = {};
     gethostname(host, sizeof host - 1);
     const fs::path name(file);
-    return (folder / ("." + name.stem().string() + "." + host + "." + std::to_string(process) + ".tmp" +
-                      name.extension().string()))
-        .string();
+    return folder / fmt::format(".{}.{}.{}.tmp{}", name.stem().string(), host, process, name.extension().string());
 }
 
 pid_t process_that_has_ended() {
@@ -188,7 +187,7 @@ TEST(WholeFile, LeftoversOfKilledProcessesAreRemovedAndNoOthers) {
         temporary_of(folder.path(), "state", ended),
         temporary_of(folder.path(), "state.bin.bin", ended),
         temporary_of(folder.path(), "state.bin", ended) + "x",
-        (folder.path() / (".state.elsewhere." + std::to_string(ended) + ".tmp.bin")).string(),
+        folder / fmt::format(".state.elsewhere.{}.tmp.bin", ended),
     };
     for (const std::string& name : kept)
         std::ofstream(name) << "x";

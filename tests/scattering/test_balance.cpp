@@ -26,7 +26,7 @@ constexpr Ball kBalls[] = {{0.01f, 0.9925398}, {0.1f, 0.9288389}, {0.5f, 0.70727
 TEST(Balance, EscapeFromABallIsAsTabulated) {
     for (const Ball& b : kBalls) {
         const Lit lit(make_medium(glowing_ball(16, b.depth)));
-        const CollisionEstimate e = estimate_collisions(lit.pyramid, lit.intensity, 40000);
+        const CollisionEstimate e = estimate_collisions(lit.pyramid, lit.intensity, {}, 40000);
         EXPECT_EQ(e.rays, 40000u);
         // A voxel of haze round the ball lets more escape, the more a voxel absorbs: sigma h = depth / 16.
         EXPECT_NEAR((1.0 - e.fraction.x) / b.escape, 1.0, 0.004 + 0.012 * b.depth) << "optical radius " << b.depth;
@@ -38,7 +38,7 @@ TEST(Balance, EscapeFromABallIsAsTabulated) {
 TEST(Balance, CollisionsInTheThinnestSmokeKeepTheirDigits) {
     for (const float depth : {1e-3f, 1e-6f, 1e-12f}) {
         const Lit lit(make_medium(glowing_ball(16, depth)));
-        const CollisionEstimate e = estimate_collisions(lit.pyramid, lit.intensity, 40000);
+        const CollisionEstimate e = estimate_collisions(lit.pyramid, lit.intensity, {}, 40000);
         EXPECT_NEAR(e.fraction.x / (0.75 * depth), 1.0, 0.02) << "optical radius " << depth;
         EXPECT_LT(e.standard_error, 0.01 * e.fraction.x);
     }
@@ -61,7 +61,7 @@ TEST(Balance, EscapeIsThatOfTheFieldTheCameraSees) {
             escaped += extinction * std::exp(-lit.pyramid.optical_depth(from, to));
             emitted += extinction;
         }
-        const CollisionEstimate e = estimate_collisions(lit.pyramid, lit.intensity, 40000);
+        const CollisionEstimate e = estimate_collisions(lit.pyramid, lit.intensity, {}, 40000);
         EXPECT_NEAR((1.0 - e.fraction.x) / (escaped / emitted), 1.0, 0.02) << "optical radius " << depth;
     }
 }
@@ -76,11 +76,11 @@ TEST(Balance, EscapeFromTheTableIsThreeEpsilonOverFourTau) {
 
 TEST(Balance, TheStandardErrorIsHonest) {
     const Lit lit(make_medium(glowing_ball(10, 1.0f)));
-    const double truth = estimate_collisions(lit.pyramid, lit.intensity, 400000).fraction.x;
+    const double truth = estimate_collisions(lit.pyramid, lit.intensity, {}, 400000).fraction.x;
     double square_error = 0.0, square_claim = 0.0;
     int runs = 0;
     for (std::size_t rays = 900; rays < 1300; rays += 7, ++runs) {
-        const CollisionEstimate e = estimate_collisions(lit.pyramid, lit.intensity, rays);
+        const CollisionEstimate e = estimate_collisions(lit.pyramid, lit.intensity, {}, rays);
         square_error += (e.fraction.x - truth) * (e.fraction.x - truth);
         square_claim += e.standard_error * e.standard_error;
     }
@@ -93,15 +93,23 @@ TEST(Balance, ColoursCollideTogetherInGreySmoke) {
     Lit lit(make_medium(glowing_ball(10, 2.0f)));
     for (Rgb& i : lit.intensity)
         i *= Rgb(1.0f, 0.3f, 0.0f);
-    const CollisionEstimate e = estimate_collisions(lit.pyramid, lit.intensity, 5000);
+    const CollisionEstimate e = estimate_collisions(lit.pyramid, lit.intensity, {}, 5000);
     EXPECT_NEAR(e.fraction.x, e.fraction.y, 1e-6);
     EXPECT_EQ(e.fraction.z, 0.0);
+}
+
+// The first of every vertex' moments.
+std::vector<float> means(const std::vector<float>& moments) {
+    std::vector<float> first;
+    for (std::size_t i = 0; i < moments.size(); i += kCollisionMoments)
+        first.push_back(moments[i]);
+    return first;
 }
 
 TEST(Balance, FromTheMiddleOfABallEscapesOneTransmittance) {
     for (const float depth : {0.1f, 1.0f, 4.0f}) {
         const Lit lit(make_medium(glowing_ball(16, depth)));
-        for (const float p : collision_probabilities(lit.pyramid, std::vector<ivec3>(3, ivec3(0)), 0, 64))
+        for (const float p : means(collision_probabilities(lit.pyramid, std::vector<ivec3>(3, ivec3(0)), 0, 64)))
             EXPECT_NEAR((1.0f - p) / std::exp(-depth), 1.0f, 0.02f);
     }
 }
@@ -110,7 +118,7 @@ TEST(Balance, FromTheMiddleOfABallEscapesOneTransmittance) {
 TEST(Balance, FromTheSurfaceMoreThanHalfEscapes) {
     const Lit lit(make_medium(glowing_ball(16, 2.0f)));
     const std::vector<ivec3> surface = {{16, 0, 0}, {0, -16, 0}, {0, 0, 16}};
-    for (const float p : collision_probabilities(lit.pyramid, surface, 0, 512)) {
+    for (const float p : means(collision_probabilities(lit.pyramid, surface, 0, 512))) {
         EXPECT_GT(1.0f - p, 0.54f);
         EXPECT_LT(1.0f - p, 0.63f);
     }
@@ -125,7 +133,7 @@ TEST(Balance, CoarseVerticesEscapeAsTheSmokeTheyStandForDoes) {
         for (int y = -reach; y <= reach; ++y)
             for (int z = -reach; z <= reach; ++z)
                 vertices.emplace_back(x, y, z);
-    const std::vector<float> probability = collision_probabilities(lit.pyramid, vertices, level, 256);
+    const std::vector<float> probability = means(collision_probabilities(lit.pyramid, vertices, level, 256));
     double escaped = 0.0, all = 0.0;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         const std::int64_t n = lit.pyramid.lattice(level).find_node(vertices[i]);
@@ -146,10 +154,36 @@ TEST(Balance, CollisionsAreTheIntegralOfExtinctionTimesFluence) {
     EXPECT_EQ(sum.z, 0.0);
 }
 
+// Light toward x, from the ball's face on that side, meets hardly anything; toward -x it crosses the ball. Both ways of
+// counting must see that, and agree: rays of the lights, and moments of the nodes.
+TEST(Balance, DirectionalLightCollidesWhereItGoes) {
+    const Lit lit(make_medium(glowing_ball(12, 1.5f)));
+    const ivec3 face(12, 0, 0);
+    const auto node = std::size_t(lit.medium.lattice.find_node(face));
+    const std::vector<float> moments = collision_probabilities(lit.pyramid, {face}, 0, 4096);
+    for (const float sign : {1.0f, -1.0f}) {
+        std::vector<Rgb> intensity(lit.intensity.size(), Rgb(0.0f));
+        std::vector<float> directional(intensity.size() * 24, 0.0f);
+        intensity[node] = Rgb(1.0f);
+        const auto basis = sh_basis({sign, 0.0f, 0.0f});
+        float by_moments = moments[0];
+        for (int m = 0; m < 3; ++m) {
+            const float coefficient = 0.8f * 4.0f / 3.0f * 3.14159265f * basis[m];  // 1 + 0.8 cos
+            by_moments += coefficient * moments[1 + m];
+            for (int c = 0; c < 3; ++c)
+                directional[node * 24 + 3 * m + c] = coefficient;
+        }
+        const CollisionEstimate e = estimate_collisions(lit.pyramid, intensity, directional, 100000);
+        EXPECT_NEAR(e.fraction.x / by_moments, 1.0, 0.01);
+        const double isotropic = moments[0];
+        EXPECT_LT(sign * (e.fraction.x / isotropic - 1.0), -0.2);
+    }
+}
+
 TEST(Balance, WithoutLightsNothingCollides) {
     const Lit lit(make_medium(glowing_ball(10, 1.0f)));
     const std::vector<Rgb> dark(lit.intensity.size(), Rgb(0.0f));
-    const CollisionEstimate e = estimate_collisions(lit.pyramid, dark, 100);
+    const CollisionEstimate e = estimate_collisions(lit.pyramid, dark, {}, 100);
     EXPECT_EQ(e.rays, 0u);
     EXPECT_EQ(e.fraction, dvec3(0.0));
 }
