@@ -55,8 +55,8 @@ std::vector<NearField::Tap> line_taps(const ivec3& o, double metres) {
     return list;
 }
 
-// Gauss-free integral of exp(-s r) exp(-r^2 / w^2) over r >= 0, by Simpson's rule on the scale that decays first.
-double windowed_integral(double s, double w) {
+// Integral of r^power exp(-s r) exp(-r^2 / w^2) over r >= 0, by Simpson's rule on the scale that decays first.
+double windowed_integral(int power, double s, double w) {
     const double reach = std::min(6.0 * w, s > 0.0 ? 40.0 / s : 1e300);
     constexpr int n = 400;
     const double step = reach / n;
@@ -64,26 +64,29 @@ double windowed_integral(double s, double w) {
     for (int i = 0; i <= n; ++i) {
         const double r = i * step;
         const double weight = i == 0 || i == n ? 1.0 : (i % 2 ? 4.0 : 2.0);
-        sum += weight * std::exp(-s * r - r * r / (w * w));
+        sum += weight * (power == 0 ? 1.0 : r) * std::exp(-s * r - r * r / (w * w));
     }
     return sum * step / 3.0;
 }
 
-// kappa of a voxel far from cubic: the mean over the ball of the voxel's volume, seen from its centre (methods: the
-// exact lattice correction would need a window over the longest edge).
-double ball_self_kernel(double s, double volume) {
+// kappa and kappa_1 of a voxel far from cubic: the means over the ball of the voxel's volume, seen from its centre
+// (methods: the exact lattice correction would need a window over the longest edge).
+NearField::SelfKernels ball_self_kernels(double s, double volume) {
     const double a = std::cbrt(3.0 * volume / (4.0 * kPi));
-    const double tau = s * a;
-    return 4.0 * kPi / volume * a * (tau > 1e-8 ? -std::expm1(-tau) / tau : 1.0);
+    const double tau = s * a, shell = 4.0 * kPi / volume;
+    const double light = tau > 1e-8 ? -std::expm1(-tau) / tau : 1.0;
+    const double flux = tau > 1e-3 ? (-std::expm1(-tau) - tau * std::exp(-tau)) / (tau * tau) : 0.5 - tau / 3.0;
+    return {float(shell * a * light), float(shell * a * a * flux / 3.0)};
 }
 
 }  // namespace
 
 NearField::NearField(const mat3& local_from_index, float radius, bool shadows)
     : local_from_index_(local_from_index),
+      index_from_local_(glm::inverse(local_from_index)),
       spacing_(std::cbrt(std::abs(glm::determinant(local_from_index)))),
       shadows_(shadows) {
-    const mat3 inverse = glm::transpose(glm::inverse(local_from_index));
+    const mat3 inverse = glm::transpose(index_from_local_);
     ivec3 reach;
     for (int a = 0; a < 3; ++a)
         reach[a] = std::min(kMaxMargin, static_cast<int>(2.0f * radius * glm::length(inverse[a])));
@@ -104,21 +107,28 @@ NearField::NearField(const mat3& local_from_index, float radius, bool shadows)
 
 namespace {
 
-// The lattice correction by a Gaussian window w: K = w K + (1 - w) K, where (1 - w) K is smooth and the lattice sums it
-// without error, its value 1 / window^2 at the origin included.
-double windowed_self_kernel(double s, double window, double volume, const std::vector<double>& distances) {
-    double kappa = 4.0 * kPi * windowed_integral(s, window) / volume + 1.0 / (window * window);
-    for (double d : distances)
-        kappa -= std::exp(-s * d - d * d / (window * window)) / (d * d);
-    return kappa;
+// The lattice corrections by a Gaussian window w: K = w K + (1 - w) K, where (1 - w) K is smooth and the lattice sums
+// it without error, its value at the origin included: 1 / window^2 of 1/r^2, and 0 of 1/r.
+NearField::SelfKernels windowed_self_kernels(double s, double window, double volume,
+                                             const std::vector<double>& distances) {
+    double light = 4.0 * kPi * windowed_integral(0, s, window) / volume + 1.0 / (window * window);
+    double flux = 4.0 * kPi * windowed_integral(1, s, window) / volume;
+    for (double d : distances) {
+        const double w = std::exp(-s * d - d * d / (window * window));
+        light -= w / (d * d);
+        flux -= w / d;
+    }
+    return {float(light), float(flux / 3.0)};
 }
 
 // Where extinction itself is the window.
-double direct_self_kernel(double s, double volume, const std::vector<double>& distances) {
-    double kappa = 4.0 * kPi / (s * volume);
-    for (double d : distances)
-        kappa -= std::exp(-s * d) / (d * d);
-    return kappa;
+NearField::SelfKernels direct_self_kernels(double s, double volume, const std::vector<double>& distances) {
+    double light = 4.0 * kPi / (s * volume), flux = 4.0 * kPi / (s * s * volume);
+    for (double d : distances) {
+        light -= std::exp(-s * d) / (d * d);
+        flux -= std::exp(-s * d) / d;
+    }
+    return {float(light), float(flux / 3.0)};
 }
 
 // Distances of all lattice nodes but the origin within `reach` [m].
@@ -153,19 +163,21 @@ void NearField::tabulate_self_kernel() {
     parallel_for(kSelfEntries, [&](std::size_t i) {
         const double u = std::min(double(i) / (kSelfEntries - 1), 0.9999);
         const double s = u / (1.0 - u) / h;
-        const double kappa = !nearly_cubic       ? ball_self_kernel(s, volume)
-                             : s * longest < 0.7 ? windowed_self_kernel(s, window, volume, distances)
-                                                 : direct_self_kernel(s, volume, distances);
-        self_[i] = static_cast<float>(kappa * h * h * (1.0 + s * h));
+        const SelfKernels k = !nearly_cubic       ? ball_self_kernels(s, volume)
+                              : s * longest < 0.7 ? windowed_self_kernels(s, window, volume, distances)
+                                                  : direct_self_kernels(s, volume, distances);
+        const double x = 1.0 + s * h;
+        self_[i] = {float(k.light * h * h * x), float(k.flux * h * x * x)};
     });
 }
 
-float NearField::self_kernel(float s) const {
+NearField::SelfKernels NearField::self_kernels(float s) const {
     const float x = shadows_ ? s * spacing_ : 0.0f;
     const float u = x / (1.0f + x) * (kSelfEntries - 1);
     const int i = std::min(static_cast<int>(u), kSelfEntries - 2);
-    const float value = self_[i] + (u - i) * (self_[i + 1] - self_[i]);
-    return value / (spacing_ * spacing_ * (1.0f + x));
+    const auto between = [&](float SelfKernels::*k) { return self_[i].*k + (u - i) * (self_[i + 1].*k - self_[i].*k); };
+    const float h = spacing_, one = 1.0f + x;
+    return {between(&SelfKernels::light) / (h * h * one), between(&SelfKernels::flux) / (h * one * one)};
 }
 
 void NearField::gather(const Input& in, Gathered& out) const {

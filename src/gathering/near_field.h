@@ -9,7 +9,10 @@
 //  - The kernel is the singular 1/d^2 itself. What it leaves out, the node's own light, is the self term
 //      kappa(s) = (1/V) integral exp(-s r) / r^2 dV - sum over o != 0 of exp(-s |o|) / |o|^2,
 //    the correction that makes the punctured lattice sum exact for smooth light in a homogeneous medium (and makes such
-//    a medium absorb exactly what it emits, from sigma h = 0 to infinity). Nothing is clamped.
+//    a medium absorb exactly what it emits, from sigma h = 0 to infinity). Nothing is clamped. Light that changes
+//    across the node arrives with a flux of its own, -kappa_1 grad I, for which the sum leaves out
+//      kappa_1(s) = (1/3V) integral exp(-s r) / r dV - (1/3) sum over o != 0 of exp(-s |o|) / |o|;
+//    phase functions that are not isotropic see it.
 #pragma once
 
 #include <cstdint>
@@ -38,8 +41,13 @@ public:
     // Adds to `out`, whose arrays are planar over the lattice's nodes.
     void gather(const Input& input, Gathered& out) const;
 
-    // kappa at extinction s [1/m]; in 1/m^2.
-    float self_kernel(float s) const;
+    // kappa [1/m^2] and kappa_1 [1/m] at extinction s [1/m].
+    struct SelfKernels {
+        float light, flux;
+    };
+    SelfKernels self_kernels(float s) const;
+    // Rows turn differences per node into derivatives per metre.
+    const mat3& index_from_local() const { return index_from_local_; }
     std::size_t separations() const { return stencil_.size(); }
 
     struct Tap {
@@ -59,12 +67,13 @@ public:
 private:
     void tabulate_self_kernel();
 
-    mat3 local_from_index_;
+    mat3 local_from_index_, index_from_local_;
     float spacing_;
     bool shadows_;
     int margin_ = 1;
     std::vector<Separation> stencil_;
-    std::vector<float> self_;  // kappa h^2 (1 + s h) over u = s h / (1 + s h)
+    // kappa h^2 (1 + s h) and kappa_1 h (1 + s h)^2 over u = s h / (1 + s h)
+    std::vector<SelfKernels> self_;
 };
 
 }  // namespace brisance

@@ -1,5 +1,6 @@
 #include "gathering/near_kernels.h"
 
+#include <algorithm>
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
@@ -75,19 +76,72 @@ HWY_INLINE void add_separation(D d, const FlatStencil& stencil, const FlatSepara
     }
 }
 
-// The node's own light: isotropic, attenuated by the extinction around it (averaged with the mass matrix's weights).
-void add_self(const NearField& field, const NearBrick& b, int at, int node) {
+// Extinction around a node, averaged with the mass matrix's weights.
+float extinction_around(const NearBrick& b, int at) {
     float sigma = 0.0f;
     constexpr float weight[3] = {1.0f / 6.0f, 2.0f / 3.0f, 1.0f / 6.0f};
     for (int k = 0; k < 27; ++k)
         sigma += weight[k / 9] * weight[k / 3 % 3] * weight[k % 3] *
                  b.extinction[at + ((k / 9 - 1) * b.wide + k / 3 % 3 - 1) * b.wide + k % 3 - 1];
-    const float kappa = field.self_kernel(sigma);
+    return sigma;
+}
+
+// Derivative of a plane of the brick's box at a node, by central differences [1/m].
+vec3 gradient(const NearField& field, const NearBrick& b, const float* plane, int at) {
+    const auto half = [&](int stride) { return 0.5f * (plane[at + stride] - plane[at - stride]); };
+    return vec3(half(b.wide * b.wide), half(b.wide), half(1)) * field.index_from_local();
+}
+
+// Where sh_basis keeps x, y and z.
+constexpr int kAxisMoment[3] = {2, 0, 1};
+
+// One colour of what a node's own light brings it: by the direction of that light, and by its change across the node.
+struct SelfLight {
+    float fluence;
+    vec3 flux;
+    float degree2[kShMoments - 3];
+};
+
+SelfLight self_light(const NearField& field, const NearField::SelfKernels& kernels, const NearBrick& b, int at, int c) {
+    SelfLight self{b.intensity[c * b.plane + at] * kernels.light, vec3(0.0f), {}};
+    if (!b.scattered && !b.moments)
+        return self;
+    self.flux = -kernels.flux * gradient(field, b, b.intensity + c * b.plane, at);
+    // No more of it than there is light to make it: at the edge of a fire a difference of nodes is no derivative.
+    self.flux *= std::min(1.0f, self.fluence / std::max(glm::length(self.flux), 1e-37f));
+    if (!b.directional)
+        return self;
+    for (int a = 0; a < 3; ++a) {
+        // The mean of cos^2 over the sphere is a third.
+        const float* slope = b.directional + (3 * kAxisMoment[a] + c) * b.plane;
+        self.flux[a] += kernels.light * kSh1 / 3.0f * slope[at];
+        self.fluence -= kernels.flux * kSh1 * gradient(field, b, slope, at)[a];
+    }
+    for (int m = 3; m < kShMoments; ++m)
+        self.degree2[m - 3] = kernels.light / (4.0f * kPi) * b.directional[(3 * m + c) * b.plane + at];
+    return self;
+}
+
+void add_self(const NearField& field, const NearBrick& b, int at, int node) {
+    const NearField::SelfKernels kernels = field.self_kernels(extinction_around(b, at));
+    const float g = b.mean_cosine;
     for (int c = 0; c < 3; ++c) {
-        const float arriving = b.intensity[c * b.plane + at] * kappa;
-        b.fluence[c * b.out_plane + node] += arriving;
-        if (b.scattered)
-            b.scattered[c * b.out_plane + node] += arriving / (4.0f * kPi);
+        const SelfLight self = self_light(field, kernels, b, at, c);
+        b.fluence[c * b.out_plane + node] += self.fluence;
+        if (b.scattered) {
+            const vec3& out = b.toward_camera[node];
+            const auto basis = sh_basis(out);
+            float sum = (self.fluence + 3.0f * g * glm::dot(self.flux, out)) / (4.0f * kPi);
+            for (int m = 3; m < kShMoments; ++m)
+                sum += sh_phase_factor(m, g) * self.degree2[m - 3] * basis[m];
+            b.scattered[c * b.out_plane + node] += sum;
+        }
+        if (!b.moments)
+            continue;
+        for (int a = 0; a < 3; ++a)
+            b.moments[(3 * kAxisMoment[a] + c) * b.out_plane + node] += kSh1 * self.flux[a];
+        for (int m = 3; m < kShMoments; ++m)
+            b.moments[(3 * m + c) * b.out_plane + node] += self.degree2[m - 3];
     }
 }
 

@@ -11,12 +11,15 @@ using namespace testing;
 
 // What a punctured cubic lattice of 1/d^2 lacks of its integral, times h^2.
 constexpr double kCubicLattice = 8.9136;
+// A third of what one of 1/d lacks, times h.
+constexpr double kCubicFlux = 2.8373 / 3.0;
 
 TEST(NearField, SelfLightWithoutExtinctionIsTheLatticeConstant) {
     for (const float h : {1.0f, 0.01f, 30.0f}) {
         const NearField field(mat3(h), 2.0f * h, true);
-        EXPECT_NEAR(field.self_kernel(0.0f) * h * h, kCubicLattice, 0.01);
-        EXPECT_NEAR(field.self_kernel(1e-7f / h) * h * h, kCubicLattice, 0.01);
+        EXPECT_NEAR(field.self_kernels(0.0f).light * h * h, kCubicLattice, 0.01);
+        EXPECT_NEAR(field.self_kernels(1e-7f / h).light * h * h, kCubicLattice, 0.01);
+        EXPECT_NEAR(field.self_kernels(0.0f).flux * h, kCubicFlux, 0.005);
     }
 }
 
@@ -25,7 +28,7 @@ TEST(NearField, SelfLightInDenseSmokeIsAllThatIsEmitted) {
         const NearField field(mat3(h), 2.0f * h, true);
         for (const double tau : {30.0, 1e2, 1e4, 1e6, 1e9}) {
             const double all = 4.0 * kPiExact / (tau / h * h * h * h);
-            EXPECT_NEAR(field.self_kernel(float(tau / h)) / all, 1.0, 2e-3) << "optical thickness " << tau;
+            EXPECT_NEAR(field.self_kernels(float(tau / h)).light / all, 1.0, 2e-3) << "optical thickness " << tau;
         }
     }
 }
@@ -34,16 +37,21 @@ TEST(NearField, SelfLightInDenseSmokeIsAllThatIsEmitted) {
 TEST(NearField, SelfLightClosesTheBalanceOfUniformSmoke) {
     const NearField field(mat3(1.0f), 2.0f, true);
     for (const double s : {0.4, 0.7, 1.0, 1.7, 3.0, 8.0}) {
-        double lattice = 0.0;
+        double lattice = 0.0, flux = 0.0;
         const int reach = static_cast<int>(35.0 / s);
         for (int x = -reach; x <= reach; ++x)
             for (int y = -reach; y <= reach; ++y)
                 for (int z = -reach; z <= reach; ++z) {
                     const double d2 = double(x) * x + double(y) * y + double(z) * z;
-                    if (d2 > 0.0 && d2 <= double(reach) * reach)
-                        lattice += std::exp(-s * std::sqrt(d2)) / d2;
+                    if (d2 == 0.0 || d2 > double(reach) * reach)
+                        continue;
+                    lattice += std::exp(-s * std::sqrt(d2)) / d2;
+                    flux += std::exp(-s * std::sqrt(d2)) / (3.0 * std::sqrt(d2));
                 }
-        EXPECT_NEAR((field.self_kernel(float(s)) + lattice) / (4.0 * kPiExact / s), 1.0, 3e-3) << "s h = " << s;
+        EXPECT_NEAR((field.self_kernels(float(s)).light + lattice) / (4.0 * kPiExact / s), 1.0, 3e-3) << "s h = " << s;
+        // Light of slope 1 sends its flux through every node: (1/3V) integral exp(-s r) / r dV.
+        EXPECT_NEAR((field.self_kernels(float(s)).flux + flux) / (4.0 * kPiExact / (3.0 * s * s)), 1.0, 3e-3)
+            << "s h = " << s;
     }
 }
 
@@ -53,7 +61,7 @@ TEST(NearField, SelfLightNeverTurnsNegativeNorGrowsWithExtinction) {
         const NearField field(lattice, 2.0f * std::cbrt(std::abs(glm::determinant(lattice))), true);
         float before = 1e30f;
         for (float s = 1e-4f; s < 1e5f; s *= 1.2f) {
-            const float kappa = field.self_kernel(s);
+            const float kappa = field.self_kernels(s).light;
             ASSERT_GE(kappa, 0.0f) << s;
             ASSERT_LE(kappa, before * 1.0001f) << s;
             before = kappa;
