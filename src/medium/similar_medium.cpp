@@ -15,6 +15,10 @@ constexpr float kSkinDepth = 2.0f, kMostDepth = 4.0f;
 constexpr float kSteepest = 4.0f;  // a voxel's extinction over that of its thinnest neighbour, once above kSkinDepth
 constexpr double kMostAbsorption = 0.05;  // share of extinction beyond which absorption is no longer raised
 
+// Mean cosine of backward scattering at least: of a ball of optical radius 2, pictures of g = -0.9 and -0.999 are then
+// right to 2 and 3 %, and without to 13 and 180 %. Moments stop at degree 2, which light scattered once does not mind.
+constexpr double kSharpestOfAllOrders = -0.7, kSharpest = -0.8;
+
 // What a node becomes.
 struct Similar {
     double extinction;
@@ -81,10 +85,11 @@ float forward_share(float mean_cosine) {
 
 std::optional<Medium> similar_medium(const Medium& medium, bool all_orders) {
     const double share = all_orders ? forward_share(medium.mean_cosine) : 0.0;
-    if (share == 0.0 && medium.max_extinction * medium.spacing <= kSkinDepth)
+    const double sharpest = all_orders ? kSharpestOfAllOrders : kSharpest;
+    if (share == 0.0 && medium.mean_cosine >= sharpest && medium.max_extinction * medium.spacing <= kSkinDepth)
         return std::nullopt;
     Medium m = medium;
-    m.mean_cosine = static_cast<float>((medium.mean_cosine - share) / (1.0 - share));
+    m.mean_cosine = static_cast<float>(std::max((medium.mean_cosine - share) / (1.0 - share), sharpest));
     m.albedo_nodes.resize(m.extinction.size());
     const std::vector<float> limit = limits(medium);
     parallel_for(

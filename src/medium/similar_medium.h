@@ -1,6 +1,6 @@
 // The medium that scattered light is followed through, where the medium itself is too stiff for lights on a lattice.
 //
-// A lattice cannot tell where in a voxel light comes from. That matters in two cases, and in both there is a milder
+// A lattice cannot tell where in a voxel light comes from. That matters in three cases, and in each there is a milder
 // medium from which nearly the same light comes:
 //  - Many mean free paths to a voxel. What is seen of such smoke comes from a skin far thinner than a voxel. Layers of
 //    constant albedo look the same however optical depth is laid out in them, so extinction is held down until a voxel
@@ -14,6 +14,7 @@
 //    the peak has hardly scattered: a share f of all scattering counts as none (delta scaling: Joseph, Wiscombe,
 //    Weinman, The delta-Eddington approximation for radiative flux transfer, J. Atmos. Sci. 33, 1976; Wiscombe, The
 //    delta-M method, 34, 1977), with f = g^3, so that moments 0 to 2 are kept by the rest.
+//  - A backward peak as narrow. It cannot count as no scattering, and is widened.
 // The camera still sees emission through the medium itself.
 #pragma once
 

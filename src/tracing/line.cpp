@@ -38,6 +38,9 @@ public:
         return sum;
     }
 
+    // Two samples that mirror each other: what changes linearly along the cell is known exactly.
+    Rgb estimate_pair(double xi) const { return 0.5f * (estimate(xi) + estimate(1.0 - xi)); }
+
 private:
     vec3 at(double u) const { return point_in_brick(cell_, cell_.begin + u * metres_); }
 
@@ -222,7 +225,7 @@ void LineTracker::follow_camera(const Ray& ray, Rng& rng, CameraLine& line) cons
             const double tau = std::max(0.0, sigma.integral(1.0) * (cell.end - cell.begin));
             if (burns && field_.cell_burns(cell))
                 line.radiance +=
-                    float(visibility.of(depth)) * CellEmission(field_, cell, sigma, tau).estimate(places.next());
+                    float(visibility.of(depth)) * CellEmission(field_, cell, sigma, tau).estimate_pair(places.next());
             if (tau > 0.0)
                 line.cells.push_back({cell, depth, depth + tau});
             depth += tau;

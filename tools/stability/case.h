@@ -55,8 +55,9 @@ Measure every_pixel_is(const Rgb& radiance, const std::string& layer = "");
 using RadianceOfRay = std::function<double(const dvec3& origin, const dvec3& direction)>;
 Measure every_ray_is(const RadianceOfRay& radiance, const std::string& layer = "");
 
-// Like the picture of another scene by the same method.
+// Like the picture of another scene by the same method, or the same path by path: noise is no excuse then.
 Measure same_picture_as(const std::function<Scene()>& other);
+Measure same_paths_as(const std::function<Scene()>& other);
 
 // Power through the picture, times 4 pi: for media seen from afar that look the same from everywhere. `power` is over
 // 4 pi [W/sr].

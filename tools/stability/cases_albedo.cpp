@@ -11,7 +11,7 @@ constexpr int kNodes = 12;
 constexpr double kNearlyOne = 1.0 - 1e-7;  // 1 - 1.2e-7 in single precision
 
 Tolerance of_the_ball() {
-    return {0.03, 0.005, "the hierarchy's own error in a ball of 12 voxels' radius"};
+    return {0.03, 0.015, "a ball of 12 voxels' radius is not quite round, and its rim is a voxel wide"};
 }
 
 Measure middle(double radius, double albedo, double emission) {
@@ -19,6 +19,14 @@ Measure middle(double radius, double albedo, double emission) {
         const double truth = ScatteringBall(radius, albedo, emission).radiance(0.0);
         return every_pixel_is(Rgb(static_cast<float>(truth)))(scene, frame, method, render);
     };
+}
+
+// A voxel of a thick ball is more than a mean free path: what its steps do is no longer what a smooth surface does.
+void hold_against_the_tracer(Case& c) {
+    c.truth = "path tracer";
+    c.tolerance = {0.05, 0.005, "1.7 mean free paths to a voxel"};
+    c.measure = like_the_reference(1024);
+    c.quick = false;
 }
 
 Case isothermal(const std::string& name, double radius, double albedo) {
@@ -29,7 +37,9 @@ Case isothermal(const std::string& name, double radius, double albedo) {
     c.scene = [=] { return scene_of(isothermal_ball(kNodes, radius, albedo), camera_on_centre(8), 512); };
     const double absorbed = 1.0 - double(static_cast<float>(albedo));
     c.measure = middle(radius, static_cast<float>(albedo), absorbed);
-    c.quick = albedo == kNearlyOne && radius < 5.0;
+    c.quick = albedo == kNearlyOne;
+    if (radius > 5.0)
+        hold_against_the_tracer(c);
     return c;
 }
 
@@ -41,7 +51,9 @@ Case direct(const std::string& name, double radius, double albedo) {
     c.tolerance = of_the_ball();
     c.scene = [=] { return scene_of(burning_ball(kNodes, radius, albedo), camera_on_centre(8), 512); };
     c.measure = middle(radius, static_cast<float>(albedo), 1.0 / radius);
-    c.quick = albedo == 1.0 && radius < 5.0;
+    c.quick = albedo == 1.0;
+    if (radius > 5.0)
+        hold_against_the_tracer(c);
     return c;
 }
 
@@ -49,7 +61,7 @@ Case conservation(const std::string& name, double radius) {
     Case c;
     c.name = "albedo/" + name;
     c.truth = "power out = power emitted";
-    c.tolerance = {0.02, 0.005, "one direction stands for all: the lattice's ball is not quite round"};
+    c.tolerance = {0.03, 0.005, "one direction stands for all: the lattice's ball is not quite round"};
     c.scene = [=] { return scene_of(burning_ball(kNodes, radius, 1.0), camera_on_ball(24), 64); };
     c.measure = power_is([](const Scene& scene) { return total(voxel_lights(scene.medium)).x; });
     return c;

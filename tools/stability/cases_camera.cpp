@@ -21,8 +21,8 @@ Case in_slab(const std::string& name, double voxel_depth, const dvec3& eye_nodes
     c.tolerance = of_absorption();
     c.scene = [=] {
         const dvec3 eye = kEdge * eye_nodes;
-        return scene_of(absorbing_slab(kNodes, kEdge, voxel_depth),
-                        camera_at(eye, eye + dvec3(0.0, 0.0, 1.0), 1e-3, 8), 16);
+        return scene_of(absorbing_slab(kNodes, kEdge, voxel_depth), camera_at(eye, eye + dvec3(0.0, 0.0, 1.0), 1e-3, 8),
+                        16);
     };
     c.measure = every_pixel_is(Rgb(static_cast<float>(one_minus_transmittance(ahead * voxel_depth))));
     c.quick = true;
@@ -75,7 +75,9 @@ Case in_dense_voxel() {
     c.tolerance = of_absorption();
     c.scene = [] {
         media::Recipe r = absorbing_slab(kNodes, kEdge, 0.1);
-        r.density = [](const ivec3& n) { return n == ivec3(0, 0, 10) ? 1e8f : (n.z >= 0 && n.z < kNodes ? 1.0f : 0.0f); };
+        r.density = [](const ivec3& n) {
+            return n == ivec3(0, 0, 10) ? 1e8f : (n.z >= 0 && n.z < kNodes ? 1.0f : 0.0f);
+        };
         r.flame = [](const ivec3& n) { return glm::length(dvec3(n - ivec3(0, 0, 10))) < 2.0 ? 3.0f : 1e4f; };
         const dvec3 eye = kEdge * dvec3(0.1, -0.2, 10.1);
         return scene_of(r, camera_at(eye, eye + dvec3(0.4, 0.3, 1.0), 1.0, 8), 16);

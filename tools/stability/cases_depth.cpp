@@ -27,8 +27,8 @@ Case absorbing(int decade) {
     return c;
 }
 
-// The middle of an isothermal ball while that can be looked through; then the face of a block, since a ball's surface is
-// steps of voxels, which see each other (1.6 % at an optical depth of 1 per voxel).
+// The middle of an isothermal ball while that can be looked through; then the face of a block, since a ball's surface
+// is steps of voxels, which see each other (1.6 % at an optical depth of 1 per voxel).
 Case scattering(int decade) {
     const double voxel = std::pow(10.0, decade), radius = kBallNodes * voxel;
     const bool thin = decade < 0;
@@ -46,8 +46,8 @@ Case scattering(int decade) {
         return scene_of(r, camera_on_slab(12, 0.1), 1024);
     };
     c.measure = [=](const Scene& scene, const RenderedFrame& frame, RenderMethod method, const Render& render) {
-        const double truth = thin ? ScatteringBall(radius, kAlbedo, 1.0 - kAlbedo).radiance(0.0)
-                                  : isothermal_half_space(kAlbedo, 1.0);
+        const double truth =
+            thin ? ScatteringBall(radius, kAlbedo, 1.0 - kAlbedo).radiance(0.0) : isothermal_half_space(kAlbedo, 1.0);
         return every_pixel_is(Rgb(static_cast<float>(truth)))(scene, frame, method, render);
     };
     c.quick = decade % 4 == 0;

@@ -36,9 +36,7 @@ Case needles_absorbing() {
     c.name = "lattice/1:1:1000-absorbing";
     c.truth = "1 - exp(-8 tau)";
     c.tolerance = {3e-5, 3e-5, "single precision; rays may end at a transmittance of 1e-5"};
-    c.scene = [] {
-        return scene_of(needles(0.0), camera_at({0.013, -100.0, 3.0}, {0.013, 0.0, 3.0}, 0.5, 8), 64);
-    };
+    c.scene = [] { return scene_of(needles(0.0), camera_at({0.013, -100.0, 3.0}, {0.013, 0.0, 3.0}, 0.5, 8), 64); };
     c.measure = every_pixel_is(Rgb(static_cast<float>(one_minus_transmittance(kNeedles * 0.2))));
     c.quick = true;
     return c;
@@ -49,9 +47,7 @@ Case needles_scattering() {
     c.name = "lattice/1:1:1000-scattering";
     c.truth = "path tracer";
     c.tolerance = {0.05, 0.005, "lights are points, voxels are needles"};
-    c.scene = [] {
-        return scene_of(needles(0.8), camera_at({30.0, -100.0, 3.0}, {0.0, 0.0, 3.0}, 1.2, 16), 64);
-    };
+    c.scene = [] { return scene_of(needles(0.8), camera_at({30.0, -100.0, 3.0}, {0.0, 0.0, 3.0}, 1.2, 16), 64); };
     c.measure = like_the_reference(256);
     return c;
 }
@@ -61,9 +57,9 @@ Case plane(const std::string& name, double albedo, double truth, double lattice_
     Case c;
     c.name = "lattice/plane-" + name;
     c.truth = "isothermal slab of optical depth 1 seen along its normal";
-    c.tolerance = {lattice_tolerance, 0.005,
-                   albedo > 0.0 ? "one node samples the sheet's whole thickness"
-                                : "single precision; two Gauss points to a cell"};
+    c.tolerance = {
+        lattice_tolerance, 0.005,
+        albedo > 0.0 ? "one node samples the sheet's whole thickness" : "single precision; two Gauss points to a cell"};
     c.scene = [=] {
         media::Recipe r;
         r.box = {ivec3(-24, -24, -1), ivec3(24, 24, 1)};
@@ -96,9 +92,7 @@ Case voxel_absorbing(double depth) {
     c.name = depth > 100.0 ? "lattice/one-voxel-opaque" : "lattice/one-voxel-absorbing";
     c.truth = "1 - exp(-tau), tau the column through the hat";
     c.tolerance = {1e-3, 1e-3, "rays as far as a hundredth of a voxel from the axis"};
-    c.scene = [=] {
-        return scene_of(single_voxel(depth, 0.0), camera_at({0.0, 0.0, 100.0}, dvec3(0.0), 1e-4, 8), 64);
-    };
+    c.scene = [=] { return scene_of(single_voxel(depth, 0.0), camera_at({0.0, 0.0, 100.0}, dvec3(0.0), 1e-4, 8), 64); };
     c.measure = every_pixel_is(Rgb(static_cast<float>(one_minus_transmittance(depth))));
     c.quick = true;
     return c;
@@ -109,9 +103,7 @@ Case voxel_scattering() {
     c.name = "lattice/one-voxel-scattering";
     c.truth = "path tracer";
     c.tolerance = {0.1, 0.005, "one node is all the light there is"};
-    c.scene = [] {
-        return scene_of(single_voxel(1.0, 0.8), camera_at({30.0, 10.0, 100.0}, dvec3(0.0), 0.3, 16), 128);
-    };
+    c.scene = [] { return scene_of(single_voxel(1.0, 0.8), camera_at({30.0, 10.0, 100.0}, dvec3(0.0), 0.3, 16), 128); };
     c.measure = like_the_reference(512);
     return c;
 }

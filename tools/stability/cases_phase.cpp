@@ -21,9 +21,7 @@ Case conservation(double g) {
     c.name = fmt::format("phase/{}-power", g);
     c.truth = "power out = power emitted, albedo 1";
     c.tolerance = {0.03, 0.005, "one direction stands for all, and moments stop at degree 2"};
-    c.scene = [=] {
-        return scene_of(with_mean_cosine(burning_ball(kNodes, kRadius, 1.0), g), camera_on_ball(24), 64);
-    };
+    c.scene = [=] { return scene_of(with_mean_cosine(burning_ball(kNodes, kRadius, 1.0), g), camera_on_ball(24), 64); };
     c.measure = power_is([](const Scene& scene) { return total(voxel_lights(scene.medium)).x; });
     c.quick = g == -0.999;
     return c;

@@ -149,8 +149,7 @@ double ScatteringBall::radiance_from_centre() const {
 }
 
 double ScatteringBall::power() const {
-    return 2.0 * kExactPi *
-           integrate([&](double b) { return radiance(b) * b; }, 0.0, radius_, 200);
+    return 2.0 * kExactPi * integrate([&](double b) { return radiance(b) * b; }, 0.0, radius_, 200);
 }
 
 double airlight(double extinction, double scattering, double begin, double end, double nearest, double offset) {

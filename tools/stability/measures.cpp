@@ -80,8 +80,8 @@ Measured against_halves(const std::vector<dvec3>& found, const RenderedFrame& re
     return {relative(error, std::sqrt(square)), relative(noise, std::sqrt(square))};
 }
 
-// The path tracer by other means. Emission at collisions alone is the most different of them, but null collisions do not
-// end where a brick holds smoke much denser than the rest of it.
+// The path tracer by other means. Emission at collisions alone is the most different of them, but null collisions do
+// not end where a brick holds smoke much denser than the rest of it.
 Scene by_other_estimators(const Scene& scene) {
     constexpr float kMostDepth = 20.0f;  // of a voxel
     Scene other = scene;
@@ -121,6 +121,15 @@ Measure same_picture_as(const std::function<Scene()>& other) {
         const RenderedFrame wanted = render(twin, method);
         Measured m = against(frame, colours_of(wanted.image, ""), "", method);
         m.noise *= std::sqrt(2.0);
+        return m;
+    };
+}
+
+Measure same_paths_as(const std::function<Scene()>& other) {
+    return [pictures = same_picture_as(other)](const Scene& scene, const RenderedFrame& frame, RenderMethod method,
+                                               const Render& render) {
+        Measured m = pictures(scene, frame, method, render);
+        m.noise = 0.0;
         return m;
     };
 }

@@ -34,8 +34,8 @@ const Case& case_of(const std::vector<Case>& cases, const std::string& name) {
 }  // namespace
 
 std::string table_head() {
-    return fmt::format("{:38} {:14} {:7} {:>9} {:>17} {:>10}  {:5} {:>6}", "case", "method", "finite", "energy", "error",
-                       "tolerance", "", "s");
+    return fmt::format("{:38} {:14} {:7} {:>9} {:>17} {:>10}  {:5} {:>6}", "case", "method", "finite", "energy",
+                       "error", "tolerance", "", "s");
 }
 
 std::string table_line(const Result& r) {

@@ -44,8 +44,7 @@ void read_balances(const Statistics& statistics, Result& result) {
 }  // namespace
 
 bool Result::passed() const {
-    return trouble.empty() && finite && balanced &&
-           measured.error <= tolerance + kStandardErrors * measured.noise;
+    return trouble.empty() && finite && balanced && measured.error <= tolerance + kStandardErrors * measured.noise;
 }
 
 std::string method_name(RenderMethod method) {
