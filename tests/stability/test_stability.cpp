@@ -1,0 +1,100 @@
+// The quick cases of the stability matrix (tools/stability), by every method; `brisance stability` renders them all.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <set>
+
+#include "stability/case.h"
+#include "stability/closed_forms.h"
+#include "stability/results_table.h"
+#include "stability/run_cases.h"
+
+namespace brisance::stability {
+namespace {
+
+struct Run {
+    Case what;
+    RenderMethod method;
+};
+
+std::vector<Run> quick_runs() {
+    std::vector<Run> runs;
+    for (const Case& c : all_cases())
+        for (const RenderMethod method : {RenderMethod::LightingGrid, RenderMethod::Path})
+            if (c.quick && c.tolerance.of(method))
+                runs.push_back({c, method});
+    return runs;
+}
+
+class QuickCases : public ::testing::TestWithParam<Run> {};
+
+TEST_P(QuickCases, AreWithinTheirTolerance) {
+    const Result result = run_case(GetParam().what, GetParam().method);
+    EXPECT_TRUE(result.passed()) << table_head() << "\n" << table_line(result);
+}
+
+INSTANTIATE_TEST_SUITE_P(Stability, QuickCases, ::testing::ValuesIn(quick_runs()), [](const auto& info) {
+    std::string name = info.param.what.name + "_" + method_name(info.param.method);
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
+    return name;
+});
+
+TEST(StabilityCases, HaveNamesOfTheirOwn) {
+    std::set<std::string> names;
+    for (const Case& c : all_cases())
+        EXPECT_TRUE(names.insert(c.name).second) << c.name;
+}
+
+TEST(StabilityCases, OfEveryFamilySomeAreQuick) {
+    std::set<std::string> families, quick;
+    for (const Case& c : all_cases()) {
+        families.insert(c.family());
+        if (c.quick)
+            quick.insert(c.family());
+    }
+    families.erase("lights");  // ten million lights take a minute
+    EXPECT_TRUE(std::includes(quick.begin(), quick.end(), families.begin(), families.end()));
+}
+
+Result passing() {
+    Result r;
+    r.finite = r.balanced = true;
+    r.tolerance = 0.01;
+    r.measured = {0.009, 0.0};
+    return r;
+}
+
+TEST(StabilityResult, PassesWithinItsTolerance) {
+    EXPECT_TRUE(passing().passed());
+    Result r = passing();
+    r.measured.error = 0.011;
+    EXPECT_FALSE(r.passed());
+    r.measured.noise = 0.001;  // 0.011 may be 0.007
+    EXPECT_TRUE(r.passed());
+}
+
+TEST(StabilityResult, DoesNotPassWithNumbersThatAreNone) {
+    for (const auto& spoil :
+         {+[](Result& r) { r.finite = false; }, +[](Result& r) { r.balanced = false; },
+          +[](Result& r) { r.trouble = "something"; }, +[](Result& r) { r.measured.error = std::nan(""); },
+          +[](Result& r) { r.measured.noise = std::nan(""); }}) {
+        Result r = passing();
+        spoil(r);
+        EXPECT_FALSE(r.passed());
+    }
+}
+
+// The ball's values as the model fireballs of other tests have them, from another solution of the same equation; H of
+// conservative scattering from Chandrasekhar, Radiative Transfer (1950), table XI.
+TEST(ClosedForms, AreThoseOfTheTables) {
+    EXPECT_NEAR(ScatteringBall(2.0, 0.9, 0.1).radiance(0.0), 0.27951, 3e-4);
+    EXPECT_NEAR(ScatteringBall(5.0, 0.5, 0.5).radiance(0.0), 0.85490, 3e-4);
+    EXPECT_NEAR(chandrasekhar_h(1.0, 1.0), 2.9078, 1e-3);
+    EXPECT_NEAR(one_minus_transmittance(1e-12), 1e-12, 1e-24);
+}
+
+}  // namespace
+}  // namespace brisance::stability
