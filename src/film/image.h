@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/vec.h"
@@ -23,6 +24,7 @@ struct Image {
     int height = 0;
     std::vector<Layer> layers;                          // the beauty first
     const Layer& layer(const std::string& name) const;  // throws Error when absent
+    Layer& layer(const std::string& name) { return const_cast<Layer&>(std::as_const(*this).layer(name)); }
 };
 
 // What the header of the EXR records.

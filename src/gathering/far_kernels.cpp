@@ -12,7 +12,7 @@
 
 #include "gathering/sh.h"
 #include "medium/extinction_sampler-inl.h"
-#include "medium/phase.h"
+#include "medium/phase-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace brisance {
@@ -106,14 +106,6 @@ V exact_transmittance(D d, const FarLights& l, const vec3& light, const V way[3]
                                              hn::MulAdd(t, nodes[2], hn::Set(d, origin.z))));
     }
     return hn::Exp(d, hn::Neg(hn::Mul(sum, hn::Mul(distance, hn::Set(d, 1.0f / steps)))));
-}
-
-HWY_INLINE V henyey_greenstein_lanes(D d, float g, V cosine) {
-    const float h = std::abs(g);
-    const V c = g < 0.0f ? hn::Neg(cosine) : cosine;
-    const V denominator =
-        hn::MulAdd(hn::Set(d, 2.0f * h), hn::Sub(hn::Set(d, 1.0f), c), hn::Set(d, (1.0f - h) * (1.0f - h)));
-    return hn::Div(hn::Set(d, (1.0f - g * g) / (4.0f * kPi)), hn::Mul(denominator, hn::Sqrt(denominator)));
 }
 
 // Mean of 1 / r^2 over a ball of radius a seen from distance x of its centre: 3/(4 a^3) (2a + (a^2 - x^2)/x

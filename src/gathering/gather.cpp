@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "gathering/far_kernels.h"
 #include "medium/phase.h"
 #include "shadows/shadow_maps.h"
@@ -15,10 +15,6 @@ namespace brisance {
 namespace {
 
 constexpr std::size_t kLeastBatch = 2048;  // lights with maps at once, below which resolution is given up instead
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 // From any light of the level to the farthest corner of the medium: beyond, nothing dims the light any more.
 float farthest_distance(const GridLevel& level, const Medium& medium) {
@@ -128,13 +124,13 @@ public:
         const bool made = keep && !transmittance.empty();
         for (std::size_t first = 0; first < level.size(); first += batch) {
             const std::size_t count = std::min(batch, level.size() - first);
-            auto start = std::chrono::steady_clock::now();
+            Stopwatch watch;
             if (maps && !made)
                 build_shadow_maps(*field_.pyramid, level, *field_.weight, layout, first, count, transmittance);
-            cost.map_seconds += seconds_since(start);
-            start = std::chrono::steady_clock::now();
+            cost.map_seconds += watch.seconds();
+            watch = Stopwatch();
             cost.evaluations += gather_batch(level, top, layout, first, count, transmittance.data());
-            cost.gather_seconds += seconds_since(start);
+            cost.gather_seconds += watch.seconds();
             progress_.fraction(double(first + count) / level.size());
         }
         return cost;
@@ -252,7 +248,7 @@ Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request,
     Gathered out;
     out.resize(nodes, request.toward_camera != nullptr, request.moments);
 
-    auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const NearField near(medium.local_from_index, field.alpha * medium.spacing,
                          field.settings.shadows != ShadowMethod::None);
     near.gather({&medium.lattice, &medium.extinction, field.intensity, field.directional, request.toward_camera,
@@ -261,7 +257,7 @@ Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request,
     LevelCost bottom;
     bottom.lights =
         std::count_if(field.intensity->begin(), field.intensity->end(), [](const Rgb& i) { return i != Rgb(0.0f); });
-    bottom.gather_seconds = seconds_since(start);
+    bottom.gather_seconds = watch.seconds();
     bottom.evaluations = near.separations() * nodes;
     costs.push_back(bottom);
 

@@ -11,7 +11,7 @@
 #include <hwy/highway.h>
 
 #include "gathering/sh.h"
-#include "medium/phase.h"
+#include "medium/phase-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace brisance {
@@ -24,13 +24,6 @@ using V = hn::Vec<D>;
 struct Sums {
     V fluence[3], scattered[3];
 };
-
-HWY_INLINE V phase_lanes(D d, float g, V cosine) {
-    const float h = std::abs(g);
-    const V c = g < 0.0f ? hn::Neg(cosine) : cosine;
-    const V q = hn::MulAdd(hn::Set(d, 2.0f * h), hn::Sub(hn::Set(d, 1.0f), c), hn::Set(d, (1.0f - h) * (1.0f - h)));
-    return hn::Div(hn::Set(d, (1.0f - g * g) / (4.0f * kPi)), hn::Mul(q, hn::Sqrt(q)));
-}
 
 HWY_INLINE bool row_is_dark(D d, const NearBrick& b, const float* light) {
     const V sum =
@@ -54,10 +47,10 @@ HWY_INLINE void add_separation(D d, const FlatStencil& stencil, const FlatSepara
     }
     V phase = hn::Zero(d);
     if (b.scattered)
-        phase = phase_lanes(d, b.mean_cosine,
-                            hn::MulAdd(hn::Set(d, s.direction.x), camera[0],
-                                       hn::MulAdd(hn::Set(d, s.direction.y), camera[1],
-                                                  hn::Mul(hn::Set(d, s.direction.z), camera[2]))));
+        phase = henyey_greenstein_lanes(d, b.mean_cosine,
+                                        hn::MulAdd(hn::Set(d, s.direction.x), camera[0],
+                                                   hn::MulAdd(hn::Set(d, s.direction.y), camera[1],
+                                                              hn::Mul(hn::Set(d, s.direction.z), camera[2]))));
     for (int c = 0; c < 3; ++c) {
         V intensity = hn::LoadU(d, light + c * b.plane);
         if (b.directional)

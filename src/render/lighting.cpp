@@ -1,21 +1,15 @@
 #include "render/lighting.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "lights/voxel_lights.h"
 #include "medium/phase.h"
 
 namespace brisance {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 nlohmann::ordered_json level_table(const std::vector<LevelCost>& costs) {
     auto table = nlohmann::ordered_json::array();
@@ -152,16 +146,16 @@ std::vector<Rgb> Lighting::source_function(const Gathered& g) const {
 
 void Lighting::light_from_fire() {
     progress_.stage("fire to lights");
-    Clock::time_point start = Clock::now();
+    Stopwatch watch;
     HierarchyLights lights = build_hierarchy(medium_, {voxel_lights(medium_), {}}, shot_.lighting.levels);
     const double emitted = luminance(Rgb(total(lights.light.intensity)));
     statistics_.stages.push_back({"lights and hierarchy",
-                                  seconds_since(start),
+                                  watch.seconds(),
                                   lights.grid.bytes(),
                                   {{"intensity_sum", emitted}, {"lattice_and_pyramid_bytes", pyramid_.bytes()}}});
 
     progress_.stage("light from the fire (MV)");
-    start = Clock::now();
+    watch = Stopwatch();
     const bool nodes = !marching() || plan_.multiple || shot_.lighting.energy_balance;
     StageCost stage{"light from the fire (MV)", 0.0, 0, {}};
     Rgb scale(1.0f);
@@ -182,7 +176,7 @@ void Lighting::light_from_fire() {
         }
         stage.bytes = most_held(costs) + (first.fluence.size() + first.scattered.size() + first.moments.size()) * 4;
         stage.detail["levels"] = level_table(costs);
-        stage.seconds = seconds_since(start);
+        stage.seconds = watch.seconds();
         statistics_.stages.push_back(stage);
         if (!marching())
             nodes_.single = source_function(first);
@@ -218,11 +212,11 @@ Gathered Lighting::gather_last_flight(const HierarchyLights& lights, int order, 
 
 std::vector<ScatteredLight> Lighting::orders_of_scattering(const Gathered& first) {
     progress_.stage("orders of scattering");
-    const Clock::time_point start = Clock::now();
+    const Stopwatch watch;
     ScatteringCosts costs;
     std::vector<ScatteredLight> orders = solve_scattering(
         {&pyramid_, &first, &needed_, shot_.lighting, shot_.scattering, orders_apart()}, costs, progress_);
-    StageCost series{"orders of scattering on the coarse lattice", seconds_since(start), costs.bytes, {}};
+    StageCost series{"orders of scattering on the coarse lattice", watch.seconds(), costs.bytes, {}};
     series.detail = {{"lattice_level", costs.lattice_level},
                      {"nodes", costs.coarse_nodes},
                      {"operator_seconds", costs.operator_seconds},
@@ -245,7 +239,7 @@ std::vector<ScatteredLight> Lighting::orders_of_scattering(const Gathered& first
 void Lighting::light_from_smoke(const Gathered& first) {
     std::vector<ScatteredLight> orders = orders_of_scattering(first);
     progress_.stage("light from the smoke (MM)");
-    const Clock::time_point start = Clock::now();
+    const Stopwatch watch;
     StageCost last{"light from the smoke (MM)", 0.0, 0, {}};
     auto balances = nlohmann::ordered_json::array();
     std::vector<LevelCost> levels;
@@ -275,7 +269,7 @@ void Lighting::light_from_smoke(const Gathered& first) {
     } else {
         nodes_.multiple = source_function(sum);
     }
-    last.seconds = seconds_since(start);
+    last.seconds = watch.seconds();
     last.bytes = most_held(levels) + (sum.fluence.size() + sum.scattered.size()) * 4;
     last.detail["levels"] = level_table(levels);
     if (!balances.empty())

@@ -69,8 +69,8 @@ std::uint64_t peak_resident_bytes() {
     return std::uint64_t(usage.ru_maxrss) * 1024;
 }
 
-Image draw(const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera, Statistics& statistics,
-           ImageMetadata& metadata, Progress& progress) {
+Image draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera, Statistics& statistics,
+                ImageMetadata& metadata, Progress& progress) {
     std::unique_ptr<Lighting> lighting;
     std::optional<Medium> similar;
     if (plan.single) {
@@ -100,6 +100,39 @@ Image draw(const Shot& shot, const Plan& plan, const Medium& medium, const Camer
     metadata.samples_per_pixel = double(settings.samples_per_axis) * settings.samples_per_axis;
     statistics.stages.push_back(
         {"camera", watch.seconds(), field.bytes(), {{"samples_per_pixel", metadata.samples_per_pixel}}});
+    return image;
+}
+
+// Where forward peaks count as no scattering (similar_medium.h), MV holds light that was scattered more than once: MV
+// is then drawn by itself, and MM is the rest, so that every path stands in its own layer.
+void file_single_scattering(Image& image, const Image& single) {
+    Layer &mv = image.layer("MV"), &mm = image.layer("MM");
+    const Layer& found = single.layer("MV");
+    for (std::size_t i = 0; i < mv.pixels.size(); ++i) {
+        const float both = mv.pixels[i] + mm.pixels[i];
+        mv.pixels[i] = std::clamp(found.pixels[i], 0.0f, std::max(both, 0.0f));
+        mm.pixels[i] = both - mv.pixels[i];
+    }
+}
+
+Image draw(const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera, Statistics& statistics,
+           ImageMetadata& metadata, Progress& progress) {
+    Image image = draw_once(shot, plan, medium, camera, statistics, metadata, progress);
+    const bool mixed = plan.multiple && shot.scattering.bounces < 0 && forward_share(medium.mean_cosine) > 0.0f;
+    if (!mixed || !shot.output.cell_layers)
+        return image;
+    Shot alone = shot;
+    alone.scattering.bounces = 1;
+    alone.output.bounce_layers = false;
+    Plan single = plan;
+    single.multiple = false;
+    Statistics costs;
+    ImageMetadata ignored;
+    file_single_scattering(image, draw_once(alone, single, medium, camera, costs, ignored, progress));
+    for (StageCost& stage : costs.stages) {
+        stage.name += ", for its own layer";
+        statistics.stages.push_back(std::move(stage));
+    }
     return image;
 }
 

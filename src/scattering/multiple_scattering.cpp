@@ -19,6 +19,13 @@ constexpr double kGatherError = 0.03;  // of a gather's collisions, typically
 constexpr int kMostBounces = 96;
 constexpr double kDark = 1e-6;  // of the power scattered once: bounces below it are left to the tail
 
+// How far the rays are right where they and a gather differ by `difference`, relative: a gather errs by some percent, or
+// by what noise does not explain.
+double trust_in_rays(double difference, double noise) {
+    const double error = std::max(kGatherError * kGatherError, difference * difference - 4.0 * noise * noise);
+    return error / (error + noise * noise);
+}
+
 double power(const std::vector<Rgb>& lights) {
     return luminance(Rgb(total(lights)));
 }
@@ -164,14 +171,15 @@ Rgb close_balance(const ExtinctionPyramid& pyramid, const ScatteredLight& lights
     balance.collided = luminance(Rgb(hit)) / y;
     balance.expected = luminance(Rgb(marched.fraction * emitted)) / y;
     balance.expected_error = marched.standard_error;
-    const double noise = balance.expected > 0.0 ? balance.expected_error / balance.expected : 1.0;
-    const double trust = kGatherError * kGatherError / (kGatherError * kGatherError + noise * noise);
+    if (!(balance.collided > 0.0) || !(balance.expected > 0.0))
+        return Rgb(1.0f);
+    const double noise = balance.expected_error / balance.expected;
+    const double trust = trust_in_rays(balance.collided / balance.expected - 1.0, noise);
     Rgb scale(1.0f);
     for (int c = 0; c < 3; ++c)
         if (hit[c] > 0.0)
             scale[c] = static_cast<float>(1.0 + trust * (marched.fraction[c] * emitted[c] / hit[c] - 1.0));
-    if (balance.collided > 0.0)
-        balance.scale = luminance(Rgb(dvec3(scale) * hit)) / luminance(Rgb(hit));
+    balance.scale = luminance(Rgb(dvec3(scale) * hit)) / luminance(Rgb(hit));
     return scale;
 }
 

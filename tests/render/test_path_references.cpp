@@ -4,46 +4,13 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
-#include "film/write_image.h"
-#include "render/render_frame.h"
+#include "reference_shot.h"
 
 namespace brisance {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr int kSamples = 64;  // camera rays per pixel
-
-dvec3 triple(const nlohmann::json& j) {
-    return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()};
-}
-
-Shot traced_shot(const nlohmann::json& json) {
-    const auto& v = json["volume"];
-    const auto& c = json["camera"];
-    Shot shot;
-    shot.method = RenderMethod::Path;
-    shot.tracing.samples = kSamples;
-    shot.volume.grids.density = v["density"].get<std::string>();
-    shot.volume.grids.flame = v["emission"].get<std::string>();
-    shot.volume.grids.temperature = "";
-    shot.medium.smoke.extinction_per_metre = v["sigma_t"];
-    shot.medium.smoke.albedo = Rgb(v["albedo"].get<float>());
-    shot.medium.smoke.mean_cosine = v["g"];
-    shot.medium.fire.strength = v["emission_strength"];
-    shot.medium.fire.threshold = v.value("emission_threshold", 0.0f);
-    shot.camera_given = true;
-    shot.camera.eye = triple(c["eye"]);
-    shot.camera.target = triple(c["target"]);
-    shot.camera.up = triple(c["up"]);
-    shot.camera.vertical_fov_degrees = c["vfov_degrees"];
-    shot.camera.width = c["width"];
-    shot.camera.height = c["height"];
-    return shot;
-}
 
 using Pixels = std::vector<double>;
 
@@ -60,7 +27,7 @@ Pixels radiance(const Image& image, int cells) {
 }
 
 Pixels read_reference(const std::string& file) {
-    const std::vector<float> y = read_exr(file).layers[0].pixels;
+    const std::vector<float> y = testing::read_luminance(file);
     return Pixels(y.begin(), y.end());
 }
 
@@ -122,17 +89,15 @@ TEST_P(PathReferences, AreWhatThePathTracerTendsTo) {
     const char* data = std::getenv("BRISANCE_DATA");
     if (!data)
         GTEST_SKIP() << "BRISANCE_DATA is not set: no reference images";
-    const std::string reference = (fs::path(data) / "references" / GetParam()).string();
-    const auto json = nlohmann::json::parse(std::ifstream(reference + ".json"));
+    testing::ReferenceShot reference = testing::reference_shot(data, GetParam());
+    reference.shot.method = RenderMethod::Path;
+    reference.shot.tracing.samples = kSamples;
     Progress silent;
-    const std::vector<Image> halves =
-        render_frame(traced_shot(json), fs::path(data) / "volumes" / json["volume"]["file"].get<std::string>(), 0,
-                     silent)
-            .halves;
+    const std::vector<Image> halves = render_frame(reference.shot, reference.volume, 0, silent).halves;
     ASSERT_EQ(halves.size(), 2u);
     const char* const orders[] = {"V", "V+MV", "all"};
     for (int k = 0; k < 3; ++k) {
-        const std::string file = reference + "." + orders[k];
+        const std::string file = reference.pictures + "." + orders[k];
         expect_same(compare(radiance(halves[0], k + 1), radiance(halves[1], k + 1), read_reference(file + ".A.exr"),
                             read_reference(file + ".B.exr")),
                     GetParam() + std::string(" ") + orders[k]);

@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "fixtures/media.h"
 #include "render/integrate.h"
+#include "render/render_frame.h"
 
 namespace brisance {
 namespace {
@@ -124,6 +125,28 @@ TEST(Picture, BeautyIsTheSumOfItsCells) {
             largest = std::max<double>(largest, sum);
         }
     EXPECT_GT(largest, 1.0);
+}
+
+// Forward peaks count as no scattering on the way to the picture, but not in its layers.
+TEST(Picture, ForwardScatteringStandsInItsOwnLayer) {
+    Recipe r = cloud();
+    r.settings.smoke.mean_cosine = 0.8f;
+    const Medium medium = make_medium(r);
+    Shot shot;
+    shot.camera = front();
+    shot.camera_given = true;
+    Progress silent;
+    const Image all = render_medium(shot, medium, silent).image;
+    shot.scattering.bounces = 1;
+    const Image single = render_medium(shot, medium, silent).image;
+    EXPECT_LT(largest_difference(all.layer("MV"), single.layer("MV")), 1e-3 * brightest(single.layer("MV")));
+    const Layer &v = all.layer("V"), &mv = all.layer("MV"), &mm = all.layer("MM"), &beauty = all.layer("");
+    EXPECT_GT(brightest(mm), 0.05 * brightest(mv));
+    for (std::size_t i = 0; i < mm.pixels.size(); ++i) {
+        EXPECT_GE(mm.pixels[i], 0.0f);
+        const double sum = double(v.pixels[i]) + mv.pixels[i] + mm.pixels[i];
+        EXPECT_NEAR(sum, beauty.pixels[i / 3 * 4 + i % 3], 1e-5 * brightest(beauty));
+    }
 }
 
 TEST(Picture, DepthIsMeasuredAlongTheViewAxis) {

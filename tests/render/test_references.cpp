@@ -4,51 +4,19 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
-#include "film/write_image.h"
-#include "render/render_frame.h"
+#include "reference_shot.h"
 
 namespace brisance {
 namespace {
-
-namespace fs = std::filesystem;
-
-dvec3 triple(const nlohmann::json& j) {
-    return {j[0].get<double>(), j[1].get<double>(), j[2].get<double>()};
-}
-
-Shot shot_of(const fs::path& file) {
-    const auto json = nlohmann::json::parse(std::ifstream(file));
-    const auto& v = json["volume"];
-    const auto& c = json["camera"];
-    Shot shot;
-    shot.volume.grids.density = v["density"].get<std::string>();
-    shot.volume.grids.flame = v["emission"].get<std::string>();
-    shot.volume.grids.temperature = "";
-    shot.medium.smoke.extinction_per_metre = v["sigma_t"];
-    shot.medium.smoke.albedo = Rgb(v["albedo"].get<float>());
-    shot.medium.smoke.mean_cosine = v["g"];
-    shot.medium.fire.strength = v["emission_strength"];
-    shot.medium.fire.threshold = v.value("emission_threshold", 0.0f);
-    shot.camera_given = true;
-    shot.camera.eye = triple(c["eye"]);
-    shot.camera.target = triple(c["target"]);
-    shot.camera.up = triple(c["up"]);
-    shot.camera.vertical_fov_degrees = c["vfov_degrees"];
-    shot.camera.width = c["width"];
-    shot.camera.height = c["height"];
-    return shot;
-}
 
 struct Difference {
     double error, mean;  // relative
 };
 
 Difference difference(const Image& image, const std::vector<std::string>& cells, const std::string& reference) {
-    const std::vector<float> a = read_exr(reference + ".A.exr").layers[0].pixels;
-    const std::vector<float> b = read_exr(reference + ".B.exr").layers[0].pixels;
+    const std::vector<float> a = testing::read_luminance(reference + ".A.exr"),
+                             b = testing::read_luminance(reference + ".B.exr");
     double square = 0.0, norm = 0.0, sum = 0.0, reference_sum = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i) {
         double m = 0.0;
@@ -69,16 +37,12 @@ TEST_P(References, AreMetByTheFinalPreset) {
     const char* data = std::getenv("BRISANCE_DATA");
     if (!data)
         GTEST_SKIP() << "BRISANCE_DATA is not set: no reference images";
-    const fs::path folder = fs::path(data) / "references";
-    const Shot shot = shot_of(folder / (std::string(GetParam()) + ".json"));
-    const auto json = nlohmann::json::parse(std::ifstream(folder / (std::string(GetParam()) + ".json")));
+    const testing::ReferenceShot reference = testing::reference_shot(data, GetParam());
     Progress silent;
-    const Image image =
-        render_frame(shot, fs::path(data) / "volumes" / json["volume"]["file"].get<std::string>(), 0, silent).image;
-    const std::string reference = (folder / GetParam()).string();
+    const Image image = render_frame(reference.shot, reference.volume, 0, silent).image;
     const auto expect = [&](const std::vector<std::string>& cells, const std::string& order, double error,
                             double mean) {
-        const Difference d = difference(image, cells, reference + "." + order);
+        const Difference d = difference(image, cells, reference.pictures + "." + order);
         EXPECT_LT(d.error, error) << order;
         EXPECT_LT(std::abs(d.mean), mean) << order;
         RecordProperty(order + "_error_percent", std::to_string(100.0 * d.error));
