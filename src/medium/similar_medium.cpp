@@ -33,6 +33,11 @@ Similar without_forward(double extinction, const dvec3& albedo, double share) {
     return {extinction * left, dvec3(1.0) - (dvec3(1.0) - albedo) / left, dvec3(1.0 / left), dvec3(1.0)};
 }
 
+// The same for light that is scattered once: the peak is followed by itself and leaves the rest as it is.
+Similar without_peak(double extinction, const dvec3& albedo, double share) {
+    return {extinction, albedo * (1.0 - share), dvec3(1.0), dvec3(1.0)};
+}
+
 // Extinction at most at every node [1/m].
 std::vector<float> limits(const Medium& medium) {
     constexpr int kWide = BrickLattice::kSize + 2;
@@ -67,8 +72,7 @@ void hold_down(Similar& s, double most) {
         const double absorbed = 1.0 - s.albedo[c];
         const double raised = std::clamp(x * x * absorbed, absorbed, std::max(absorbed, kMostAbsorption));
         // j' / j, which is also (sigma' S') / (sigma S).
-        const double gain =
-            absorbed > 0.0 ? raised / absorbed * emissivity(absorbed) / emissivity(raised) / x : 1.0;
+        const double gain = absorbed > 0.0 ? raised / absorbed * emissivity(absorbed) / emissivity(raised) / x : 1.0;
         s.albedo[c] = 1.0 - raised;
         s.source_factor[c] *= gain * x;
         s.emission_factor[c] *= gain;
@@ -83,8 +87,9 @@ float forward_share(float mean_cosine) {
     return mean_cosine * mean_cosine * mean_cosine * t * t * (3.0f - 2.0f * t);
 }
 
-std::optional<Medium> similar_medium(const Medium& medium, bool all_orders) {
-    const double share = all_orders ? forward_share(medium.mean_cosine) : 0.0;
+std::optional<Medium> similar_medium(const Medium& medium, int bounces) {
+    const bool all_orders = bounces < 0;
+    const double share = all_orders || bounces == 1 ? forward_share(medium.mean_cosine) : 0.0;
     const double sharpest = all_orders ? kSharpestOfAllOrders : kSharpest;
     if (share == 0.0 && medium.mean_cosine >= sharpest && medium.max_extinction * medium.spacing <= kSkinDepth)
         return std::nullopt;
@@ -95,7 +100,8 @@ std::optional<Medium> similar_medium(const Medium& medium, bool all_orders) {
     parallel_for(
         m.extinction.size(),
         [&](std::size_t i) {
-            Similar s = without_forward(medium.extinction[i], dvec3(medium.albedo_at(i)), share);
+            Similar s =
+                (all_orders ? without_forward : without_peak)(medium.extinction[i], dvec3(medium.albedo_at(i)), share);
             hold_down(s, limit[i]);
             m.extinction[i] = static_cast<float>(s.extinction);
             m.albedo_nodes[i] = Rgb(s.albedo);

@@ -13,7 +13,9 @@
 //  - A phase function with a forward peak narrower than the angles between a lattice's lights. Light that scatters into
 //    the peak has hardly scattered: a share f of all scattering counts as none (delta scaling: Joseph, Wiscombe,
 //    Weinman, The delta-Eddington approximation for radiative flux transfer, J. Atmos. Sci. 33, 1976; Wiscombe, The
-//    delta-M method, 34, 1977), with f = g^3, so that moments 0 to 2 are kept by the rest.
+//    delta-M method, 34, 1977), with f = g^3, so that moments 0 to 2 are kept by the rest. Where light is followed for
+//    one scattering alone that would be no scattering at all: the peak's share is then left out, and the camera adds
+//    it along its own rays, where it has come straight on (CellField).
 //  - A backward peak as narrow. It cannot count as no scattering, and is widened.
 // The camera still sees emission through the medium itself.
 #pragma once
@@ -27,8 +29,8 @@ namespace brisance {
 // The share of scattering in Henyey-Greenstein's forward peak that counts as none: 0 up to g = 0.5, g^3 from 0.85.
 float forward_share(float mean_cosine);
 
-// Empty where the medium will do. `all_orders`: light scattered more than once is followed too; otherwise forward
-// scattering counts as what it is.
-std::optional<Medium> similar_medium(const Medium& medium, bool all_orders);
+// Empty where the medium will do. `bounces`: scatterings to follow, -1: all orders. With 1 the forward share of single
+// scattering is missing; with a number above, peaks stay as they are, since every order is asked for by itself.
+std::optional<Medium> similar_medium(const Medium& medium, int bounces);
 
 }  // namespace brisance

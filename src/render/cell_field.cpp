@@ -50,7 +50,7 @@ Record interpolated(const Record* records, const vec3& p) {
 }  // namespace
 
 CellField::CellField(const Medium& medium, const std::vector<Rgb>& single, const std::vector<Rgb>& multiple,
-                     const Medium* similar)
+                     const Medium* similar, float forward)
     : medium_(&medium), direct_(!medium.emission.empty()), bricks_(cell_lattice(medium)) {
     records_.resize(bricks_.brick_count() * kRecords, CellRecord{});
     similar_.resize(similar ? records_.size() : 0, SimilarRecord{});
@@ -69,12 +69,16 @@ CellField::CellField(const Medium& medium, const std::vector<Rgb>& single, const
         put(medium, multiple, low, CellRecord::MM, records);
         if (similar) {
             put_extinction(*similar, low, &similar_[b * kRecords]);
-            put(*similar, direct_ ? similar->emission : similar->source, low, SimilarRecord::V, &similar_[b * kRecords]);
+            put(*similar, direct_ ? similar->emission : similar->source, low, SimilarRecord::V,
+                &similar_[b * kRecords]);
         }
         for (int i = 0; i < kRecords; ++i) {
             const ivec3 node = low + ivec3(i / (kSide * kSide), i / kSide % kSide, i % kSide);
             const std::int64_t n = medium.lattice.find_node(node);
-            records[i].value[CellRecord::Albedo] = luminance(n < 0 ? medium.albedo : medium.albedo_at(n));
+            const Rgb albedo = n < 0 ? medium.albedo : medium.albedo_at(n);
+            records[i].value[CellRecord::Albedo] = luminance(albedo);
+            for (int c = 0; similar && c < 3; ++c)
+                similar_[b * kRecords + i].value[SimilarRecord::Forward + c] = forward * albedo[c];
         }
     });
 }

@@ -18,18 +18,19 @@ struct CellRecord {
     float value[Size];
 };
 
-// Where scattered light was followed through a similar medium (similar_medium.h): its extinction, and its own V.
+// Where scattered light was followed through a similar medium (similar_medium.h): its extinction, its own V, and what
+// the medium scatters straight on by the peak that was left out, as a part of its extinction.
 struct SimilarRecord {
-    enum Slot { Extinction = 0, V = 1, Size = 4 };
+    enum Slot { Extinction = 0, V = 1, Forward = 4, Size = 8 };
     float value[Size];
 };
 
 class CellField {
 public:
     // Source functions per node of the medium's lattice; an empty one is left out. `similar`: what they belong to, if
-    // it is not the medium itself.
+    // it is not the medium itself; `forward`: share of all scattering in the peak that it leaves out.
     CellField(const Medium& medium, const std::vector<Rgb>& single, const std::vector<Rgb>& multiple,
-              const Medium* similar = nullptr);
+              const Medium* similar = nullptr, float forward = 0.0f);
 
     const Medium& medium() const { return *medium_; }
     const BrickLattice& bricks() const { return bricks_; }  // of cells

@@ -57,9 +57,13 @@ void add_part(RaySum& sum, const CellField& field, const Part& p) {
     if (field.has_similar()) {
         const float* s = p.similar.value;
         scattering = shown(s[SimilarRecord::Extinction], p.length, sum.similar_depth);
+        // Fire seen by one scattering that did not turn it: by all smoke before it.
+        const Rgb forward = slot(s, SimilarRecord::Forward);
+        const float tau = r[CellRecord::Extinction] * p.length;
+        sum.mv += v * (sum.forward + forward * mean_depth(tau));
+        sum.forward += forward * tau;
         // The similar medium shows more of the fire by what counts as not scattered there.
-        sum.mv +=
-            slot(s, SimilarRecord::V) * (field.direct_emission() ? scattering.path : scattering.opacity) - v;
+        sum.mv += slot(s, SimilarRecord::V) * (field.direct_emission() ? scattering.path : scattering.opacity) - v;
     } else {
         sum.similar_depth = sum.depth;
     }

@@ -74,7 +74,7 @@ Image draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     std::unique_ptr<Lighting> lighting;
     std::optional<Medium> similar;
     if (plan.single) {
-        similar = similar_medium(medium, shot.scattering.bounces < 0);
+        similar = similar_medium(medium, shot.scattering.bounces);
         lighting = std::make_unique<Lighting>(shot, plan, similar ? *similar : medium, camera, statistics, progress);
     }
     progress.stage("camera");
@@ -82,7 +82,8 @@ Image draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     const bool marching = shot.lighting.gather == GatherMethod::RayMarch;
     const NodeLighting none;
     const NodeLighting& nodes = lighting && !marching ? lighting->at_nodes() : none;
-    const CellField field(medium, nodes.single, nodes.multiple, similar ? &*similar : nullptr);
+    const float forward = shot.scattering.bounces == 1 ? forward_share(medium.mean_cosine) : 0.0f;
+    const CellField field(medium, nodes.single, nodes.multiple, similar ? &*similar : nullptr, forward);
     PictureSettings settings;
     settings.samples_per_axis =
         camera.settings().samples_per_axis > 0 ? camera.settings().samples_per_axis : automatic_samples(camera, field);

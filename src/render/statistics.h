@@ -25,7 +25,7 @@ struct Statistics {
     std::vector<SkippedPart> skipped;
     std::vector<StageCost> stages;
     nlohmann::ordered_json certificate;  // null: not asked for
-    std::vector<std::string> warnings;  // "code: line"
+    std::vector<std::string> warnings;   // "code: line"
     std::vector<std::string> notices;
     double seconds = 0.0;
     std::uint64_t peak_resident_bytes = 0;

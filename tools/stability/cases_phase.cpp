@@ -40,6 +40,19 @@ Case picture(double g) {
     return c;
 }
 
+Case single(double g) {
+    Case c = picture(g);
+    c.name = fmt::format("phase/{}-single", g);
+    c.tolerance = {0.05, 0.005, "directions between lights of a lattice"};
+    c.scene = [scene = c.scene] {
+        Scene once = scene();
+        once.shot.scattering.bounces = 1;
+        return once;
+    };
+    c.quick = g == 0.999;
+    return c;
+}
+
 }  // namespace
 
 std::vector<Case> phase_cases() {
@@ -47,6 +60,7 @@ std::vector<Case> phase_cases() {
     for (const double g : {0.0, 0.9, -0.9, 0.999, -0.999}) {
         cases.push_back(conservation(g));
         cases.push_back(picture(g));
+        cases.push_back(single(g));
     }
     return cases;
 }
