@@ -202,7 +202,8 @@ private:
 // Of sqrt(s.a / (norm - s.b)).
 void judge_error(CertifiedError& e, const SurveyedSums& s, double norm) {
     const double t = half_width(s.strata), t2 = t * t, below = norm - s.b;
-    e.square = below > 0.0 ? s.a / below : kInfinity;
+    // Beale's ratio, unbiased to first order: the plain one is too large by what the truth's own noise does.
+    e.square = below > 0.0 ? (s.a * below - s.ab) / (below * below + s.bb) : kInfinity;
     e.error = std::sqrt(std::max(0.0, e.square));
     e.error_interval = {0.0, kInfinity};
     e.largest_share = s.largest_share;

@@ -177,15 +177,15 @@ void expect_coverage(const std::vector<Certificate>& certificates, const std::ve
         EXPECT_GE(c.error / n, kRate) << cell;
         EXPECT_GE(c.below / n, kRate) << cell;
         EXPECT_GE(c.mean / n, kRate) << cell;
-        const double spread = std::sqrt((c.square_of_square - c.square * c.square) / n);
-        EXPECT_NEAR(c.square, truth[t].square, 4.0 * std::hypot(spread, truth[t].square_deviation))
-            << cell << ": biased";
+        // Intervals hold as often as they say while the estimates' bias is small beside the spread of one.
+        const double spread = std::sqrt(c.square_of_square - c.square * c.square);
+        EXPECT_NEAR(c.square, truth[t].square, 0.5 * spread + 4.0 * truth[t].square_deviation) << cell << ": biased";
         std::printf(
             "%-8s error %.3f %%: held %.1f %%, below the upper end %.1f %%, only bounded %.0f %%; mean %+.3f %%: "
             "held %.1f %%; square %.3e, truth %.3e +- %.1e, spread of one %.1e\n",
             cell.c_str(), 100.0 * std::sqrt(truth[t].square), 100.0 * c.error / n, 100.0 * c.below / n,
             100.0 * c.bound_only / n, 100.0 * truth[t].mean, 100.0 * c.mean / n, c.square, truth[t].square,
-            truth[t].square_deviation, spread * std::sqrt(n));
+            truth[t].square_deviation, spread);
     }
 }
 

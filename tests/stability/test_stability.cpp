@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <ostream>
 #include <set>
 
 #include "stability/case.h"
@@ -18,6 +19,10 @@ struct Run {
     Case what;
     RenderMethod method;
 };
+
+void PrintTo(const Run& run, std::ostream* out) {
+    *out << run.what.name << ", " << method_name(run.method);
+}
 
 std::vector<Run> quick_runs() {
     std::vector<Run> runs;
