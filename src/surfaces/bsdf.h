@@ -1,0 +1,111 @@
+// Scattering by surfaces of glTF's metallic-roughness materials: what reaches `wo` from `wi`, and directions drawn in
+// proportion. Directions are unit, in world space, and point away from the surface.
+//
+// The surface blends three, each of which conserves energy and is reciprocal (glTF 2.0, appendix B, for the blend):
+//   metal           GGX with Schlick's Fresnel term;
+//   coated diffuse  a GGX dielectric over a Lambert base, which gets what the coat lets through both ways (Kelemen and
+//                   Szirmay-Kalos, A Microfacet Based Coupled Specular-Matte BRDF Model, EG 2001);
+//   rough interface a GGX dielectric that reflects and refracts (Walter et al., Microfacet Models for Refraction
+//                   through Rough Surfaces, EGSR 2007), tinting by the base colour what it refracts.
+// Light that meets more than one facet comes back by lobes proportional to the cosine times what single scattering
+// misses in either direction (Kulla and Conty 2017, course notes "Revisiting Physically Based Shading at Imageworks").
+// Metal and coated diffuse are black from below.
+//
+// Where roughness^2 < kSmoothAlpha the interface is smooth, and where ior < kMatchedIor there is none: those lobes are
+// deltas, which evaluate() and pdf() leave out and sample() draws.
+#pragma once
+
+#include <optional>
+
+#include "core/vec.h"
+#include "surfaces/energy_tables.h"
+#include "surfaces/ggx.h"
+#include "surfaces/material.h"
+#include "surfaces/shading_frame.h"
+
+namespace brisance {
+
+// What flows along `wo`. Radiance grows by the square of the index of the side it enters, power does not: refracted
+// Radiance carries the factor (index on wo's side / index on wi's side)^2, Importance (photons that arrive along wo
+// and leave along wi) carries 1. Veach, Robust Monte Carlo Methods, 1997, section 5.2.
+enum class Transport { Radiance, Importance };
+
+struct BsdfSample {
+    dvec3 wi;            // unit, world
+    Rgb weight;          // [1] value times cosine, divided by pdf
+    double pdf = 0.0;    // [1/sr]; of a delta lobe the probability of choosing it
+    bool delta = false;  // no other direction could have been drawn
+    bool transmitted = false;
+};
+
+class Bsdf {
+public:
+    // Tables of the material's ior are looked up; the first such call makes them (energy_tables.h). Every number of the
+    // material must lie in the range that its comment gives.
+    Bsdf(const SurfaceMaterial& material, const ShadingFrame& frame);
+    // With the tables of the material's ior at hand.
+    Bsdf(const SurfaceMaterial& material, const ShadingFrame& frame, const EnergyTables& tables);
+
+    // BSDF times |cosine of wi to the normal| [1/sr], without delta lobes.
+    Rgb evaluate(const dvec3& wo, const dvec3& wi, Transport transport = Transport::Radiance) const;
+
+    // Density [1/sr] by which sample() draws wi, without delta lobes. Over the sphere it integrates to 1 less the
+    // probabilities of delta lobes and of drawing nothing.
+    double pdf(const dvec3& wo, const dvec3& wi) const;
+
+    // A direction from three numbers in [0, 1). None for wo that scatters nothing (opaque surfaces from below), and for
+    // facets that send light into their neighbours (its energy is in the lobes of evaluate()).
+    std::optional<BsdfSample> sample(const dvec3& wo, const dvec3& u, Transport transport = Transport::Radiance) const;
+
+private:
+    // What depends on wo alone. Directions are local and turned over where wo comes from inside: wo.z >= 0.
+    struct View {
+        dvec3 wo;
+        int side;                                 // 0 outside, 1 inside
+        double eta;                               // index of the other side relative to wo's
+        double lost;                              // what single scattering from wo misses: of metal and coat
+        double lost_both;                         // ... of the rough interface
+        float base_share;                         // of light that the coat lets through to its base
+        double facets, base, up, down, straight;  // probabilities of lobes
+    };
+
+    View view_from(const dvec3& wo) const;
+    void choose_lobes(View& view) const;
+    Albedos albedos(double cosine) const;
+    double lost_both(int side, const Albedos& albedos) const;
+    float coat_albedo(const Albedos& albedos, double cosine) const;
+
+    float blend(double cosine, double eta) const;
+    Rgb coat_fresnel(double cosine, double eta) const;
+    float coat_fresnel_most(double cosine, double eta) const;
+    Rgb facet_reflectance(const View& view, double cosine) const;
+    Rgb facet_transmittance(const View& view, double cosine) const;
+    double reflecting_probability(const View& view, double cosine) const;
+
+    Rgb reflected(const View& view, const dvec3& wi) const;
+    Rgb refracted(const View& view, const dvec3& wi) const;
+    Rgb value(const View& view, const dvec3& wi) const;
+    double density(const View& view, const dvec3& wi) const;
+
+    std::optional<dvec3> draw_facet(const View& view, const dvec3& u, double choice) const;
+    std::optional<BsdfSample> draw_delta(const View& view, double choice) const;
+    BsdfSample finished(const View& view, BsdfSample sample, Transport transport) const;
+
+    ShadingFrame frame_;
+    const EnergyTables* tables_;
+    Ggx ggx_;
+    double ior_;
+    bool smooth_, matched_;
+    Rgb base_;
+    float metal_, coated_, glass_;  // shares of the three; their sum is 1
+    float specular_, f0_most_;      // the dielectric's F90, and its largest F0 / F90
+    Rgb f0_;                        // its F0 / F90
+    // Of light that met more than one facet: what comes back at last.
+    Rgb metal_again_{0.0f}, coat_again_{0.0f};
+    double lost_mean_ = 0.0;  // mean of View::lost
+    double lost_both_mean_[2] = {0.0, 0.0};
+    double crossing_[2] = {0.0, 0.0};  // share of View::lost_both that crosses to the other side
+    float base_share_mean_ = 1.0f;
+};
+
+}  // namespace brisance

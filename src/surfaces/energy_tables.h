@@ -1,0 +1,64 @@
+// What light is lost between microfacets when only its first reflection or refraction counts, tabulated over
+// roughness and angle for one index of refraction: the ground that energy compensation stands on (Kulla and Conty,
+// Revisiting Physically Based Shading at Imageworks, SIGGRAPH 2017 course).
+//
+// Tables hold directional albedos: shares, 0..1, of light from one direction that leave at once. For every
+// roughness that is not smooth and a Fresnel term of 1 beyond the critical angle they are within 1e-3 of the integrals
+// they stand for; with a weaker dielectric (specular below 1), seen from inside, within 4e-3, because its Fresnel term
+// jumps there.
+#pragma once
+
+#include <array>
+#include <vector>
+
+namespace brisance {
+
+// Below this alpha (roughness 0.01) an interface is smooth: its lobes are deltas.
+constexpr double kSmoothAlpha = 1e-4;
+
+// Below this index inside and outside are alike: nothing is reflected (less than 3e-7 would be), and light goes
+// straight on.
+constexpr double kMatchedIor = 1.001;
+
+// With the blend s(angle) of fresnel.h, and a Fresnel term F = a + b s (1 beyond the critical angle):
+// Reflected alone: E = sum of F over facets = a reflect + b (reflect_blend), from outside.
+// Reflected and refracted: first[side] + a second[side] + b third[side]. Its parts jump at the critical angle; these
+// sums do not.
+struct Albedos {
+    double reflect = 1.0, reflect_blend = 0.0;
+    double first[2] = {1.0, 1.0}, second[2] = {0.0, 0.0}, third[2] = {0.0, 0.0};  // from outside, from inside
+
+    // Of everything, with F = a + b s.
+    double all(int side, double a, double b) const { return first[side] + a * second[side] + b * third[side]; }
+};
+
+class EnergyTables {
+public:
+    explicit EnergyTables(double ior);
+
+    double ior() const { return ior_; }
+    // Mean of the blend over the hemisphere outside, weighted by the cosine.
+    double mean_blend() const { return mean_blend_; }
+
+    // Of a rough interface (alpha >= kSmoothAlpha) from directions of that cosine.
+    Albedos at(double alpha, double cosine) const;
+    // The means of at() over the hemisphere, weighted by the cosine.
+    Albedos mean(double alpha) const;
+
+private:
+    static constexpr int kNumbers = 8;
+    using Entry = std::array<float, kNumbers>;
+
+    double ior_, mean_blend_;
+    std::vector<Entry> table_;  // [roughness][angle]
+    std::vector<Entry> means_;  // [finer roughness]
+};
+
+// The integrals themselves, by quadrature of at least so many points: what the tables are made of and tested against.
+Albedos integrate_albedos(double ior, double alpha, double cosine, int points = 4181);
+
+// Tables of one index, made at the first call for it (1.5 s of one core) and kept until the program ends. From any
+// thread. Throws Error for an index outside 1..10.
+const EnergyTables& energy_tables(float ior);
+
+}  // namespace brisance

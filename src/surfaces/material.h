@@ -1,0 +1,19 @@
+// What a surface is made of, in the terms of glTF 2.0: metallic-roughness with KHR_materials_transmission, _ior and
+// _specular. Emission is not part of it.
+#pragma once
+
+#include "core/vec.h"
+
+namespace brisance {
+
+struct SurfaceMaterial {
+    Rgb base_colour{1.0f};      // [1] 0..1: of the diffuse base, of metal at normal incidence, of what is transmitted
+    float metallic = 0.0f;      // [1] 0..1: share of the surface that is metal
+    float roughness = 1.0f;     // [1] 0..1: square root of GGX's alpha
+    float ior = 1.5f;           // [1] 1..10: index of the inside relative to the outside
+    float specular = 1.0f;      // [1] 0..1: factor of the dielectric's reflection at any angle
+    Rgb specular_colour{1.0f};  // [1] >= 0: factor of its reflection at normal incidence, which stays below 1
+    float transmission = 0.0f;  // [1] 0..1: share of the dielectric that refracts instead of scattering diffusely
+};
+
+}  // namespace brisance
