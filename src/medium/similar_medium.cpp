@@ -87,9 +87,13 @@ float forward_share(float mean_cosine) {
     return mean_cosine * mean_cosine * mean_cosine * t * t * (3.0f - 2.0f * t);
 }
 
+float forward_left_out(float mean_cosine, int bounces) {
+    return bounces == 1 ? forward_share(mean_cosine) : 0.0f;
+}
+
 std::optional<Medium> similar_medium(const Medium& medium, int bounces) {
     const bool all_orders = bounces < 0;
-    const double share = all_orders || bounces == 1 ? forward_share(medium.mean_cosine) : 0.0;
+    const double share = all_orders ? forward_share(medium.mean_cosine) : forward_left_out(medium.mean_cosine, bounces);
     const double sharpest = all_orders ? kSharpestOfAllOrders : kSharpest;
     if (share == 0.0 && medium.mean_cosine >= sharpest && medium.max_extinction * medium.spacing <= kSkinDepth)
         return std::nullopt;

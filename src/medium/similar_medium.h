@@ -29,6 +29,9 @@ namespace brisance {
 // The share of scattering in Henyey-Greenstein's forward peak that counts as none: 0 up to g = 0.5, g^3 from 0.85.
 float forward_share(float mean_cosine);
 
+// What of it `bounces` scatterings leave to the camera's rays: all of it with one, else nothing.
+float forward_left_out(float mean_cosine, int bounces);
+
 // Empty where the medium will do. `bounces`: scatterings to follow, -1: all orders. With 1 the forward share of single
 // scattering is missing; with a number above, peaks stay as they are, since every order is asked for by itself.
 std::optional<Medium> similar_medium(const Medium& medium, int bounces);

@@ -226,8 +226,9 @@ std::vector<ScatteredLight> Lighting::orders_of_scattering(const Gathered& first
                      {"tail_share", costs.tail_share},
                      {"estimated_remainder", costs.remainder}};
     series.detail["levels"] = level_table(costs.levels);
-    for (const BounceBalance& b : costs.balances)
-        series.detail["balance"].push_back(balance_row(b, std::to_string(b.order)));
+    // Without the balance nobody has marched what escapes.
+    for (std::size_t k = 0; k < costs.balances.size() && shot_.lighting.energy_balance; ++k)
+        series.detail["balance"].push_back(balance_row(costs.balances[k], std::to_string(costs.balances[k].order)));
     statistics_.stages.push_back(series);
     if (shot_.scattering.bounces < 0 && costs.remainder > shot_.scattering.remainder)
         progress_.warning("series", "multiple scattering stopped after " + std::to_string(costs.bounces) +

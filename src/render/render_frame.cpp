@@ -82,7 +82,7 @@ Image draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     const bool marching = shot.lighting.gather == GatherMethod::RayMarch;
     const NodeLighting none;
     const NodeLighting& nodes = lighting && !marching ? lighting->at_nodes() : none;
-    const float forward = shot.scattering.bounces == 1 ? forward_share(medium.mean_cosine) : 0.0f;
+    const float forward = forward_left_out(medium.mean_cosine, shot.scattering.bounces);
     const CellField field(medium, nodes.single, nodes.multiple, similar ? &*similar : nullptr, forward);
     PictureSettings settings;
     settings.samples_per_axis =

@@ -173,9 +173,9 @@ dvec3 collided(const Medium& medium, const std::vector<Rgb>& fluence) {
 }
 
 std::vector<float> collision_probabilities(const ExtinctionPyramid& pyramid, const std::vector<ivec3>& vertices,
-                                           int level, int directions) {
+                                           int level, int directions, int numbers) {
     const Medium& medium = pyramid.medium();
-    std::vector<float> probability(vertices.size() * kCollisionMoments, 0.0f);
+    std::vector<float> probability(vertices.size() * numbers, 0.0f);
     const std::size_t batch = std::max<std::size_t>(1, (std::size_t{1} << 20) / directions);
     // Starts come in space order and directions in order of height: an odd stride parts the two.
     const auto start_of = [](std::size_t d, std::size_t starts) { return d * 27 % starts; };
@@ -200,10 +200,12 @@ std::vector<float> collision_probabilities(const ExtinctionPyramid& pyramid, con
         const std::vector<float> collided = exits.march(1.0f);
         parallel_blocks(count, 256, [&](std::size_t begin, std::size_t end) {
             for (std::size_t ray = begin * directions; ray < end * directions; ++ray) {
-                float* sums = &probability[(first + ray / directions) * kCollisionMoments];
+                float* sums = &probability[(first + ray / directions) * numbers];
                 const float share = collided[ray] / directions;
-                const auto basis = sh_basis(way[ray]);
                 sums[0] += share;
+                if (numbers == 1)
+                    continue;
+                const auto basis = sh_basis(way[ray]);
                 for (int m = 0; m < kShMoments; ++m)
                     sums[1 + m] += share * basis[m];
             }

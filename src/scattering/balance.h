@@ -28,10 +28,10 @@ dvec3 collided(const Medium& medium, const std::vector<Rgb>& fluence);
 
 // Collision probability over all directions and over what each vertex stands for: `directions` stratified rays per
 // vertex (of the lattice 2^level coarser than the medium's), each from a node under its hat picked by extinction.
-// kCollisionMoments numbers per vertex: the mean, and those of the probability times sh_basis. What collides of a
-// directional light is the sum of its coefficients times these.
+// `numbers` per vertex: the mean alone (1), or also those of the probability times sh_basis (kCollisionMoments). What
+// collides of a directional light is the sum of its coefficients times these.
 constexpr int kCollisionMoments = 1 + kShMoments;
 std::vector<float> collision_probabilities(const ExtinctionPyramid& pyramid, const std::vector<ivec3>& vertices,
-                                           int level, int directions);
+                                           int level, int directions, int numbers = 1);
 
 }  // namespace brisance

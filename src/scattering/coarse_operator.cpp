@@ -172,7 +172,8 @@ CoarseOperator::CoarseOperator(const ExtinctionPyramid& fine, int level, const L
 }
 
 std::uint64_t CoarseOperator::bytes() const {
-    std::uint64_t sum = medium_.bytes() + pyramid_->bytes() + grid_.bytes() + weight_.size() * 17;
+    std::uint64_t sum =
+        medium_.bytes() + pyramid_->bytes() + grid_.bytes() + weight_.size() * 13 + collision_.size() * 4;
     for (const auto& m : maps_.levels)
         sum += m.size() * 2;
     return sum;
@@ -187,10 +188,12 @@ void CoarseOperator::balance_nodes(const ExtinctionPyramid& fine) {
             vertices.push_back(medium_.lattice.first_node(i / BrickLattice::kNodes) +
                                BrickLattice::node_in_brick(int(i % BrickLattice::kNodes)));
         }
-    const std::vector<float> collision = collision_probabilities(fine, vertices, level_, kCollisionDirections);
-    collision_.assign(mask_.size() * kCollisionMoments, 0.0f);
+    collision_numbers_ = medium_.mean_cosine == 0.0f ? 1 : kCollisionMoments;
+    const std::vector<float> collision =
+        collision_probabilities(fine, vertices, level_, kCollisionDirections, collision_numbers_);
+    collision_.assign(mask_.size() * collision_numbers_, 0.0f);
     for (std::size_t k = 0; k < nodes.size(); ++k)
-        std::copy_n(&collision[k * kCollisionMoments], kCollisionMoments, &collision_[nodes[k] * kCollisionMoments]);
+        std::copy_n(&collision[k * collision_numbers_], collision_numbers_, &collision_[nodes[k] * collision_numbers_]);
 
     // D K D (unit source) = 4 pi collision, by the symmetric fixed point D <- D sqrt(wanted / found).
     std::vector<LevelCost> costs;
@@ -200,7 +203,7 @@ void CoarseOperator::balance_nodes(const ExtinctionPyramid& fine) {
     for (int sweep = 0; sweep < kBalanceSweeps; ++sweep) {
         const Gathered found = gather(unit, costs, silent);
         for (std::size_t i : nodes) {
-            const float wanted = 4.0f * kPi * collision_[i * kCollisionMoments];
+            const float wanted = 4.0f * kPi * collision_[i * collision_numbers_];
             if (found.fluence[i] > 0.0f && wanted > 0.0f)
                 factor_[i] = std::clamp(factor_[i] * std::sqrt(wanted / found.fluence[i]), 0.2f, 5.0f);
         }
@@ -249,9 +252,9 @@ ScatteredLight CoarseOperator::restricted(const ScatteredLight& fine, const Bric
 dvec3 CoarseOperator::expected_collisions(const ScatteredLight& lights) const {
     dvec3 sum(0.0);
     for (std::size_t i = 0; i < mask_.size(); ++i) {
-        const float* collision = &collision_[i * kCollisionMoments];
+        const float* collision = &collision_[i * collision_numbers_];
         sum += dvec3(lights.intensity[i]) * double(collision[0]);
-        for (int k = 0; k < 24 && !lights.directional.empty(); ++k)
+        for (int k = 0; k < 24 && collision_numbers_ > 1 && !lights.directional.empty(); ++k)
             sum[k % 3] += double(lights.directional[i * 24 + k]) * collision[1 + k / 3];
     }
     return sum;

@@ -19,8 +19,8 @@ constexpr double kGatherError = 0.03;  // of a gather's collisions, typically
 constexpr int kMostBounces = 96;
 constexpr double kDark = 1e-6;  // of the power scattered once: bounces below it are left to the tail
 
-// How far the rays are right where they and a gather differ by `difference`, relative: a gather errs by some percent, or
-// by what noise does not explain.
+// How far the rays are right where they and a gather differ by `difference`, relative: a gather errs by some percent,
+// or by what noise does not explain.
 double trust_in_rays(double difference, double noise) {
     const double error = std::max(kGatherError * kGatherError, difference * difference - 4.0 * noise * noise);
     return error / (error + noise * noise);

@@ -98,18 +98,10 @@ TEST(Balance, ColoursCollideTogetherInGreySmoke) {
     EXPECT_EQ(e.fraction.z, 0.0);
 }
 
-// The first of every vertex' moments.
-std::vector<float> means(const std::vector<float>& moments) {
-    std::vector<float> first;
-    for (std::size_t i = 0; i < moments.size(); i += kCollisionMoments)
-        first.push_back(moments[i]);
-    return first;
-}
-
 TEST(Balance, FromTheMiddleOfABallEscapesOneTransmittance) {
     for (const float depth : {0.1f, 1.0f, 4.0f}) {
         const Lit lit(make_medium(glowing_ball(16, depth)));
-        for (const float p : means(collision_probabilities(lit.pyramid, std::vector<ivec3>(3, ivec3(0)), 0, 64)))
+        for (const float p : collision_probabilities(lit.pyramid, std::vector<ivec3>(3, ivec3(0)), 0, 64))
             EXPECT_NEAR((1.0f - p) / std::exp(-depth), 1.0f, 0.02f);
     }
 }
@@ -118,7 +110,7 @@ TEST(Balance, FromTheMiddleOfABallEscapesOneTransmittance) {
 TEST(Balance, FromTheSurfaceMoreThanHalfEscapes) {
     const Lit lit(make_medium(glowing_ball(16, 2.0f)));
     const std::vector<ivec3> surface = {{16, 0, 0}, {0, -16, 0}, {0, 0, 16}};
-    for (const float p : means(collision_probabilities(lit.pyramid, surface, 0, 512))) {
+    for (const float p : collision_probabilities(lit.pyramid, surface, 0, 512)) {
         EXPECT_GT(1.0f - p, 0.54f);
         EXPECT_LT(1.0f - p, 0.63f);
     }
@@ -133,7 +125,7 @@ TEST(Balance, CoarseVerticesEscapeAsTheSmokeTheyStandForDoes) {
         for (int y = -reach; y <= reach; ++y)
             for (int z = -reach; z <= reach; ++z)
                 vertices.emplace_back(x, y, z);
-    const std::vector<float> probability = means(collision_probabilities(lit.pyramid, vertices, level, 256));
+    const std::vector<float> probability = collision_probabilities(lit.pyramid, vertices, level, 256);
     double escaped = 0.0, all = 0.0;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         const std::int64_t n = lit.pyramid.lattice(level).find_node(vertices[i]);
@@ -160,7 +152,7 @@ TEST(Balance, DirectionalLightCollidesWhereItGoes) {
     const Lit lit(make_medium(glowing_ball(12, 1.5f)));
     const ivec3 face(12, 0, 0);
     const auto node = std::size_t(lit.medium.lattice.find_node(face));
-    const std::vector<float> moments = collision_probabilities(lit.pyramid, {face}, 0, 4096);
+    const std::vector<float> moments = collision_probabilities(lit.pyramid, {face}, 0, 4096, kCollisionMoments);
     for (const float sign : {1.0f, -1.0f}) {
         std::vector<Rgb> intensity(lit.intensity.size(), Rgb(0.0f));
         std::vector<float> directional(intensity.size() * 24, 0.0f);
