@@ -1,0 +1,24 @@
+// From the files that a shot names to the triangles of one frame.
+#pragma once
+
+#include <filesystem>
+
+#include "core/progress.h"
+#include "scene/scene.h"
+#include "scene/settings.h"
+
+namespace brisance {
+
+// Everything of the settings but the lights that are not surfaces: files at `seconds` of their animations, quads,
+// spheres, and lights of kind Quad, relative to `origin`. Relative files are relative to `folder`.
+//
+// Throws Error MissingInput (no such file, buffer or texture) or BadData (what the file says cannot be used), Temporary
+// (more memory than `memory_limit` bytes would be needed, told before it is taken). Triangles without area, or with
+// positions that are not finite, are left out with a warning that counts them.
+Scene load_scene(const SceneSettings& settings, const std::filesystem::path& folder, double seconds,
+                 const dvec3& origin, std::uint64_t memory_limit, Progress& progress);
+
+// The cameras of one glTF file at a moment. For choosing one before anything else is read.
+std::vector<SceneCamera> load_cameras(const SceneFile& file, const std::filesystem::path& folder, double seconds);
+
+}  // namespace brisance

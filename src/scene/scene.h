@@ -1,0 +1,79 @@
+// One frame's surfaces, as triangles in one space, with their materials and textures: what is left of files, nodes and
+// animation once a moment is chosen.
+//
+// Positions are "local": metres relative to `origin`, axes parallel to the world's, so that a set 10^6 m from the
+// world's origin keeps its digits in single precision.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/vec.h"
+#include "scene/texture.h"
+#include "surfaces/material.h"
+
+namespace brisance {
+
+// A texture as a material uses it: `uv` of the mesh, moved by the affine map (KHR_texture_transform), looks it up.
+struct TextureUse {
+    int texture = -1;  // of the scene; -1: none, the factor stands alone
+    glm::mat3x2 texture_from_uv{1.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f};
+};
+
+enum class AlphaMode {
+    Opaque,
+    Mask,  // cut out where alpha is below the cutoff
+    Blend  // lets through 1 - alpha
+};
+
+// Each texture multiplies the factor beside it, in the channels that glTF gives it.
+struct SceneMaterial {
+    std::string name;
+    SurfaceMaterial surface;  // factors
+    TextureUse base_colour;   // rgb; its a multiplies alpha
+    TextureUse metal_rough;   // b: metallic, g: roughness
+    TextureUse transmission;  // r
+    TextureUse specular;      // a
+    TextureUse specular_colour;
+    TextureUse emission_colour;
+    TextureUse normal;
+    float normal_scale = 1.0f;
+    Rgb emission{0.0f};  // radiance [W/(m^2 sr)]; emissiveFactor times KHR_materials_emissive_strength
+    AlphaMode alpha_mode = AlphaMode::Opaque;
+    float alpha = 1.0f, alpha_cutoff = 0.5f;
+    bool double_sided = false;  // false: emits from the front only. Both sides scatter in either case
+    bool thin = false;          // transmits as a sheet without thickness does: nothing is bent
+    bool emits() const { return emission != Rgb(0.0f); }
+};
+
+// Triangles of one material. Counter-clockwise as seen from the front.
+struct SceneMesh {
+    std::string name;
+    std::vector<vec3> positions;  // local [m]
+    std::vector<vec3> normals;    // unit, per position; empty: flat
+    std::vector<vec2> uv;         // per position; empty: no textures
+    std::vector<glm::uvec3> triangles;
+    int material = 0;
+};
+
+struct SceneCamera {
+    std::string name;
+    dmat4 world_from_camera{1.0};  // rigid; x right, y up, looking along -z
+    double vertical_fov_degrees = 35.0;
+    std::optional<double> aspect;  // width over height, where the file says
+};
+
+struct Scene {
+    dvec3 origin{0.0};  // world [m]
+    std::vector<SceneMesh> meshes;
+    std::vector<SceneMaterial> materials;  // at least one where there are meshes
+    std::vector<Texture> textures;
+    std::vector<SceneCamera> cameras;
+
+    std::size_t triangle_count() const;
+    std::uint64_t bytes() const;
+};
+
+}  // namespace brisance
