@@ -28,3 +28,6 @@ foreach(property INTERFACE_INCLUDE_DIRECTORIES INTERFACE_SYSTEM_INCLUDE_DIRECTOR
     endforeach()
     set_target_properties(OpenImageIO::OpenImageIO PROPERTIES ${property} "${existing}")
 endforeach()
+
+# Embree 3 or 4: both call their package and their target "embree".
+find_package(embree CONFIG REQUIRED)

@@ -58,8 +58,8 @@ BrickLattice cell_lattice(const Medium& medium) {
     return BrickLattice(std::move(bricks));
 }
 
-LatticeRay lattice_ray(const BrickLattice& bricks, const Medium& medium, const Ray& ray) {
-    return lattice_ray(bricks, glm::inverse(dmat3(medium.world_from_index)), medium.reference_node, ray);
+LatticeRay lattice_ray(const BrickLattice& bricks, const Medium& medium, const Ray& ray, double end) {
+    return lattice_ray(bricks, glm::inverse(dmat3(medium.world_from_index)), medium.reference_node, ray, end);
 }
 
 }  // namespace brisance

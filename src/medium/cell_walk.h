@@ -3,14 +3,10 @@
 
 #include <limits>
 
+#include "core/ray.h"
 #include "medium/medium.h"
 
 namespace brisance {
-
-struct Ray {
-    dvec3 origin{0.0};     // local [m]
-    dvec3 direction{0.0};  // unit
-};
 
 // A ray counted in nodes from the first node of a lattice's lowest brick, clipped to the bricks' bounding box.
 // Distances along it are metres.
@@ -24,7 +20,8 @@ struct LatticeRay {
 // `index_from_local` is the inverse of the medium's linear part in double precision.
 LatticeRay lattice_ray(const BrickLattice& bricks, const dmat3& index_from_local, const ivec3& reference_node,
                        const Ray& ray, double end = std::numeric_limits<double>::infinity());
-LatticeRay lattice_ray(const BrickLattice& bricks, const Medium& medium, const Ray& ray);
+LatticeRay lattice_ray(const BrickLattice& bricks, const Medium& medium, const Ray& ray,
+                       double end = std::numeric_limits<double>::infinity());
 
 // The bricks whose cells (from a node to the next on every axis) touch a node that absorbs or emits.
 BrickLattice cell_lattice(const Medium& medium);

@@ -45,6 +45,20 @@ double fitting_distance(const dvec3& half_size, const dvec3& back, const CameraS
     return distance;
 }
 
+// Looking at a box from the front, slightly above and from the right.
+CameraSettings framed_on(dvec3 low, dvec3 high, const dvec3& up, const CameraSettings& like) {
+    if (!(low.x <= high.x))
+        low = dvec3(-1.0), high = dvec3(1.0);
+    CameraSettings s = like;
+    s.world_from_camera.reset();
+    s.target = 0.5 * (low + high);
+    s.up = up;
+    const dvec3 right(1.0, 0.0, 0.0);
+    const dvec3 back = glm::normalize(0.25 * right + glm::cross(right, up) + 0.22 * up);
+    s.eye = s.target + back * fitting_distance(0.5 * (high - low), back, s);
+    return s;
+}
+
 }  // namespace
 
 Camera::Camera(const CameraSettings& settings, const Medium& medium) : settings_(settings) {
@@ -70,7 +84,6 @@ dmat4 Camera::camera_from_world() const {
 }
 
 CameraSettings framed_camera(const Medium& medium, const CameraSettings& like) {
-    CameraSettings s = like;
     dvec3 low(1e300), high(-1e300);
     for (std::size_t b = 0; b < medium.lattice.brick_count(); ++b) {
         const std::size_t base = b * BrickLattice::kNodes;
@@ -84,14 +97,17 @@ CameraSettings framed_camera(const Medium& medium, const CameraSettings& like) {
             high = glm::max(high, p);
         }
     }
-    if (!(low.x <= high.x))
-        low = dvec3(-1.0), high = dvec3(1.0);
-    s.world_from_camera.reset();
-    s.target = 0.5 * (low + high);
-    s.up = dvec3(0.0, 0.0, 1.0);
-    const dvec3 back = glm::normalize(dvec3(0.25, -1.0, 0.22));
-    s.eye = s.target + back * fitting_distance(0.5 * (high - low), back, s);
-    return s;
+    return framed_on(low, high, dvec3(0.0, 0.0, 1.0), like);
+}
+
+CameraSettings framed_camera(const Scene& scene, const dvec3& up, const CameraSettings& like) {
+    dvec3 low(1e300), high(-1e300);
+    for (const SceneMesh& mesh : scene.meshes)
+        for (const vec3& p : mesh.positions) {
+            low = glm::min(low, dvec3(p));
+            high = glm::max(high, dvec3(p));
+        }
+    return framed_on(low + scene.origin, high + scene.origin, up, like);
 }
 
 }  // namespace brisance

@@ -3,6 +3,7 @@
 
 #include "medium/cell_walk.h"
 #include "render/camera_settings.h"
+#include "scene/scene.h"
 
 namespace brisance {
 
@@ -30,5 +31,7 @@ private:
 
 // A camera that sees all of the medium's emission and smoke from the front, slightly above the middle, z up.
 CameraSettings framed_camera(const Medium& medium, const CameraSettings& like);
+// The same for all of a scene's triangles.
+CameraSettings framed_camera(const Scene& scene, const dvec3& up, const CameraSettings& like);
 
 }  // namespace brisance

@@ -70,15 +70,15 @@ void add_part(RaySum& sum, const CellField& field, const Part& p) {
     sum.v += v;
     sum.mv += slot(r, CellRecord::MV) * scattering.opacity;
     sum.mm += slot(r, CellRecord::MM) * scattering.opacity;
-    sum.albedo_sum += own.opacity * r[CellRecord::Albedo];
+    sum.albedo_sum += Rgb(own.opacity * r[CellRecord::Albedo]);
     sum.distance_weight += own.opacity;
     sum.distance_sum += own.opacity * p.distance;
 }
 
 // Visits every part of every cell until visit(part) returns false.
 template <class Visit>
-void walk_parts(const CellField& field, const Ray& ray, int parts, const Visit& visit) {
-    walk_cells(field, ray, [&](const CellSegment& s) {
+void walk_parts(const CellField& field, const Ray& ray, int parts, double end, const Visit& visit) {
+    const auto visit_parts = [&](const CellSegment& s) {
         const double length = s.end - s.begin;
         const bool thick = field.majorant(s.brick) * length > kThickCell;
         const int n = thick ? std::max(parts, kThickCellParts) : parts;
@@ -92,7 +92,8 @@ void walk_parts(const CellField& field, const Ray& ray, int parts, const Visit& 
                 return false;
         }
         return true;
-    });
+    };
+    walk_cells(field, ray, visit_parts, end);
 }
 
 struct PixelSample {
@@ -152,7 +153,7 @@ public:
         put(v_, i, s.v);
         put(mv_, i, s.mv);
         put(mm_, i, s.mm);
-        put(albedo_, i, Rgb(s.albedo_sum));
+        put(albedo_, i, s.albedo_sum);
         // Distances are along the ray; Z is along the view axis.
         const double cosine = glm::dot(camera_.ray(x + 0.5, y + 0.5).direction, camera_.forward());
         image_.layers[z_].pixels[i] =
@@ -195,7 +196,7 @@ void marched_row(const CellField& field, const Camera& camera, int y, const std:
     };
     for_rays([&](int, const PixelSample&, const Ray& ray) {
         RaySum sum;
-        walk_parts(field, ray, parts, [&](const Part& part) {
+        walk_parts(field, ray, parts, std::numeric_limits<double>::infinity(), [&](const Part& part) {
             points.push_back({vec3(ray.origin + ray.direction * double(part.distance)), -vec3(ray.direction)});
             add_part(sum, field, part);
             return sum.similar_depth < kOpaqueDepth;
@@ -207,7 +208,7 @@ void marched_row(const CellField& field, const Camera& camera, int y, const std:
     std::vector<RaySum> row(camera.settings().width);
     for_rays([&](int x, const PixelSample& s, const Ray& ray) {
         RaySum sum;
-        walk_parts(field, ray, parts, [&](Part part) {
+        walk_parts(field, ray, parts, std::numeric_limits<double>::infinity(), [&](Part part) {
             const PointLighting& l = lighting[next++];
             for (int c = 0; c < 3; ++c) {
                 part.record.value[CellRecord::MV + c] = l.single[c];
@@ -223,11 +224,28 @@ void marched_row(const CellField& field, const Camera& camera, int y, const std:
         writer.pixel(x, y, row[x]);
 }
 
+// What a ray sees up to the first surface, and that.
+RaySum look(const CellField& field, const Ray& ray, const PictureSettings& settings) {
+    if (!settings.surroundings)
+        return integrate(field, ray, settings.parts);
+    const std::optional<SurfaceHit> hit = settings.surroundings->intersector().first_hit(ray);
+    if (!hit)
+        return integrate(field, ray, settings.parts);
+    RaySum sum = integrate(field, ray, settings.parts, hit->distance);
+    const float through = std::exp(-sum.depth);
+    sum.alpha = 1.0f;
+    sum.distance_weight += through;
+    sum.distance_sum += through * static_cast<float>(hit->distance);
+    const SurfacePoint point = surface_point(settings.surroundings->scene(), *hit, -ray.direction);
+    sum.albedo_sum += through * point.material.base_colour;
+    return sum;
+}
+
 }  // namespace
 
-RaySum integrate(const CellField& field, const Ray& ray, int parts) {
+RaySum integrate(const CellField& field, const Ray& ray, int parts, double end) {
     RaySum sum;
-    walk_parts(field, ray, parts, [&](const Part& part) {
+    walk_parts(field, ray, parts, end, [&](const Part& part) {
         add_part(sum, field, part);
         return sum.similar_depth < kOpaqueDepth;
     });
@@ -263,7 +281,7 @@ Image render_picture(const CellField& field, const Camera& camera, const Picture
         for (int x = 0; x < width; ++x) {
             RaySum sum;
             for (const PixelSample& s : samples)
-                add_weighted(sum, integrate(field, camera.ray(x + 0.5 + s.x, y + 0.5 + s.y), settings.parts), s.weight);
+                add_weighted(sum, look(field, camera.ray(x + 0.5 + s.x, y + 0.5 + s.y), settings), s.weight);
             writer.pixel(x, static_cast<int>(y), sum);
         }
         progress.fraction(double(++done) / height);

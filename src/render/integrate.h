@@ -2,9 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "core/progress.h"
+#include "emitters/surroundings.h"
 #include "film/image.h"
 #include "render/camera.h"
 #include "render/cell_field.h"
@@ -14,8 +16,9 @@ namespace brisance {
 
 // Integrates one ray against the fields' own interpolation. Each cell's segment is halved `halvings` + 1 ways; on every
 // part extinction and source are constant (their values at Gauss points, so that the cell's optical depth is exact for
-// two parts) and the part is integrated in closed form with phi1.
-RaySum integrate(const CellField& field, const Ray& ray, int parts);
+// two parts) and the part is integrated in closed form with phi1. `end`: where a surface ends the ray [m].
+RaySum integrate(const CellField& field, const Ray& ray, int parts,
+                 double end = std::numeric_limits<double>::infinity());
 
 // Lighting asked for sample by sample instead of from a field (GatherMethod::RayMarch): fills `lighting` with the
 // source function (albedo times in-scattered radiance) at each point, per scattering cell.
@@ -34,6 +37,7 @@ struct PictureSettings {
     bool cells = true;         // layers per ledger cell
     bool has_single = false;
     bool has_multiple = false;
+    const Surroundings* surroundings = nullptr;  // rays end at its surfaces
 };
 
 // The samples along a pixel's side that keep neighbouring rays within a fifth of a voxel where the medium is nearest.

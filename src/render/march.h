@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "medium/cell_walk.h"
 #include "render/cell_field.h"
@@ -21,10 +22,11 @@ inline float mean_depth(float tau) {
 }
 
 // Calls visit(segment) for every cell with extinction or emission that the ray crosses in front of its origin, in
-// order, until visit returns false.
+// order, up to `end` metres, until visit returns false.
 template <class Visit>
-void walk_cells(const CellField& field, const Ray& ray, const Visit& visit) {
-    walk_bricks(field.bricks(), lattice_ray(field.bricks(), field.medium(), ray),
+void walk_cells(const CellField& field, const Ray& ray, const Visit& visit,
+                double end = std::numeric_limits<double>::infinity()) {
+    walk_bricks(field.bricks(), lattice_ray(field.bricks(), field.medium(), ray, end),
                 [&](const CellSegment& brick) { return walk_cubes<1>(brick, visit); });
 }
 
@@ -37,7 +39,7 @@ struct RaySum {
     float alpha = 0.0f;            // 1 - exp(-depth), set when the ray is done
     float distance_weight = 0.0f;  // opacity gathered, ...
     float distance_sum = 0.0f;     // ... times the distance along the ray [m]
-    float albedo_sum = 0.0f;       // ... times albedo (luminance)
+    Rgb albedo_sum{0.0f};          // ... times albedo (the medium's as luminance)
 };
 
 // Beyond this optical depth (transmittance 1e-5) a ray ends; alpha is then 1 to four digits.

@@ -4,12 +4,9 @@ namespace brisance {
 
 std::vector<std::string> Plan::cells() const {
     std::vector<std::string> names;
-    if (emission)
-        names.push_back("V");
-    if (single)
-        names.push_back("MV");
-    if (multiple)
-        names.push_back("MM");
+    for (int cell = 0; cell < kCells; ++cell)
+        if (needed[cell])
+            names.emplace_back(kCellNames[cell]);
     return names;
 }
 
@@ -25,28 +22,53 @@ std::string why_no_emission(const Shot& shot, const Medium& medium) {
     return "no voxel emits: the mapped grids are empty, zero, or below fire.threshold";
 }
 
+// Which cells can be other than zero.
+void decide(Plan& plan, bool scatters, int bounces) {
+    const bool once = bounces != 0, twice = bounces < 0 || bounces > 1, lit = plan.emission || plan.emitters;
+    const auto set = [&](Cell cell, bool needed) { plan.needed[static_cast<int>(cell)] = needed; };
+    set(Cell::V, plan.emission);
+    set(Cell::A, plan.emitters);
+    set(Cell::MV, plan.emission && scatters && once);
+    set(Cell::MM, lit && scatters && twice);
+    set(Cell::MS, lit && scatters && plan.surfaces && twice);
+    set(Cell::MA, plan.emitters && scatters && once);
+    set(Cell::SV, plan.emission && plan.surfaces && once);
+    set(Cell::SM, lit && scatters && plan.surfaces && twice);
+    set(Cell::SS, lit && plan.surfaces && twice);
+    set(Cell::SA, plan.emitters && plan.surfaces && once);
+    plan.single = plan.needs(Cell::MV);
+    plan.multiple = plan.needs(Cell::MM);
+}
+
 }  // namespace
 
-Plan plan_cells(const Shot& shot, const Medium& medium) {
+Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surroundings) {
     Plan plan;
     const auto skip = [&](const char* part, const std::string& reason) { plan.skipped.push_back({part, reason}); };
-    skip("row S, column S", "no surfaces in the shot");
-    skip("column A", "no analytic lights in the shot");
+    plan.surfaces = surroundings && surroundings->has_surfaces();
+    plan.emitters = surroundings && !surroundings->emitters().empty();
     plan.emission = medium.emits();
+    const int bounces = shot.scattering.bounces;
+    const bool scatters = medium.scatters();
+    decide(plan, scatters, bounces);
+    if (!plan.surfaces)
+        skip("row S, column S", "no surfaces in the shot");
+    if (!plan.emitters)
+        skip("column A", "no analytic lights in the shot");
+    if (medium.lattice.empty() && shot.volume.file.empty()) {
+        skip("column V, row M, column M", "no volume in the shot");
+        return plan;
+    }
     if (!plan.emission) {
-        const std::string reason = why_no_emission(shot, medium);
-        skip("V", reason);
-        skip("MV", "nothing emits");
-        skip("MM", "nothing emits");
+        skip("V", why_no_emission(shot, medium));
+        for (const Cell cell : {Cell::MV, Cell::MM, Cell::SV})
+            if (!plan.needs(cell) && (cell != Cell::SV || plan.surfaces))
+                skip(name_of(cell), "nothing emits");
         skip("lights, hierarchy, shadow maps", "nothing emits");
         return plan;
     }
     const bool lit_by_grid = shot.method == RenderMethod::LightingGrid;
-    const int bounces = shot.scattering.bounces;
-    const bool scatters = medium.scatters();
     const std::string dark = medium.max_extinction <= 0.0f ? "there is no smoke to scatter" : "the albedo is zero";
-    plan.single = scatters && bounces != 0;
-    plan.multiple = scatters && (bounces < 0 || bounces > 1);
     if (!plan.single)
         skip("MV", scatters ? "scattering.bounces is 0" : dark);
     if (!plan.multiple)

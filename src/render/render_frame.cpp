@@ -9,9 +9,9 @@
 #include "render/camera.h"
 #include "render/cell_field.h"
 #include "render/certify.h"
+#include "render/frame_input.h"
 #include "render/integrate.h"
 #include "render/lighting.h"
-#include "render/load_medium.h"
 #include "render/plan.h"
 #include "render/trace_picture.h"
 #include "shot/write_shot.h"
@@ -177,15 +177,15 @@ void add_certificate(RenderedFrame& out, const Shot& shot, const Plan& plan, con
     progress.notice("certificate: " + certificate.line());
 }
 
-void render_into(RenderedFrame& out, const Shot& shot, const Medium& medium, const Checkpoint& checkpoint,
-                 Progress& progress) {
-    const Plan plan = plan_cells(shot, medium);
+void render_into(RenderedFrame& out, const Shot& shot, const Medium& medium, const Surroundings* surroundings,
+                 const CameraSettings& camera_settings, const Checkpoint& checkpoint, Progress& progress) {
+    const Plan plan = plan_cells(shot, medium, surroundings);
     out.statistics.cells = plan.cells();
     out.statistics.skipped = plan.skipped;
-    const CameraSettings camera_settings = shot.camera_given ? shot.camera : framed_camera(medium, shot.camera);
     const Camera camera(camera_settings, medium);
     if (shot.method == RenderMethod::Path) {
-        TracedPicture traced = trace_picture(shot, plan, medium, camera, checkpoint, out.statistics, progress);
+        TracedPicture traced =
+            trace_picture(shot, plan, medium, surroundings, camera, checkpoint, out.statistics, progress);
         out.image = std::move(traced.image);
         out.halves = {std::move(traced.halves[0]), std::move(traced.halves[1])};
         out.metadata.samples_per_pixel = traced.samples_per_pixel;
@@ -207,27 +207,29 @@ RenderedFrame render_frame(const Shot& shot, const std::filesystem::path& volume
     const Stopwatch watch;
     RenderedFrame out;
     Recorder progress(to, out.statistics);
-    const Medium medium = load_medium(shot, volume, out.statistics, progress);
-    render_into(out, shot, medium, {checkpoint, checkpoint_key(shot, volume, frame)}, progress);
+    const FrameInput input = load_frame(shot, volume, frame, out.statistics, progress);
+    render_into(out, shot, input.medium, input.surroundings.get(), input.camera,
+                {checkpoint, checkpoint_key(shot, volume, frame)}, progress);
     out.metadata.frame = frame;
     out.statistics.seconds = out.metadata.render_seconds = watch.seconds();
     return out;
 }
 
-RenderedFrame render_medium(const Shot& shot, const Medium& medium, Progress& to) {
+RenderedFrame render_medium(const Shot& shot, const Medium& medium, Progress& to, const Surroundings* surroundings) {
     const Stopwatch watch;
     RenderedFrame out;
     Recorder progress(to, out.statistics);
-    render_into(out, shot, medium, {}, progress);
+    const CameraSettings camera = shot.camera_given ? shot.camera : framed_camera(medium, shot.camera);
+    render_into(out, shot, medium, surroundings, camera, {}, progress);
     out.statistics.seconds = out.metadata.render_seconds = watch.seconds();
     return out;
 }
 
-Statistics plan_frame(const Shot& shot, const std::filesystem::path& volume, Progress& to) {
+Statistics plan_frame(const Shot& shot, const std::filesystem::path& volume, int frame, Progress& to) {
     Statistics statistics;
     Recorder progress(to, statistics);
-    const Medium medium = load_medium(shot, volume, statistics, progress);
-    const Plan plan = plan_cells(shot, medium);
+    const FrameInput input = load_frame(shot, volume, frame, statistics, progress);
+    const Plan plan = plan_cells(shot, input.medium, input.surroundings.get());
     statistics.cells = plan.cells();
     statistics.skipped = plan.skipped;
     return statistics;

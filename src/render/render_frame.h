@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "core/progress.h"
+#include "emitters/surroundings.h"
 #include "film/image.h"
 #include "medium/medium.h"
 #include "render/statistics.h"
@@ -18,16 +19,17 @@ struct RenderedFrame {
     Statistics statistics;
 };
 
-// `volume` is the resolved .vdb file of this frame. Throws Error. The shot may leave camera and exposure to be framed
-// on the volume (camera_given). Same shot, same bits, whatever the number of threads.
+// `volume` is the resolved .vdb file of this frame; empty where the shot has none. Throws Error. The shot may leave
+// camera and exposure to be chosen (frame_input.h). Same shot, same bits, whatever the number of threads.
 // `checkpoint` (method path): the file that keeps the state of a long render, and that it goes on from; empty: none.
 RenderedFrame render_frame(const Shot& shot, const std::filesystem::path& volume, int frame, Progress& progress,
                            const std::filesystem::path& checkpoint = {});
 
 // The same from a medium that is already there.
-RenderedFrame render_medium(const Shot& shot, const Medium& medium, Progress& progress);
+RenderedFrame render_medium(const Shot& shot, const Medium& medium, Progress& progress,
+                            const Surroundings* surroundings = nullptr);
 
-// The plan without the pixels: which cells run, what is left out and why. Reads the volume.
-Statistics plan_frame(const Shot& shot, const std::filesystem::path& volume, Progress& progress);
+// The plan without the pixels: which cells run, what is left out and why. Reads the files.
+Statistics plan_frame(const Shot& shot, const std::filesystem::path& volume, int frame, Progress& progress);
 
 }  // namespace brisance

@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "render/camera.h"
-#include "render/load_medium.h"
+#include "render/frame_input.h"
 #include "render/trace_picture.h"
 
 namespace brisance {
@@ -26,19 +26,19 @@ bool TracedPath::finite() const {
 }
 
 bool finite(const TracedVertex& vertex) {
-    return all_finite(std::array{vertex.throughput, vertex.along_segment, vertex.from_fire});
+    return all_finite(std::array{vertex.throughput, vertex.along_segment, vertex.from_fire, vertex.from_emitters});
 }
 
-TracedPath trace_path(const Shot& shot, const std::filesystem::path& volume, int x, int y, std::uint64_t sample,
-                      Progress& progress) {
+TracedPath trace_path(const Shot& shot, const std::filesystem::path& volume, int frame, int x, int y,
+                      std::uint64_t sample, Progress& progress) {
     if (x < 0 || y < 0 || x >= shot.camera.width || y >= shot.camera.height)
         throw Error(ExitCode::Usage, "pixel " + std::to_string(x) + " " + std::to_string(y) +
                                          " is outside of the picture, which has " + std::to_string(shot.camera.width) +
                                          " x " + std::to_string(shot.camera.height));
     Statistics statistics;
-    const Medium medium = load_medium(shot, volume, statistics, progress);
-    const Camera camera(shot.camera_given ? shot.camera : framed_camera(medium, shot.camera), medium);
-    const PathTracer tracer(medium, shot.tracing, shot.scattering.bounces);
+    const FrameInput input = load_frame(shot, volume, frame, statistics, progress);
+    const Camera camera(input.camera, input.medium);
+    const PathTracer tracer(input.medium, shot.tracing, shot.scattering.bounces, input.surroundings.get());
     const std::size_t pixel = std::size_t(y) * shot.camera.width + x;
     TracedPath out;
     PathStatistics counts;
@@ -46,7 +46,7 @@ TracedPath trace_path(const Shot& shot, const std::filesystem::path& volume, int
     out.orders = trace_sample(tracer, camera, pixel, sample, counts);
     out.scatterings = counts.scatterings;
     for (TracedVertex& vertex : out.vertices)
-        vertex.position += medium.world_of_local(vec3(0.0f));
+        vertex.position += input.medium.world_of_local(vec3(0.0f));
     const Ray local = sample_ray(camera, shot.tracing.seed, pixel, sample);
     out.ray = {dvec3(glm::inverse(camera.camera_from_world())[3]), local.direction};  // local space is not turned
     return out;

@@ -25,7 +25,7 @@ bool finite(const TracedVertex& vertex);
 
 // The path that method path gives number `sample` in the pixel at (x, y), counted from the top left. The same bits as
 // in the picture. Throws Error Usage for a pixel outside of the picture, and as render_frame.
-TracedPath trace_path(const Shot& shot, const std::filesystem::path& volume, int x, int y, std::uint64_t sample,
-                      Progress& progress);
+TracedPath trace_path(const Shot& shot, const std::filesystem::path& volume, int frame, int x, int y,
+                      std::uint64_t sample, Progress& progress);
 
 }  // namespace brisance

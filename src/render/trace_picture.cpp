@@ -54,14 +54,14 @@ Ray ray_at(const Camera& camera, std::size_t pixel, const Place& place) {
 
 class Tracing {
 public:
-    Tracing(const Shot& shot, const Medium& medium, const Camera& camera, const Checkpoint& checkpoint,
-            Progress& progress)
+    Tracing(const Shot& shot, const Medium& medium, const Surroundings* surroundings, const Camera& camera,
+            const Checkpoint& checkpoint, Progress& progress)
         : shot_(shot),
           camera_(camera),
           checkpoint_(checkpoint),
           progress_(progress),
-          tracer_(medium, shot.tracing, shot.scattering.bounces),
-          film_(camera.settings().width, camera.settings().height, shot.output.bounce_layers) {
+          tracer_(medium, shot.tracing, shot.scattering.bounces, surroundings),
+          film_(camera.settings().width, camera.settings().height, shot.output.bounce_layers, surroundings) {
         if (!checkpoint.file.empty() && std::filesystem::exists(checkpoint.file))
             resume();
         if (!checkpoint.file.empty())
@@ -182,7 +182,7 @@ private:
 
 Rgb beauty(const PathFilm& film, std::size_t pixel, int half) {
     dvec3 sum(0.0);
-    for (int which = 0; which < film.sums(); ++which)
+    for (int which = 0; which < film.order_sums(); ++which)
         for (int c = 0; c < 3; ++c)
             sum[c] += film.sum(pixel, half, which, c);
     return Rgb(sum / double(std::max<std::uint64_t>(film.work.passes, 1)));
@@ -223,17 +223,12 @@ public:
         Layer& colour = add(image, "", {"R", "G", "B", "A"});
         const Layer& alpha = sampled_.layer("");
         for (std::size_t p = 0; p < pixels(); ++p) {
-            const Rgb c = mean(p, half, 0, film_.sums());
+            const Rgb c = mean(p, half, 0, film_.order_sums());
             float* out = &colour.pixels[4 * p];
             out[0] = c.x, out[1] = c.y, out[2] = c.z, out[3] = alpha.pixels[4 * p + 3];
         }
-        if (output_.cell_layers) {
-            fill(image, "V", half, 0, 1);
-            if (plan_.single)
-                fill(image, "MV", half, 1, 2);
-            if (plan_.multiple)
-                fill(image, "MM", half, 2, film_.sums());
-        }
+        if (output_.cell_layers)
+            add_cells(image, half);
         add_orders(image, half);
         if (half < 0)
             add_variance(image);
@@ -268,11 +263,27 @@ private:
         }
     }
 
+    void add_cells(Image& image, int half) const {
+        if (film_.sums() > film_.order_sums()) {
+            for (int cell = 0; cell < kCells; ++cell)
+                if (plan_.needed[cell])
+                    fill(image, kCellNames[cell], half, film_.order_sums() + cell, film_.order_sums() + cell + 1);
+            return;
+        }
+        fill(image, "V", half, 0, 1);
+        if (plan_.single)
+            fill(image, "MV", half, 1, 2);
+        if (plan_.multiple)
+            fill(image, "MM", half, 2, film_.order_sums());
+    }
+
     void add_orders(Image& image, int half) const {
-        if (!output_.bounce_layers || !plan_.single)
+        const bool once = plan_.single || plan_.needs(Cell::SV) || plan_.needs(Cell::SA) || plan_.needs(Cell::MA);
+        const bool twice = plan_.multiple || plan_.needs(Cell::SS);
+        if (!output_.bounce_layers || !once)
             return;
         fill(image, "bounce1", half, 1, 2);
-        for (int order = 2; plan_.multiple && order < kPathOrders; ++order) {
+        for (int order = 2; twice && order < kPathOrders; ++order) {
             const bool last = order + 1 == kPathOrders;
             fill(image, last ? "bounces_beyond" + std::to_string(order - 1) : "bounce" + std::to_string(order), half,
                  order, order + 1);
@@ -283,7 +294,7 @@ private:
         Layer& layer = add(image, "variance", kColour);
         const double n = 2.0 * film_.work.passes;
         for (std::size_t p = 0; p < pixels(); ++p) {
-            const Rgb m = mean(p, -1, 0, film_.sums());
+            const Rgb m = mean(p, -1, 0, film_.order_sums());
             for (int c = 0; c < 3; ++c)
                 layer.pixels[3 * p + c] = static_cast<float>(
                     std::max(0.0, film_.square(p, c) / n - double(m[c]) * m[c]) / std::max(n - 1.0, 1.0));
@@ -297,13 +308,14 @@ private:
 };
 
 // Alpha, depth and albedo have nothing random about them: a few of the camera's marches give them.
-Image sampled_layers(const Medium& medium, const Camera& camera) {
+Image sampled_layers(const Medium& medium, const Surroundings* surroundings, const Camera& camera) {
     constexpr int kEnough = 2;  // rays along a pixel's side
     const CellField field(medium, {}, {});
     PictureSettings settings;
     const int asked = camera.settings().samples_per_axis;
     settings.samples_per_axis = asked > 0 ? asked : std::min(automatic_samples(camera, field), kEnough);
     settings.cells = false;
+    settings.surroundings = surroundings;
     Progress silent;
     return render_picture(field, camera, settings, {}, silent);
 }
@@ -311,10 +323,12 @@ Image sampled_layers(const Medium& medium, const Camera& camera) {
 void weigh(PathSum& sum, PathStatistics& statistics, float weight) {
     for (Rgb& order : sum)
         order *= weight;
+    for (Rgb& cell : sum.cells)
+        cell *= weight;
     if (!statistics.vertices)
         return;
     for (TracedVertex& vertex : *statistics.vertices)
-        for (Rgb* part : {&vertex.throughput, &vertex.along_segment, &vertex.from_fire})
+        for (Rgb* part : {&vertex.throughput, &vertex.along_segment, &vertex.from_fire, &vertex.from_emitters})
             *part *= weight;
 }
 
@@ -348,12 +362,13 @@ PathSum trace_sample(const PathTracer& tracer, const Camera& camera, std::size_t
     return sum;
 }
 
-TracedPicture trace_picture(const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera,
-                            const Checkpoint& checkpoint, Statistics& statistics, Progress& progress) {
+TracedPicture trace_picture(const Shot& shot, const Plan& plan, const Medium& medium, const Surroundings* surroundings,
+                            const Camera& camera, const Checkpoint& checkpoint, Statistics& statistics,
+                            Progress& progress) {
     progress.stage("path tracing");
     const Stopwatch watch;
     const std::clock_t cpu = std::clock();
-    Tracing tracing(shot, medium, camera, checkpoint, progress);
+    Tracing tracing(shot, medium, surroundings, camera, checkpoint, progress);
     tracing.run();
     const PathFilm& film = tracing.film();
     report_bad_samples(film, progress);
@@ -369,7 +384,7 @@ TracedPicture trace_picture(const Shot& shot, const Plan& plan, const Medium& me
           {"relative_standard_error", Tracing::relative_standard_error(film)},
           {"relative_standard_error_of_mean", relative_error_of_mean(film)},
           {"not_finite_paths", film.work.not_finite}}});
-    const Image sampled = sampled_layers(medium, camera);
+    const Image sampled = sampled_layers(medium, surroundings, camera);
     const Developer developer(film, sampled, plan, shot.output);
     TracedPicture out{developer.picture(-1), {developer.picture(0), developer.picture(1)}, 2.0 * film.work.passes};
     return out;

@@ -39,7 +39,8 @@ PathSum trace_sample(const PathTracer& tracer, const Camera& camera, std::size_t
 // Goes on from the checkpoint where there is one. Layers as render_picture's, all 32 bit, and "variance": of each
 // pixel's mean, by the spread of its paths; stratification makes the true one smaller.
 // Throws Error BadData when the checkpoint does not belong to this render.
-TracedPicture trace_picture(const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera,
-                            const Checkpoint& checkpoint, Statistics& statistics, Progress& progress);
+TracedPicture trace_picture(const Shot& shot, const Plan& plan, const Medium& medium, const Surroundings* surroundings,
+                            const Camera& camera, const Checkpoint& checkpoint, Statistics& statistics,
+                            Progress& progress);
 
 }  // namespace brisance

@@ -44,7 +44,6 @@ struct SceneMaterial {
     AlphaMode alpha_mode = AlphaMode::Opaque;
     float alpha = 1.0f, alpha_cutoff = 0.5f;
     bool double_sided = false;  // false: emits from the front only. Both sides scatter in either case
-    bool thin = false;          // transmits as a sheet without thickness does: nothing is bent
     bool emits() const { return emission != Rgb(0.0f); }
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -25,5 +26,8 @@ public:
     // Linear RGBA at uv, interpolated in linear light.
     vec4 at(vec2 uv) const;
 };
+
+// From a picture file. `name` stands for it in messages. Throws Error MissingInput or BadData.
+Texture read_texture(const std::filesystem::path& file, const std::string& name);
 
 }  // namespace brisance

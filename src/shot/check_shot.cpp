@@ -66,11 +66,29 @@ void check_tracing(const Given& given, const Shot& shot) {
         reject(given, "tracing.samples", "is none: the render would never end; give tracing.seconds or tracing.error");
 }
 
+void check_lights(const Given& given, const SceneSettings& scene) {
+    int environments = 0;
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+        const LightSettings& light = scene.lights[i];
+        const auto refuse = [&](const std::string& why) {
+            reject(given, "scene.lights", fmt::format("light [{}] {}", i, why));
+        };
+        if ((light.kind == LightKind::Spot || light.kind == LightKind::Sun) && !(glm::length(light.direction) > 0.0))
+            refuse("has a direction of no length");
+        if (light.kind == LightKind::Spot && light.inner_degrees > light.outer_degrees)
+            refuse("has inner_degrees above outer_degrees");
+        if (light.kind == LightKind::Environment && ++environments > 1)
+            refuse("is a second environment; there can be only one");
+    }
+}
+
 }  // namespace
 
 void check_shot(const Shot& shot, const Given& given, const std::string& source) {
-    if (shot.volume.file.empty())
-        throw Error(ExitCode::Usage, fmt::format("{}: volume.file is missing: which .vdb file to render", source));
+    if (shot.volume.file.empty() && shot.scene.empty())
+        throw Error(ExitCode::Usage,
+                    fmt::format("{}: volume.file is missing, and so is a scene: which file to render", source));
+    check_lights(given, shot.scene);
     if (shot.camera.world_from_camera)
         check_matrix(given, *shot.camera.world_from_camera);
     else

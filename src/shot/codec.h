@@ -16,12 +16,20 @@ namespace brisance {
 
 using Json = nlohmann::ordered_json;
 
+// What is wrong inside a value that was not accepted.
+struct Complaint {
+    std::string path;  // from the value: "[2].radius"; empty: the value itself
+    std::string expected;
+    Json value;
+};
+
 template <class T>
 struct Codec {
     Json schema;                                        // JSON Schema of the accepted values
     std::string expected;                               // the same in words, after "expected"
     std::function<std::optional<T>(const Json&)> read;  // absent: not accepted
     std::function<Json(const T&)> write;
+    std::function<std::optional<Complaint>(const Json&)> complain = {};  // of values with parts; else empty
 };
 
 // Bounds are included unless the flag beside them says otherwise.

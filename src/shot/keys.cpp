@@ -19,6 +19,7 @@ std::vector<Key> all_keys() {
                                                text(true), [](Shot & s) -> auto& { return s.name; })};
     add_volume_keys(keys);
     add_medium_keys(keys);
+    add_scene_keys(keys);
     add_camera_keys(keys);
     add_lighting_keys(keys);
     add_tracing_keys(keys);
@@ -55,6 +56,7 @@ const std::vector<std::pair<std::string, std::string>>& shot_sections() {
         {"volume.grids", "which grid plays which role: \"name\" or \"name[index]\", null for automatic, \"\" for none"},
         {"smoke", "from density to optical coefficients"},
         {"fire", "what glows"},
+        {"scene", "surfaces and lights around the volume"},
         {"camera", "the pinhole camera; without eye and target, or world_from_camera, it is framed on the volume"},
         {"lighting", "how the fire's light reaches the smoke"},
         {"scattering", "light scattered more than once"},

@@ -20,9 +20,10 @@ struct Key {
     std::string help;  // one line, with the unit
     std::string expected;
     Json schema;
-    std::function<bool(Shot&, const Json&)> set;          // false: not accepted, the shot is unchanged
-    std::function<std::optional<Json>(const Shot&)> get;  // absent: the shot leaves it open
-    Affects affects = Affects::Picture;                   // set for all keys by their paths
+    std::function<bool(Shot&, const Json&)> set;                         // false: not accepted, the shot is unchanged
+    std::function<std::optional<Json>(const Shot&)> get;                 // absent: the shot leaves it open
+    std::function<std::optional<Complaint>(const Json&)> complain = {};  // of values with parts; else empty
+    Affects affects = Affects::Picture;                                  // set for all keys by their paths
 };
 
 Affects affected_by(const std::string& path);
@@ -43,7 +44,8 @@ Key make_key(const std::string& path, const std::string& help, const Codec<T>& c
             [codec, at](const Shot& shot) -> std::optional<Json> {
                 Shot copy = shot;  // so that one accessor serves both ways
                 return codec.write(at(copy));
-            }};
+            },
+            codec.complain};
 }
 
 // A value whose presence says more than the value: `flag(shot)` becomes true, and it is written only then.
@@ -65,6 +67,7 @@ Key make_flagged_key(const std::string& path, const std::string& help, const Cod
 
 void add_volume_keys(std::vector<Key>& keys);
 void add_medium_keys(std::vector<Key>& keys);
+void add_scene_keys(std::vector<Key>& keys);
 void add_camera_keys(std::vector<Key>& keys);
 void add_lighting_keys(std::vector<Key>& keys);
 void add_tracing_keys(std::vector<Key>& keys);

@@ -56,6 +56,14 @@ std::string shortened(const Json& value) {
                                              shortened(value), kind_of(value)));
 }
 
+// Names the part that is to blame where a value has parts.
+[[noreturn]] void reject_value_of(const Key& key, const std::string& where, const Json& value) {
+    if (key.complain)
+        if (const std::optional<Complaint> part = key.complain(value))
+            reject_value(where, key.path + part->path, part->expected, part->value);
+    reject_value(where, key.path, key.expected, value);
+}
+
 const Key* find_key(const std::string& path) {
     for (const Key& key : shot_keys())
         if (key.path == path)
@@ -88,7 +96,7 @@ public:
     void apply(const std::string& path, const Json& value, const Where& where) {
         if (const Key* key = find_key(path)) {
             if (!key->set(shot_, value))
-                reject_value(where(path), path, key->expected, value);
+                reject_value_of(*key, where(path), value);
             given_[path] = where(path);
             return;
         }

@@ -9,6 +9,7 @@
 #include "medium/settings.h"
 #include "render/camera_settings.h"
 #include "render/certify_settings.h"
+#include "scene/settings.h"
 #include "tracing/settings.h"
 #include "volume/settings.h"
 
@@ -24,8 +25,9 @@ struct Shot {
     std::filesystem::path folder;  // relative files of the shot are relative to this folder
     VolumeSettings volume;
     MediumSettings medium;
+    SceneSettings scene;
     CameraSettings camera;
-    bool camera_given = false;    // false: framed on the volume
+    bool camera_given = false;    // false: framed on what there is, or a glTF file's
     bool exposure_given = false;  // false: chosen from the picture
     RenderMethod method = RenderMethod::LightingGrid;
     LightingSettings lighting;

@@ -79,11 +79,11 @@ double refraction_jacobian(double cos_o, double cos_i, double eta) {
 }  // namespace
 
 Bsdf::Bsdf(const SurfaceMaterial& material, const ShadingFrame& frame)
-    : Bsdf(material, frame, energy_tables(material.ior)) {}
+    : Bsdf(material, frame, needs_energy_tables(material) ? &energy_tables(material.ior) : nullptr) {}
 
-Bsdf::Bsdf(const SurfaceMaterial& m, const ShadingFrame& frame, const EnergyTables& tables)
+Bsdf::Bsdf(const SurfaceMaterial& m, const ShadingFrame& frame, const EnergyTables* tables)
     : frame_(frame),
-      tables_(&tables),
+      tables_(tables),
       ggx_{std::max(double(m.roughness) * m.roughness, kSmoothAlpha)},
       ior_(m.ior),
       smooth_(double(m.roughness) * m.roughness < kSmoothAlpha),
@@ -91,17 +91,20 @@ Bsdf::Bsdf(const SurfaceMaterial& m, const ShadingFrame& frame, const EnergyTabl
       base_(m.base_colour),
       metal_(m.metallic),
       coated_((1.0f - m.metallic) * (1.0f - m.transmission)),
-      glass_((1.0f - m.metallic) * m.transmission),
+      glass_(m.thin ? 0.0f : (1.0f - m.metallic) * m.transmission),
+      sheet_(m.thin ? (1.0f - m.metallic) * m.transmission : 0.0f),
       specular_(matched_ ? 0.0f : m.specular),
       f0_(glm::min(float(normal_reflectance(ior_)) * m.specular_colour, Rgb(1.0f))) {
-    assert(valid(m) && tables.ior() == double(m.ior));
+    assert(valid(m) && (tables ? tables->ior() == double(m.ior) : !needs_energy_tables(m)));
+    if (!tables)
+        return;
     f0_most_ = most(f0_);
-    const float mean_blend = static_cast<float>(tables.mean_blend());
+    const float mean_blend = static_cast<float>(tables->mean_blend());
     base_share_mean_ = 1.0f - specular_ * (f0_most_ + (1.0f - f0_most_) * mean_blend);
     const float crossing = base_share_mean_;
     if (smooth_)
         return;
-    const Albedos means = tables.mean(ggx_.alpha);
+    const Albedos means = tables->mean(ggx_.alpha);
     lost_mean_ = 1.0 - means.reflect;
     metal_again_ = after_many_facets(mean_schlick_fresnel(base_), lost_mean_);
     coat_again_ = after_many_facets(specular_ * (f0_ + (Rgb(1.0f) - f0_) * mean_blend), lost_mean_);
@@ -119,7 +122,7 @@ Bsdf::Bsdf(const SurfaceMaterial& m, const ShadingFrame& frame, const EnergyTabl
 }
 
 Albedos Bsdf::albedos(double cosine) const {
-    return tables_->at(ggx_.alpha, cosine);
+    return tables_ ? tables_->at(ggx_.alpha, cosine) : Albedos{};
 }
 
 double Bsdf::lost_both(int side, const Albedos& albedos) const {
@@ -155,7 +158,7 @@ Rgb Bsdf::facet_reflectance(const View& view, double cosine) const {
     const Rgb coat = coat_fresnel(cosine, view.eta);
     if (view.side == 1)
         return glass_ * coat;
-    return metal_ * schlick_fresnel(base_, cosine) + (coated_ + glass_) * coat;
+    return metal_ * schlick_fresnel(base_, cosine) + (coated_ + glass_ + sheet_) * coat;
 }
 
 Rgb Bsdf::facet_transmittance(const View& view, double cosine) const {
@@ -187,6 +190,12 @@ Bsdf::View Bsdf::view_from(const dvec3& world) const {
     return view;
 }
 
+// What goes on as if there were no surface: through matched media, and through sheets.
+Rgb Bsdf::straight_weight(const View& view) const {
+    const float through = matched_ ? glass_ : 0.0f;
+    return (view.side == 0 ? through + sheet_ * view.base_share : through) * base_;
+}
+
 // In proportion to the light they carry from wo; facets, whose light the angle alone tells badly, never below a tenth.
 void Bsdf::choose_lobes(View& view) const {
     const bool outside = view.side == 0;
@@ -194,9 +203,9 @@ void Bsdf::choose_lobes(View& view) const {
     const float crossing = static_cast<float>(crossing_[view.side]);
     Rgb up = glass_ * lost_both * (1.0f - crossing) * Rgb(1.0f);
     if (outside)
-        up += (metal_ * metal_again_ + coated_ * coat_again_) * lost;
+        up += (metal_ * metal_again_ + (coated_ + sheet_) * coat_again_) * lost;
     const double base = outside ? mean(coated_ * base_ * view.base_share) : 0.0;
-    const double straight = matched_ ? mean(glass_ * base_) : 0.0;
+    const double straight = mean(straight_weight(view));
     const double down = mean(glass_ * lost_both * crossing * base_);
     const double cosine = std::min(view.wo.z, 1.0);
     double facets = mean(facet_reflectance(view, cosine) + facet_transmittance(view, cosine));
@@ -232,7 +241,7 @@ Rgb Bsdf::reflected(const View& view, const dvec3& wi) const {
     const float lambert = static_cast<float>(cosine_density(wi.z));
     if (!smooth_ && lost_mean_ > 0.0) {
         const float again = static_cast<float>(view.lost * (1.0 - there.reflect) / lost_mean_) * lambert;
-        sum += (metal_ * metal_again_ + coated_ * coat_again_) * again;
+        sum += (metal_ * metal_again_ + (coated_ + sheet_) * coat_again_) * again;
     }
     if (coated_ > 0.0f && base_share_mean_ > 0.0f) {
         const float there_share = std::max(0.0f, 1.0f - coat_albedo(there, std::min(wi.z, 1.0)));
@@ -356,7 +365,7 @@ std::optional<BsdfSample> Bsdf::sample(const dvec3& wo, const dvec3& u, Transpor
         return std::nullopt;
     BsdfSample s{};
     if (u.x < view.straight) {
-        s = {-view.wo, glass_ * base_ / static_cast<float>(view.straight), view.straight, true, true};
+        s = {-view.wo, straight_weight(view) / static_cast<float>(view.straight), view.straight, true, true};
         return finished(view, s, transport);
     }
     double choice = u.x - view.straight;

@@ -7,6 +7,8 @@
 //                   Szirmay-Kalos, A Microfacet Based Coupled Specular-Matte BRDF Model, EG 2001);
 //   rough interface a GGX dielectric that reflects and refracts (Walter et al., Microfacet Models for Refraction
 //                   through Rough Surfaces, EGSR 2007), tinting by the base colour what it refracts.
+// A thin sheet takes the place of the interface where there is no thickness: the coat, and what it lets through goes
+// straight on, tinted, without a blur. It must face the viewer, as opaque surfaces must.
 // Light that meets more than one facet comes back by lobes proportional to the cosine times what single scattering
 // misses in either direction (Kulla and Conty 2017, course notes "Revisiting Physically Based Shading at Imageworks").
 // Metal and coated diffuse are black from below.
@@ -43,8 +45,8 @@ public:
     // Tables of the material's ior are looked up; the first such call makes them (energy_tables.h). Every number of the
     // material must lie in the range that its comment gives.
     Bsdf(const SurfaceMaterial& material, const ShadingFrame& frame);
-    // With the tables of the material's ior at hand.
-    Bsdf(const SurfaceMaterial& material, const ShadingFrame& frame, const EnergyTables& tables);
+    // With the tables of the material's ior at hand; none for a material that needs none.
+    Bsdf(const SurfaceMaterial& material, const ShadingFrame& frame, const EnergyTables* tables);
 
     // BSDF times |cosine of wi to the normal| [1/sr], without delta lobes.
     Rgb evaluate(const dvec3& wo, const dvec3& wi, Transport transport = Transport::Radiance) const;
@@ -71,6 +73,7 @@ private:
 
     View view_from(const dvec3& wo) const;
     void choose_lobes(View& view) const;
+    Rgb straight_weight(const View& view) const;
     Albedos albedos(double cosine) const;
     double lost_both(int side, const Albedos& albedos) const;
     float coat_albedo(const Albedos& albedos, double cosine) const;
@@ -97,9 +100,9 @@ private:
     double ior_;
     bool smooth_, matched_;
     Rgb base_;
-    float metal_, coated_, glass_;  // shares of the three; their sum is 1
-    float specular_, f0_most_;      // the dielectric's F90, and its largest F0 / F90
-    Rgb f0_;                        // its F0 / F90
+    float metal_, coated_, glass_, sheet_;  // shares of the surface; their sum is 1
+    float specular_, f0_most_;              // the dielectric's F90, and its largest F0 / F90
+    Rgb f0_;                                // its F0 / F90
     // Of light that met more than one facet: what comes back at last.
     Rgb metal_again_{0.0f}, coat_again_{0.0f};
     double lost_mean_ = 0.0;  // mean of View::lost

@@ -159,11 +159,11 @@ double LineTracker::end_of_fire(const LatticeRay& ray) const {
     return begin < end ? end : ray.begin;
 }
 
-LineResult LineTracker::follow_path(const Ray& ray, Rng& rng) const {
+LineResult LineTracker::follow_path(const Ray& ray, Rng& rng, double end) const {
     LineResult out;
     Places places(rng);
     const bool exact = settings_.free_flight == FreeFlight::Exact;
-    walk_bricks(field_.bricks(), field_.enter(ray), [&](const CellSegment& brick) {
+    walk_bricks(field_.bricks(), field_.enter(ray, end), [&](const CellSegment& brick) {
         const bool burns = field_.burns(brick.brick);
         if (!burns && !exact) {
             out.collision = null_collision_in_brick(field_, brick, rng);
@@ -187,8 +187,8 @@ LineResult LineTracker::follow_path(const Ray& ray, Rng& rng) const {
     return out;
 }
 
-Rgb LineTracker::follow_line(const Ray& ray, Rng& rng) const {
-    LatticeRay way = field_.enter(ray);
+Rgb LineTracker::follow_line(const Ray& ray, Rng& rng, double end) const {
+    LatticeRay way = field_.enter(ray, end);
     way.end = end_of_fire(way);
     if (settings_.transmittance != TransmittanceEstimator::Exact)
         return radiance_by_estimates(way, rng);
@@ -212,13 +212,13 @@ Rgb LineTracker::follow_line(const Ray& ray, Rng& rng) const {
     return radiance;
 }
 
-void LineTracker::follow_camera(const Ray& ray, Rng& rng, CameraLine& line) const {
+void LineTracker::follow_camera(const Ray& ray, Rng& rng, CameraLine& line, double end) const {
     line.radiance = Rgb(0.0f);
     line.cells.clear();
     Visibility visibility(kCameraRouletteDepth);
     Places places(rng);
     double depth = 0.0;
-    walk_bricks(field_.bricks(), field_.enter(ray), [&](const CellSegment& brick) {
+    walk_bricks(field_.bricks(), field_.enter(ray, end), [&](const CellSegment& brick) {
         const bool burns = field_.burns(brick.brick);
         return walk_cubes<1>(brick, [&](const CellSegment& cell) {
             const Cubic sigma = field_.extinction_along(cell);
@@ -233,6 +233,18 @@ void LineTracker::follow_camera(const Ray& ray, Rng& rng, CameraLine& line) cons
             return !visibility.ended(depth);
         });
     });
+}
+
+double LineTracker::transmittance(const Ray& ray, double end, Rng& rng) const {
+    switch (settings_.transmittance) {
+        case TransmittanceEstimator::Ratio:
+            return ratio_tracking(field_, field_.enter(ray, end), rng);
+        case TransmittanceEstimator::RayMarch:
+            return unbiased_ray_march(field_, field_.enter(ray, end), rng);
+        case TransmittanceEstimator::Exact:
+            break;
+    }
+    return std::exp(-optical_depth(field_, ray, end));
 }
 
 // Where roulette ended the walk, less than e^-16 of the ray's collisions lie beyond: below single precision.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -9,6 +10,8 @@
 #include "tracing/trackers.h"
 
 namespace brisance {
+
+constexpr double kNoEnd = std::numeric_limits<double>::infinity();
 
 struct LineResult {
     Rgb radiance{0.0f};                  // what glows along the line, seen from its origin [W/(m^2 sr)]
@@ -26,21 +29,26 @@ struct CameraLine {
     std::vector<PassedCell> cells;
     // The chance that a flight along the ray collides, 1 - T.
     double opacity() const { return cells.empty() ? 0.0 : -std::expm1(-cells.back().end_depth); }
+    double transmittance() const { return cells.empty() ? 1.0 : std::exp(-cells.back().end_depth); }
 };
 
+// Lines end at `end` metres, where a surface is.
 class LineTracker {
 public:
     LineTracker(const TrackingField& field, const TracingSettings& settings);
 
     // A path's next segment: a free flight, and an estimate of the emission along the whole line by what lies before
     // its end: cell by cell, or at the null collisions where those are many. No collision: the ray escapes.
-    LineResult follow_path(const Ray& ray, Rng& rng) const;
+    LineResult follow_path(const Ray& ray, Rng& rng, double end = kNoEnd) const;
 
     // The emission along the whole line. Russian roulette ends it deep in the smoke.
-    Rgb follow_line(const Ray& ray, Rng& rng) const;
+    Rgb follow_line(const Ray& ray, Rng& rng, double end = kNoEnd) const;
 
     // The emission along the whole line without roulette, and its cells. `line` is overwritten; keep it for its memory.
-    void follow_camera(const Ray& ray, Rng& rng, CameraLine& line) const;
+    void follow_camera(const Ray& ray, Rng& rng, CameraLine& line, double end = kNoEnd) const;
+
+    // Of [0, end] [m], by the estimator that the settings name.
+    double transmittance(const Ray& ray, double end, Rng& rng) const;
 
     // A collision that is forced to happen on the line, whose opacity must be above 0: `place` in [0, 1) of the way
     // through the distribution of flights that collide.

@@ -24,10 +24,11 @@ struct Header {
 
 }  // namespace
 
-PathFilm::PathFilm(int width, int height, bool orders)
+PathFilm::PathFilm(int width, int height, bool orders, bool cells)
     : width_(width),
       height_(height),
-      sums_(orders ? kPathOrders : 3),
+      orders_(orders ? kPathOrders : 3),
+      sums_(orders_ + (cells ? kCells : 0)),
       values_(std::size_t(width) * height * 2 * sums_ * 3),
       squares_(std::size_t(width) * height * 3) {}
 
@@ -40,7 +41,10 @@ bool PathFilm::add(std::size_t pixel, int half, const PathSum& path) {
     double* v = &values_[(pixel * 2 + half) * sums_ * 3];
     for (int order = 0; order < kPathOrders; ++order)
         for (int c = 0; c < 3; ++c)
-            v[std::min(order, sums_ - 1) * 3 + c] += path[order][c];
+            v[std::min(order, orders_ - 1) * 3 + c] += path[order][c];
+    for (int cell = 0; orders_ + cell < sums_; ++cell)
+        for (int c = 0; c < 3; ++c)
+            v[(orders_ + cell) * 3 + c] += path.cells[cell][c];
     for (int c = 0; c < 3; ++c)
         squares_[pixel * 3 + c] += double(total[c]) * total[c];
     return true;

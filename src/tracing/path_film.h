@@ -12,8 +12,9 @@ namespace brisance {
 // Sums, not means, in double precision: adding in the same order gives the same bits, wherever it was interrupted.
 class PathFilm {
 public:
-    // With `orders` every order of scattering is kept apart, otherwise the ledger's cells V, MV, MM.
-    PathFilm(int width, int height, bool orders);
+    // With `orders` every order of scattering is kept apart, otherwise the ledger's cells V, MV, MM. With `cells` all
+    // of the ledger's cells are kept besides, after them.
+    PathFilm(int width, int height, bool orders, bool cells = false);
 
     // Adds what one camera ray brought to a pixel's half (0 or 1). Not for two threads on one pixel. False: not finite,
     // and left out.
@@ -21,7 +22,8 @@ public:
 
     int width() const { return width_; }
     int height() const { return height_; }
-    int sums() const { return sums_; }  // per pixel and half: 3, or kPathOrders
+    int sums() const { return sums_; }          // per pixel and half: orders and cells
+    int order_sums() const { return orders_; }  // 3, or kPathOrders; what they add up to is everything
     double sum(std::size_t pixel, int half, int which, int channel) const {
         return values_[(pixel * 2 + half) * sums_ * 3 + which * 3 + channel];
     }
@@ -47,7 +49,7 @@ public:
     Work work;
 
 private:
-    int width_, height_, sums_;
+    int width_, height_, orders_, sums_;
     std::vector<double> values_, squares_;
 };
 

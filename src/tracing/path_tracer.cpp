@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "medium/phase.h"
+#include "core/error.h"
 
 namespace brisance {
 
@@ -30,18 +30,24 @@ float largest(const Rgb& c) {
     return std::max({c.x, c.y, c.z});
 }
 
-void add(PathSum& sum, int order, const Rgb& radiance) {
-    sum[std::min(order, kPathOrders - 1)] += radiance;
-}
-
 void note(PathStatistics& statistics, const TracedVertex& vertex) {
     if (statistics.vertices) [[unlikely]]
         statistics.vertices->push_back(vertex);
 }
 
+// Paths between surfaces that lose nothing must end, too.
+constexpr int kManyScatterings = 64;
+constexpr float kGoesOn = 0.95f;
+
+// Surface paths that begin at the end of one ray of the camera that comes through smoke: what the ray itself costs is
+// shared by them. Where there is none a ray costs little.
+constexpr int kFirstReflections = 4;
+
 // Ends the path, or makes up for those that ended. False: ended.
-bool survives(Rgb& throughput, float begin, Rng& rng) {
-    const float part = largest(throughput) / begin;
+bool survives(Rgb& throughput, float begin, int order, Rng& rng) {
+    float part = largest(throughput) / begin;
+    if (order > kManyScatterings)
+        part = std::min(part, kGoesOn) * kRouletteBelow;
     if (part >= kRouletteBelow)
         return true;
     if (!(rng.next() < part))
@@ -52,37 +58,39 @@ bool survives(Rgb& throughput, float begin, Rng& rng) {
 
 }  // namespace
 
-dvec3 sample_henyey_greenstein(const dvec3& forward, float mean_cosine, Rng& rng) {
-    const double g = mean_cosine, u = rng.next_double();
-    double cosine = 1.0 - 2.0 * u;
-    if (std::abs(g) > 1e-4) {
-        // 1 - cos from terms of one sign, so that the peak at |g| -> 1 keeps its shape.
-        const double a = std::abs(g), ratio = (1.0 - a) * (1.0 + a) / (1.0 - a + 2.0 * a * u);
-        cosine = std::clamp((1.0 + a * a - ratio * ratio) / (2.0 * a), -1.0, 1.0);
-        cosine = g > 0.0 ? cosine : -cosine;
-    }
-    const double sine = std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine)));
-    const double angle = 2.0 * 3.14159265358979323846 * rng.next_double();
-    // Two axes across `forward` (Duff et al., Building an Orthonormal Basis, Revisited, JCGT 2017).
-    const double sign = std::copysign(1.0, forward.z), a = -1.0 / (sign + forward.z), b = forward.x * forward.y * a;
-    const dvec3 x(1.0 + sign * forward.x * forward.x * a, sign * b, -sign * forward.x);
-    const dvec3 y(b, sign + forward.y * forward.y * a, -forward.y);
-    return glm::normalize(cosine * forward + sine * (std::cos(angle) * x + std::sin(angle) * y));
-}
-
 struct PathTracer::Vertex {
-    dvec3 position;     // local [m]
-    dvec3 arriving;     // the path's direction of travel
-    Rgb throughput;     // with the albedo of this scattering
+    Scatterer place;
+    Rgb throughput;     // with the albedo of this scattering in smoke
     float light_lines;  // how many are drawn toward the fire: a probability
     int order;          // scatterings with this one
+    bool row_surface;   // the first vertex of the path lies on a surface, ...
+    Sender column;      // ... and the second there, or in smoke: the cell of what it brings
 };
 
-PathTracer::PathTracer(const Medium& medium, const TracingSettings& settings, int bounces)
-    : settings_(settings), bounces_(bounces), field_(medium), fire_(field_), lines_(field_, settings_) {}
+// A ray up to the surface that it meets.
+struct PathTracer::Segment {
+    Ray ray;
+    double end = kNoEnd;
+    std::optional<SurfaceHit> hit;
+    std::optional<SurfacePoint> point;
+};
+
+PathTracer::PathTracer(const Medium& medium, const TracingSettings& settings, int bounces,
+                       const Surroundings* surroundings)
+    : settings_(settings),
+      bounces_(bounces),
+      surroundings_(surroundings),
+      field_(medium),
+      fire_(field_),
+      lines_(field_, settings_) {
+    if (surroundings && settings.emission == EmissionEstimator::Collision)
+        throw Error(ExitCode::Usage,
+                    "tracing.emission: \"collision\", the plain tracker, knows neither surfaces nor lights; "
+                    "use \"line\", or a shot without a scene");
+}
 
 void PathTracer::trace(const Ray& ray, double place, Rng& rng, PathSum& sum, PathStatistics& statistics) const {
-    if (fire_.empty())
+    if (fire_.empty() && !surroundings_)
         return;
     if (settings_.emission == EmissionEstimator::Collision)
         trace_plain(ray, rng, sum, statistics);
@@ -90,73 +98,198 @@ void PathTracer::trace(const Ray& ray, double place, Rng& rng, PathSum& sum, Pat
         trace_lines(ray, place, rng, sum, statistics);
 }
 
+// `vertex`: where the light arrives; none: at the camera.
+void PathTracer::add(PathSum& sum, const Vertex* vertex, Sender source, const Rgb& radiance) const {
+    const int order = vertex ? vertex->order : 0;
+    sum[std::min(order, kPathOrders - 1)] += radiance;
+    if (!surroundings_)
+        return;
+    Cell cell = source == Sender::V ? Cell::V : Cell::A;
+    if (order == 1)
+        cell = cell_of(vertex->row_surface, source);
+    else if (order > 1)
+        cell = cell_of(vertex->row_surface, vertex->column);
+    sum.cells[static_cast<int>(cell)] += radiance;
+}
+
+PathTracer::Segment PathTracer::segment_along(const Ray& ray) const {
+    Segment segment{ray, kNoEnd, std::nullopt, std::nullopt};
+    if (!surroundings_)
+        return segment;
+    segment.hit = surroundings_->intersector().first_hit(ray);
+    if (segment.hit) {
+        segment.end = segment.hit->distance;
+        segment.point = surface_point(surroundings_->scene(), *segment.hit, -ray.direction);
+    }
+    return segment;
+}
+
 // The line toward the fire; with the balance heuristic its weight cancels all but both densities in the denominator.
 Rgb PathTracer::light_from_fire(const Vertex& vertex, Rng& rng) const {
-    const Ray line{vertex.position, fire_.sample(vertex.position, rng)};
-    const Rgb seen = lines_.follow_line(line, rng);
+    const Ray line = vertex.place.leaving(fire_.sample(vertex.place.position(), rng));
+    const Scatterer::Value scattered = vertex.place.at(line.direction);
+    if (scattered.value == Rgb(0.0f))
+        return Rgb(0.0f);
+    double end = kNoEnd;
+    if (surroundings_)
+        if (const std::optional<SurfaceHit> hit = surroundings_->intersector().first_hit(line))
+            end = hit->distance;
+    const Rgb seen = lines_.follow_line(line, rng, end);
     if (seen == Rgb(0.0f))
         return seen;
-    const double phase =
-        henyey_greenstein(static_cast<float>(glm::dot(vertex.arriving, line.direction)), field_.mean_cosine());
-    return float(phase / (vertex.light_lines * fire_.pdf(line) + phase)) * seen;
+    return scattered.value / float(vertex.light_lines * fire_.pdf(line) + scattered.pdf) * seen;
+}
+
+// A place on one of the emitters, seen through the smoke.
+Rgb PathTracer::light_from_emitters(const Vertex& vertex, Rng& rng) const {
+    const std::optional<EmitterSample> light = surroundings_->emitters().sample(vertex.place.lit(), rng);
+    if (!light)
+        return Rgb(0.0f);
+    const Scatterer::Value scattered = vertex.place.at(light->direction);
+    if (scattered.value == Rgb(0.0f))
+        return Rgb(0.0f);
+    double end = light->distance;
+    const bool near = std::isfinite(end);
+    const Ray ray = near ? vertex.place.toward(light->end, end) : vertex.place.leaving(light->direction);
+    if (surroundings_->intersector().occluded(ray, end))
+        return Rgb(0.0f);
+    const double seen = lines_.transmittance(ray, end, rng);
+    const double share = light->pdf > 0.0 ? light->pdf / (light->pdf + scattered.pdf) : 1.0;
+    return scattered.value * light->weight * float(seen * share);
+}
+
+// What the surface at the end of the segment, or the background, emits: its share, if a ray toward the emitters could
+// have found it as well. `pdf`: of the segment's direction.
+Rgb PathTracer::light_at_end(const Segment& segment, double pdf, bool delta, const Vertex* vertex) const {
+    const Emitters& emitters = surroundings_->emitters();
+    const dvec3& direction = segment.ray.direction;
+    Rgb seen(0.0f);
+    double other = 0.0;
+    if (segment.hit) {
+        seen = segment.point->emission;
+        if (seen != Rgb(0.0f) && vertex && !delta)
+            other = emitters.pdf_of_hit(vertex->place.lit(), *segment.hit, direction, segment.end);
+    } else {
+        seen = emitters.background(direction);
+        if (seen != Rgb(0.0f) && vertex && !delta)
+            other = emitters.pdf_of_background(direction);
+    }
+    return other > 0.0 ? seen * float(pdf / (pdf + other)) : seen;
 }
 
 void PathTracer::trace_lines(const Ray& camera_ray, double place, Rng& rng, PathSum& sum,
                              PathStatistics& statistics) const {
     thread_local CameraLine seen;
-    lines_.follow_camera(camera_ray, rng, seen);
-    add(sum, 0, seen.radiance);
-    note(statistics, {0, camera_ray.origin, Rgb(1.0f), seen.radiance, Rgb(0.0f)});
-    if (bounces_ == 0 || !(seen.opacity() > 0.0))
+    const Segment segment = segment_along(camera_ray);
+    lines_.follow_camera(camera_ray, rng, seen, segment.end);
+    add(sum, nullptr, Sender::V, seen.radiance);
+    const auto through = static_cast<float>(seen.transmittance());
+    Rgb at_end(0.0f);
+    if (surroundings_) {
+        at_end = through * light_at_end(segment, 0.0, true, nullptr);
+        add(sum, nullptr, Sender::A, at_end);
+    }
+    note(statistics, {0, camera_ray.origin, Rgb(1.0f), seen.radiance + at_end, Rgb(0.0f)});
+    if (bounces_ == 0)
         return;
-    const Rgb arriving(static_cast<float>(seen.opacity() / kFirstCollisions));
-    for (int i = 0; i < kFirstCollisions; ++i) {
+    // What the line holds is gone when paths begin: they use the same memory.
+    const double opacity = seen.opacity();
+    std::array<Collision, kFirstCollisions> first;
+    for (int i = 0; i < kFirstCollisions && opacity > 0.0; ++i)
+        first[i] = lines_.choose(seen, (i + place) / kFirstCollisions);
+    const Rgb arriving(static_cast<float>(opacity / kFirstCollisions));
+    for (int i = 0; i < kFirstCollisions && opacity > 0.0; ++i) {
         ++statistics.paths;
-        const Collision first = lines_.choose(seen, (i + place) / kFirstCollisions);
-        trace_from(vertex_at(camera_ray, first, arriving, 1), rng, sum, statistics);
+        trace_from(in_smoke(camera_ray, first[i], arriving, nullptr), rng, sum, statistics);
+    }
+    if (!segment.point || !(through > 0.0f))
+        return;
+    const int reflections = opacity > 0.0 ? static_cast<int>(std::ceil(through * kFirstReflections)) : 1;
+    for (int i = 0; i < reflections; ++i) {
+        ++statistics.paths;
+        trace_from(on_surface(segment, Rgb(through / float(reflections)), nullptr), rng, sum, statistics);
     }
 }
 
 void PathTracer::trace_from(Vertex vertex, Rng& rng, PathSum& sum, PathStatistics& statistics) const {
     const float begin = largest(vertex.throughput);
-    while (survives(vertex.throughput, begin, rng)) {
+    while (survives(vertex.throughput, begin, vertex.order, rng)) {
         ++statistics.scatterings;
-        Rgb from_fire(0.0f), along_segment(0.0f);
-        if (vertex.light_lines > 0.0f && rng.next() < vertex.light_lines) {
-            from_fire = vertex.throughput * light_from_fire(vertex, rng);
-            add(sum, vertex.order, from_fire);
+        const Scatterer& place = vertex.place;
+        TracedVertex seen{vertex.order, place.position(), vertex.throughput, Rgb(0.0f),
+                          Rgb(0.0f),    Rgb(0.0f),        place.on_surface()};
+        if (vertex.light_lines > 0.0f && (vertex.light_lines == 1.0f || rng.next() < vertex.light_lines)) {
+            seen.from_fire = vertex.throughput * light_from_fire(vertex, rng);
+            add(sum, &vertex, Sender::V, seen.from_fire);
         }
-        const Ray ray{vertex.position, sample_henyey_greenstein(vertex.arriving, field_.mean_cosine(), rng)};
-        LineResult line;
-        if (bounces_ < 0 || vertex.order < bounces_)
-            line = lines_.follow_path(ray, rng);
-        else
-            line.radiance = lines_.follow_line(ray, rng);
-        if (line.radiance != Rgb(0.0f)) {
-            along_segment = share_of_phase(vertex, ray) * vertex.throughput * line.radiance;
-            add(sum, vertex.order, along_segment);
+        if (surroundings_ && !surroundings_->emitters().empty() && !place.only_delta()) {
+            seen.from_emitters = vertex.throughput * light_from_emitters(vertex, rng);
+            add(sum, &vertex, Sender::A, seen.from_emitters);
         }
-        note(statistics, {vertex.order, vertex.position, vertex.throughput, along_segment, from_fire});
-        if (!line.collision)
+        const std::optional<Scatterer::Sample> turn = place.sample(rng);
+        if (!turn) {
+            note(statistics, seen);
             return;
-        vertex = vertex_at(ray, *line.collision, vertex.throughput, vertex.order + 1);
+        }
+        const Segment segment = segment_along(place.leaving(turn->wi));
+        const Rgb leaving = vertex.throughput * turn->weight;
+        const bool goes_on = bounces_ < 0 || vertex.order < bounces_;
+        LineResult line;
+        if (goes_on || surroundings_)
+            line = lines_.follow_path(segment.ray, rng, segment.end);
+        else
+            line.radiance = lines_.follow_line(segment.ray, rng);
+        if (line.radiance != Rgb(0.0f)) {
+            const float share = turn->delta ? 1.0f : share_of_sample(vertex, segment.ray, turn->pdf);
+            seen.along_segment = share * leaving * line.radiance;
+            add(sum, &vertex, Sender::V, seen.along_segment);
+        }
+        if (surroundings_ && !line.collision) {
+            const Rgb at_end = leaving * light_at_end(segment, turn->pdf, turn->delta, &vertex);
+            add(sum, &vertex, Sender::A, at_end);
+            seen.along_segment += at_end;
+        }
+        note(statistics, seen);
+        if (!goes_on || !(line.collision || segment.hit))
+            return;
+        vertex = line.collision ? in_smoke(segment.ray, *line.collision, leaving, &vertex)
+                                : on_surface(segment, leaving, &vertex);
     }
 }
 
-PathTracer::Vertex PathTracer::vertex_at(const Ray& ray, const Collision& c, const Rgb& arriving, int order) const {
-    Vertex v{ray.origin + ray.direction * c.distance, ray.direction, arriving * field_.albedo(c.brick, c.position),
-             0.0f, order};
-    if (settings_.light_sampling && field_.extinction(c.brick, c.position) * fire_.radius() < kThickToFire)
+PathTracer::Vertex PathTracer::in_smoke(const Ray& ray, const Collision& c, const Rgb& arriving,
+                                        const Vertex* from) const {
+    const int order = from ? from->order + 1 : 1;
+    Vertex v{Scatterer(ray.origin + ray.direction * c.distance, ray.direction, field_.mean_cosine()),
+             arriving * field_.albedo(c.brick, c.position),
+             0.0f,
+             order,
+             from ? from->row_surface : false,
+             order > 2 ? from->column : Sender::M};
+    if (settings_.light_sampling && !fire_.empty() &&
+        field_.extinction(c.brick, c.position) * fire_.radius() < kThickToFire)
         v.light_lines = kLightLines;
     return v;
 }
 
-float PathTracer::share_of_phase(const Vertex& vertex, const Ray& ray) const {
+PathTracer::Vertex PathTracer::on_surface(const Segment& segment, const Rgb& arriving, const Vertex* from) const {
+    const int order = from ? from->order + 1 : 1;
+    Vertex v{Scatterer(*segment.point, segment.ray.direction),
+             arriving,
+             0.0f,
+             order,
+             from ? from->row_surface : true,
+             order > 2 ? from->column : Sender::S};
+    if (settings_.light_sampling && !fire_.empty() && !v.place.only_delta())
+        v.light_lines = 1.0f;
+    return v;
+}
+
+// Of what glows along a segment that the phase function or the BSDF drew.
+float PathTracer::share_of_sample(const Vertex& vertex, const Ray& ray, double pdf) const {
     if (vertex.light_lines == 0.0f)
         return 1.0f;
-    const double phase =
-        henyey_greenstein(static_cast<float>(glm::dot(vertex.arriving, ray.direction)), field_.mean_cosine());
-    return static_cast<float>(phase / (vertex.light_lines * fire_.pdf(ray) + phase));
+    return static_cast<float>(pdf / (vertex.light_lines * fire_.pdf(ray) + pdf));
 }
 
 // The plain tracker: emission at every tentative collision, absorption or scattering at real ones. Where only emission
@@ -183,7 +316,7 @@ void PathTracer::trace_plain(Ray ray, Rng& rng, PathSum& sum, PathStatistics& st
                 if (burns && field_.has_emission())
                     glow += field_.emission(s.brick, p);
                 const Rgb gathered = throughput * glow / float(majorant);
-                add(sum, order, gathered);
+                sum[std::min(order, kPathOrders - 1)] += gathered;
                 if (statistics.vertices) [[unlikely]]
                     statistics.vertices->back().along_segment += gathered;
                 if (rng.next_double() * majorant < sigma) {

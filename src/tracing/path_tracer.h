@@ -1,34 +1,42 @@
-// The reference: unbiased paths through the medium, filed by the number of their scatterings.
+// The reference: unbiased paths through medium and surroundings, filed by the number of their scatterings and by the
+// ledger's cells.
 //
-// A ray of the camera is integrated whole, and several first scatterings are drawn on it, each the start of a path. A
-// path goes on by the phase function, and gathers what glows along every segment; where the smoke around a vertex is
-// thin it also asks a whole line toward the fire, drawn by solid angle, and the two share every direction by the
-// balance heuristic. What is gathered belongs to the scatterings before it: none V, one MV, more MM.
-//
-// Surfaces and analytic lights will be further kinds of vertices and of lines; the ledger's cells for them are further
-// sums beside these.
+// A ray of the camera is integrated whole, and several first scatterings are drawn on it, each the start of a path; the
+// surface at its end starts others. A path goes on by the phase function or the BSDF. Along every segment it gathers
+// what glows, and at the segment's end what the surface or the background emits; besides, its vertices ask a whole line
+// toward the fire, drawn by solid angle (where the smoke around them is thin), and a place on one of the emitters,
+// chosen by their tree. Two techniques that could find the same light share it by the balance heuristic.
+// What is gathered belongs to the scatterings before it.
 #pragma once
 
 #include <array>
 #include <vector>
 
+#include "core/cell.h"
+#include "emitters/surroundings.h"
 #include "tracing/fire_directions.h"
 #include "tracing/line.h"
+#include "tracing/scatterer.h"
 
 namespace brisance {
 
-// What one path brings, by its number of scatterings [W/(m^2 sr)]; the last holds all that scattered as often or more.
+// What one path brings [W/(m^2 sr)], by its number of scatterings; the last holds all that scattered as often or more.
+// Where there are surroundings, the same by cell: either adds up to the whole.
 constexpr int kPathOrders = 10;
-using PathSum = std::array<Rgb, kPathOrders>;
+struct PathSum : std::array<Rgb, kPathOrders> {
+    std::array<Rgb, kCells> cells{};
+};
 
 // A scattering of a path, and what is gathered there; number 0 is the camera, from which all paths of its ray begin.
 // What the vertices gathered adds up to the PathSum.
 struct TracedVertex {
-    int order;          // scatterings with this one
-    dvec3 position;     // local [m]
-    Rgb throughput;     // with the albedo of this scattering
-    Rgb along_segment;  // gathered along the ray that leaves it [W/(m^2 sr)]
-    Rgb from_fire;      // gathered by a line toward the fire [W/(m^2 sr)]
+    int order;                // scatterings with this one
+    dvec3 position;           // local [m]
+    Rgb throughput;           // with the albedo of this scattering in smoke; on a surface of what arrives there
+    Rgb along_segment;        // gathered along the ray that leaves it, and at its end [W/(m^2 sr)]
+    Rgb from_fire;            // gathered by a line toward the fire [W/(m^2 sr)]
+    Rgb from_emitters{0.0f};  // gathered by a ray toward an emitter [W/(m^2 sr)]
+    bool on_surface = false;
 };
 
 struct PathStatistics {
@@ -39,8 +47,11 @@ struct PathStatistics {
 
 class PathTracer {
 public:
-    // Keeps a reference to the medium. `bounces`: the most scatterings of a path; -1: all.
-    PathTracer(const Medium& medium, const TracingSettings& settings, int bounces);
+    // Keeps references to the medium and, where there are any, the surroundings, which share their local space.
+    // `bounces`: the most scatterings of a path; -1: all.
+    // Throws Error Usage for the plain tracker with surroundings: it would never find a point light.
+    PathTracer(const Medium& medium, const TracingSettings& settings, int bounces,
+               const Surroundings* surroundings = nullptr);
 
     // Adds one path along `ray` to `sum`. `place` in [0, 1) chooses where the first scattering lies; it may come from a
     // stratified sequence.
@@ -52,21 +63,26 @@ public:
 
 private:
     struct Vertex;
+    struct Segment;
     void trace_lines(const Ray& ray, double place, Rng& rng, PathSum& sum, PathStatistics& statistics) const;
     void trace_from(Vertex vertex, Rng& rng, PathSum& sum, PathStatistics& statistics) const;
     void trace_plain(Ray ray, Rng& rng, PathSum& sum, PathStatistics& statistics) const;
+
+    void add(PathSum& sum, const Vertex* vertex, Sender source, const Rgb& radiance) const;
     Rgb light_from_fire(const Vertex& vertex, Rng& rng) const;
-    Vertex vertex_at(const Ray& ray, const Collision& collision, const Rgb& throughput, int order) const;
-    float share_of_phase(const Vertex& vertex, const Ray& ray) const;
+    Rgb light_from_emitters(const Vertex& vertex, Rng& rng) const;
+    Rgb light_at_end(const Segment& segment, double pdf, bool delta, const Vertex* vertex) const;
+    Segment segment_along(const Ray& ray) const;
+    Vertex in_smoke(const Ray& ray, const Collision& collision, const Rgb& arriving, const Vertex* from) const;
+    Vertex on_surface(const Segment& segment, const Rgb& arriving, const Vertex* from) const;
+    float share_of_sample(const Vertex& vertex, const Ray& ray, double pdf) const;
 
     TracingSettings settings_;
     int bounces_;
+    const Surroundings* surroundings_;
     TrackingField field_;
     FireDirections fire_;
     LineTracker lines_;
 };
-
-// A direction drawn in proportion to the Henyey-Greenstein phase function about `forward`.
-dvec3 sample_henyey_greenstein(const dvec3& forward, float mean_cosine, Rng& rng);
 
 }  // namespace brisance

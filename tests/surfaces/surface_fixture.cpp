@@ -80,6 +80,8 @@ std::vector<NamedSurface> conserving_surfaces() {
     SurfaceMaterial blend = made_of(0.3f, 0.5f);
     SurfaceMaterial weak = made_of(0.0f, 1.0f);
     weak.specular = 0.3f;
+    SurfaceMaterial sheet = made_of(0.0f, 1.0f), half_sheet = made_of(0.2f, 0.5f);
+    sheet.thin = half_sheet.thin = true;
     return {{"conductor", made_of(1.0f, 0.0f)},
             {"coated diffuse", made_of(0.0f, 0.0f)},
             {"heavily coated diffuse", made_of(0.0f, 0.0f, 2.4f)},
@@ -92,6 +94,8 @@ std::vector<NamedSurface> conserving_surfaces() {
             {"weakly reflecting glass from outside", weak},
             // Its Fresnel term jumps to 1 at the critical angle, which tables blur.
             {"weakly reflecting glass from inside", weak, -1.0, 2e-3},
+            {"sheet", sheet},
+            {"blend with a sheet", half_sheet},
             {"blend of all", blend}};
 }
 
@@ -105,9 +109,13 @@ std::vector<NamedSurface> coloured_surfaces() {
                     m.base_colour = Rgb(0.9f, 0.5f, 0.0f);
                     m.specular = 0.7f;
                     m.specular_colour = Rgb(0.2f, 1.0f, 3.0f);
-                    all.push_back({"metallic " + std::to_string(metallic) + ", transmission " +
-                                       std::to_string(transmission) + ", ior " + std::to_string(ior),
-                                   m, side});
+                    const std::string name = "metallic " + std::to_string(metallic) + ", transmission " +
+                                             std::to_string(transmission) + ", ior " + std::to_string(ior);
+                    all.push_back({name, m, side});
+                    if (transmission == 0.0f || side < 0.0)
+                        continue;
+                    m.thin = true;
+                    all.push_back({name + ", thin", m, side});
                 }
     return all;
 }

@@ -50,7 +50,7 @@ struct Render {
 
 Render render(const Shot& shot, const Medium& medium, const Checkpoint& checkpoint = {}) {
     Render r;
-    r.picture = trace_picture(shot, plan_cells(shot, medium), medium, Camera(shot.camera, medium), checkpoint,
+    r.picture = trace_picture(shot, plan_cells(shot, medium), medium, nullptr, Camera(shot.camera, medium), checkpoint,
                               r.statistics, r.told);
     return r;
 }

@@ -1,6 +1,7 @@
 #include "load_shot.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cctype>
@@ -15,11 +16,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_volume(const std::string& input) {
+std::string extension_of(const std::string& input) {
     std::string extension = fs::path(input).extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension == ".vdb";
+    return extension;
+}
+
+bool is_scene(const std::string& input) {
+    const std::string extension = extension_of(input);
+    return extension == ".glb" || extension == ".gltf";
+}
+
+// A glTF file as it is: its own camera, its own lights.
+Shot shot_of_scene(const std::string& input, const ShotOptions& options) {
+    const nlohmann::json shot = {{"name", fs::path(input).stem().string()},
+                                 {"scene", {{"files", {{{"file", input}}}}}}};
+    return parse_shot(shot.dump(), "shot made for " + input, {}, options);
 }
 
 // The first frame of an explosion is often empty: the largest file says most about the sequence.
@@ -58,11 +71,22 @@ Shot suggested(const std::string& input, const ShotOptions& options, Progress& p
 }  // namespace
 
 Shot load_shot(const std::string& input, const ShotOptions& options, Progress& progress) {
-    return is_volume(input) ? suggested(input, options, progress) : read_shot(input, options);
+    if (is_scene(input))
+        return shot_of_scene(input, options);
+    return extension_of(input) == ".vdb" ? suggested(input, options, progress) : read_shot(input, options);
 }
 
 std::string volume_pattern(const Shot& shot) {
-    return (shot.folder / shot.volume.file).string();
+    return shot.volume.file.empty() ? "" : (shot.folder / shot.volume.file).string();
+}
+
+std::vector<FrameFile> resolve_frames(const Shot& shot, const std::optional<std::vector<int>>& asked) {
+    if (!shot.volume.file.empty())
+        return resolve_sequence(volume_pattern(shot), asked);
+    std::vector<FrameFile> frames;
+    for (const int frame : asked.value_or(std::vector<int>{1}))
+        frames.push_back({frame, {}});
+    return frames;
 }
 
 }  // namespace brisance

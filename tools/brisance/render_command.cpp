@@ -64,12 +64,13 @@ std::optional<std::vector<int>> asked_frames(const RenderOptions& options) {
 
 // Files of all frames, each of them there and recognisably whole, before the first is rendered: a mistake in frame 90
 // should not cost the time of 89 frames. With --keep-going the others remain.
-std::vector<FrameFile> usable_frames(const std::string& pattern, const RenderOptions& options, TextProgress& progress,
+std::vector<FrameFile> usable_frames(const Shot& shot, const RenderOptions& options, TextProgress& progress,
                                      Failures& failures) {
+    const std::string pattern = volume_pattern(shot);
     const std::optional<std::vector<int>> asked = asked_frames(options);
     std::vector<FrameFile> frames;
-    if (!options.keep_going || !asked) {
-        frames = resolve_sequence(pattern, asked);
+    if (!options.keep_going || !asked || pattern.empty()) {
+        frames = resolve_frames(shot, asked);
     } else {
         for (const int frame : *asked)
             attempt(
@@ -79,6 +80,8 @@ std::vector<FrameFile> usable_frames(const std::string& pattern, const RenderOpt
                 },
                 progress, failures);
     }
+    if (pattern.empty())
+        return frames;
     std::vector<FrameFile> usable;
     for (const FrameFile& frame : frames) {
         if (!options.keep_going)
@@ -203,7 +206,7 @@ int run_render(const RenderOptions& options) {
         return static_cast<int>(ExitCode::Success);
     }
     Failures failures;
-    const std::vector<FrameFile> frames = usable_frames(volume_pattern(shot), options, progress, failures);
+    const std::vector<FrameFile> frames = usable_frames(shot, options, progress, failures);
     const std::vector<FrameOutput> outputs = plan_outputs(shot, options.output, frames, options.input);
     const std::vector<fs::path> checkpoints =
         plan_checkpoints(shot, options.checkpoint, frames, outputs, options.input);
@@ -232,11 +235,11 @@ int run_plan(const RenderOptions& options) {
     const ThreadLimit limit(options.threads);
     const Shot shot = load(options, progress);
     Failures failures;
-    const std::vector<FrameFile> frames = usable_frames(volume_pattern(shot), options, progress, failures);
+    const std::vector<FrameFile> frames = usable_frames(shot, options, progress, failures);
     if (frames.empty())
         return static_cast<int>(failures.first);
     const std::vector<FrameOutput> outputs = plan_outputs(shot, options.output, frames, options.input);
-    const Statistics plan = plan_frame(shot, frames.front().file, progress);
+    const Statistics plan = plan_frame(shot, frames.front().file, frames.front().frame, progress);
     progress.finish();
     for (std::size_t i = 0; i < frames.size(); ++i)
         fmt::print("frame {}: {} -> {}\n", frames[i].frame, frames[i].file.string(), outputs[i].exr.string());

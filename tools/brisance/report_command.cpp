@@ -60,9 +60,8 @@ void check_outputs(const ReportFiles& files, const std::vector<fs::path>& inputs
 }
 
 FrameFile only_frame(const Shot& shot, const ReportOptions& options) {
-    const std::string pattern = volume_pattern(shot);
     const std::vector<FrameFile> frames =
-        resolve_sequence(pattern, options.frame.empty() ? std::nullopt : std::optional(parse_frames(options.frame)));
+        resolve_frames(shot, options.frame.empty() ? std::nullopt : std::optional(parse_frames(options.frame)));
     if (frames.size() == 1)
         return frames.front();
     std::vector<int> numbers;

@@ -14,7 +14,7 @@ namespace {
 
 FrameFile only_frame(const Shot& shot, const TracePathOptions& options) {
     const auto asked = options.frames.empty() ? std::nullopt : std::optional(parse_frames(options.frames));
-    const std::vector<FrameFile> frames = resolve_sequence(volume_pattern(shot), asked);
+    const std::vector<FrameFile> frames = resolve_frames(shot, asked);
     if (frames.size() != 1)
         throw Error(ExitCode::Usage,
                     fmt::format("a path belongs to one frame, not to {}; choose it with -f", frames.size()));
@@ -56,7 +56,7 @@ int run_trace_path(const TracePathOptions& options) {
     const ThreadLimit limit(options.threads);
     const Shot shot = load_shot(options.input, {options.preset, options.overrides}, progress);
     const FrameFile frame = only_frame(shot, options);
-    const TracedPath path = trace_path(shot, frame.file, options.x, options.y, options.sample, progress);
+    const TracedPath path = trace_path(shot, frame.file, frame.frame, options.x, options.y, options.sample, progress);
     progress.finish();
     fmt::print("frame {}, pixel {} {}, sample {} (half {})\n", frame.frame, options.x, options.y, options.sample,
                options.sample % 2 == 0 ? "A" : "B");

@@ -1,0 +1,27 @@
+// The ledger of light paths: where the camera's ray ends, and where the light arriving there comes from. Every path
+// belongs to one cell, and a picture is the sum of its cells.
+#pragma once
+
+#include <array>
+
+namespace brisance {
+
+// V the emitting medium, A emitters that are no medium (and the background), M the scattering medium, S surfaces.
+enum class Cell { V, A, MV, MM, MS, MA, SV, SM, SS, SA };
+
+constexpr std::array<const char*, 10> kCellNames = {"V", "A", "MV", "MM", "MS", "MA", "SV", "SM", "SS", "SA"};
+constexpr int kCells = static_cast<int>(kCellNames.size());
+
+constexpr const char* name_of(Cell cell) {
+    return kCellNames[static_cast<int>(cell)];
+}
+
+// The cell of light seen from a medium point or a surface point, by what sent it there.
+enum class Sender { V, M, S, A };
+constexpr Cell cell_of(bool on_surface, Sender sender) {
+    constexpr Cell kMedium[] = {Cell::MV, Cell::MM, Cell::MS, Cell::MA};
+    constexpr Cell kSurface[] = {Cell::SV, Cell::SM, Cell::SS, Cell::SA};
+    return (on_surface ? kSurface : kMedium)[static_cast<int>(sender)];
+}
+
+}  // namespace brisance

@@ -1,0 +1,94 @@
+// All that shines but the fire: emissive triangles, point, spot and sun lights, and the environment.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/rng.h"
+#include "emitters/environment.h"
+#include "emitters/light_tree.h"
+#include "geometry/surface_point.h"
+
+namespace brisance {
+
+// Light on its way to a point, before anything stands in between.
+struct EmitterSample {
+    dvec3 direction;        // unit, from the point to the light
+    double distance = 0.0;  // to it, or infinite [m]
+    dvec3 end;              // where a ray toward it should end: the light itself, cleared of its own surface [local, m]
+    Rgb weight{0.0f};       // radiance over pdf; of delta lights irradiance [W/m^2] over probability
+    double pdf = 0.0;       // [1/sr]; 0 of delta lights, which no other technique can find
+};
+
+// A place where a particle starts, with the power that it stands for over the probability of drawing it.
+struct EmittedParticle {
+    Ray ray;
+    Rgb power{0.0f};  // [W]
+};
+
+class Emitters {
+public:
+    // Keeps references. `pictures`: per light, of environments that have one. Lights' positions are world coordinates.
+    Emitters(const Scene& scene, const std::vector<LightSettings>& lights, const std::vector<const Texture*>& pictures);
+
+    bool empty() const { return tree_.empty() && far_.empty(); }
+    std::size_t near_count() const { return near_.size(); }
+
+    // One light, chosen for the point, and a place on it. None where that brings nothing.
+    std::optional<EmitterSample> sample(const LitPoint& point, Rng& rng) const;
+
+    // What is seen, and with which density sample() would have drawn it [1/sr]: the radiance of a triangle that a ray
+    // from the point hit, and of the background.
+    double pdf_of_hit(const LitPoint& point, const SurfaceHit& hit, const dvec3& direction, double distance) const;
+    Rgb background(const dvec3& direction) const;
+    double pdf_of_background(const dvec3& direction) const;
+
+    // A particle, from the lights in proportion to their power; what comes from infinity starts on a disc that covers
+    // the ball around what can be lit (local, m). None where nothing shines.
+    std::optional<EmittedParticle> emit(const dvec3& centre, double radius, Rng& rng) const;
+    // All power that emit() may draw, luminance [W].
+    double power(double radius) const;
+
+    std::uint64_t bytes() const;
+
+private:
+    // With a finite place: a triangle, a point or a spot.
+    struct Near {
+        std::uint32_t mesh = 0, triangle = 0;
+        const LightSettings* light = nullptr;  // of points and spots
+        dvec3 position{0.0};                   // of them, local
+        double area = 0.0;                     // of triangles [m^2]
+    };
+    // Infinitely far: a sun or the environment.
+    struct Far {
+        const LightSettings* light = nullptr;
+        std::unique_ptr<Environment> environment;  // of kind Environment
+        dvec3 toward{0.0};                         // of suns, unit
+        double cosine = 1.0;                       // of a sun's angular radius
+        double solid_angle = 0.0;                  // of a sun's disc [sr]; 0: a point
+    };
+
+    void add_triangles();
+    void add_light(const LightSettings& light, const Texture* picture);
+    double far_probability() const;
+    std::optional<EmitterSample> sample_near(const LitPoint& point, Rng& rng, double probability) const;
+    std::optional<EmitterSample> sample_triangle(const Near& near, const LitPoint& point, Rng& rng) const;
+    std::optional<EmitterSample> sample_far(const Far& far, Rng& rng) const;
+    Rgb intensity(const Near& near, const dvec3& direction) const;
+    Rgb radiance_of_far(const Far& far, const dvec3& direction) const;
+    double pdf_of_far(const Far& far, const dvec3& direction) const;
+    EmittedParticle emit_near(const Near& near, Rng& rng) const;
+    EmittedParticle emit_far(const Far& far, const dvec3& centre, double radius, Rng& rng) const;
+
+    const Scene& scene_;
+    std::vector<Near> near_;
+    std::vector<LightBounds> bounds_;  // of near_, until the tree is built
+    std::vector<double> near_power_;   // luminance [W], cumulative
+    std::vector<Far> far_;
+    std::vector<double> far_irradiance_;            // luminance [W/m^2] on a disc that faces it
+    std::vector<std::vector<std::int32_t>> light_;  // per mesh that emits, per triangle: in near_, or -1
+    LightTree tree_;
+};
+
+}  // namespace brisance

@@ -1,0 +1,226 @@
+#include "emitters/light_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace brisance {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+double angle_between(const dvec3& a, const dvec3& b) {
+    return std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0));
+}
+
+struct Cone {
+    dvec3 axis;
+    double spread;
+};
+
+// The least cone around two.
+Cone united(const Cone& a, const Cone& b) {
+    const Cone &wide = a.spread >= b.spread ? a : b, &narrow = a.spread >= b.spread ? b : a;
+    const double between = angle_between(wide.axis, narrow.axis);
+    if (std::min(between + narrow.spread, kPi) <= wide.spread)
+        return wide;
+    const double spread = 0.5 * (wide.spread + between + narrow.spread);
+    const dvec3 across = narrow.axis - glm::dot(narrow.axis, wide.axis) * wide.axis;
+    const double length = glm::length(across);
+    if (spread >= kPi || !(length > 1e-12))
+        return {wide.axis, kPi};
+    const double turn = spread - wide.spread;
+    return {glm::normalize(std::cos(turn) * wide.axis + std::sin(turn) / length * across), spread};
+}
+
+// Measure of the directions that a group emits into (Conty Estevez and Kulla, equation 1).
+double orientation_measure(double spread, double reach) {
+    const double far = std::min(spread + reach, kPi), cosine = std::cos(spread), sine = std::sin(spread);
+    return 2.0 * kPi * (1.0 - cosine) +
+           kPi / 2.0 * (2.0 * far * sine - std::cos(spread - 2.0 * far) - 2.0 * spread * sine + cosine);
+}
+
+// What a group costs to have in one node; boxes that are long along the axis they are split by cost less.
+double cost(const LightBounds& b, const dvec3& parent_size, int axis) {
+    const dvec3 size = b.high - b.low;
+    const double area = 2.0 * (size.x * size.y + size.y * size.z + size.z * size.x);
+    const double longest = std::max({parent_size.x, parent_size.y, parent_size.z});
+    return b.intensity * orientation_measure(b.spread, b.reach) * longest / std::max(parent_size[axis], 1e-300) * area;
+}
+
+dvec3 middle(const LightBounds& b) {
+    return 0.5 * (b.low + b.high);
+}
+
+struct Split {
+    int axis = -1;
+    double position = 0.0, cost = 0.0;
+};
+
+constexpr int kBuckets = 12;
+
+// The bucket borders along one axis, priced.
+void try_axis(const std::vector<LightBounds>& lights, const std::vector<std::uint32_t>& order, std::size_t begin,
+              std::size_t end, const LightBounds& all, const dvec3& low, const dvec3& high, int axis, Split& best) {
+    const double width = high[axis] - low[axis];
+    if (!(width > 0.0))
+        return;
+    std::array<std::optional<LightBounds>, kBuckets> buckets;
+    for (std::size_t i = begin; i < end; ++i) {
+        const LightBounds& light = lights[order[i]];
+        const int b = std::min(kBuckets - 1, static_cast<int>((middle(light)[axis] - low[axis]) / width * kBuckets));
+        buckets[b] = buckets[b] ? united(*buckets[b], light) : light;
+    }
+    std::array<std::optional<LightBounds>, kBuckets> from_right = buckets;
+    for (int b = kBuckets - 2; b >= 0; --b)
+        if (from_right[b + 1])
+            from_right[b] = from_right[b] ? united(*from_right[b], *from_right[b + 1]) : from_right[b + 1];
+    std::optional<LightBounds> left;
+    for (int b = 0; b + 1 < kBuckets; ++b) {
+        if (buckets[b])
+            left = left ? united(*left, *buckets[b]) : *buckets[b];
+        if (!left || !from_right[b + 1])
+            continue;
+        const dvec3 size = all.high - all.low;
+        const double price = cost(*left, size, axis) + cost(*from_right[b + 1], size, axis);
+        if (best.axis < 0 || price < best.cost)
+            best = {axis, low[axis] + width * (b + 1) / kBuckets, price};
+    }
+}
+
+}  // namespace
+
+LightBounds united(const LightBounds& a, const LightBounds& b) {
+    const Cone cone = united(Cone{a.axis, a.spread}, Cone{b.axis, b.spread});
+    LightBounds out;
+    out.low = glm::min(a.low, b.low);
+    out.high = glm::max(a.high, b.high);
+    out.axis = cone.axis;
+    out.spread = cone.spread;
+    out.reach = std::max(a.reach, b.reach);
+    out.intensity = a.intensity + b.intensity;
+    out.two_sided = a.two_sided || b.two_sided;
+    return out;
+}
+
+double importance(const LightBounds& b, const LitPoint& point) {
+    const dvec3 from = point.position - middle(b);
+    const double radius = 0.5 * glm::length(b.high - b.low), distance2 = glm::dot(from, from);
+    if (!(distance2 > 0.0))
+        return b.intensity / std::max(radius * radius, 1e-300);
+    const double distance = std::sqrt(distance2);
+    const dvec3 direction = from / distance;
+    // The box as seen from the point, by its ball.
+    const double around = distance <= radius ? kPi : std::asin(std::min(1.0, radius / distance));
+    double cosine = glm::dot(b.axis, direction);
+    if (b.two_sided)
+        cosine = std::abs(cosine);
+    const double off = std::max(0.0, std::acos(std::clamp(cosine, -1.0, 1.0)) - b.spread - around);
+    if (off >= b.reach)
+        return 0.0;
+    // Full intensity along each light's axis; what lies beyond a right angle emits alike everywhere.
+    const double emitted = b.reach <= kPi / 2.0 ? std::cos(off) : 1.0;
+    double received = 1.0;
+    if (point.kind != LitPoint::Kind::Medium) {
+        double toward = -glm::dot(point.normal, direction);
+        if (point.kind == LitPoint::Kind::Transmitting)
+            toward = std::abs(toward);
+        received = std::cos(std::max(0.0, std::acos(std::clamp(toward, -1.0, 1.0)) - around));
+    }
+    return std::max(0.0, b.intensity * emitted * received / std::max(distance2, radius * radius));
+}
+
+LightTree::LightTree(const std::vector<LightBounds>& lights) : leaf_of_(lights.size()) {
+    if (lights.empty())
+        return;
+    std::vector<std::uint32_t> order(lights.size());
+    for (std::uint32_t i = 0; i < order.size(); ++i)
+        order[i] = i;
+    nodes_.reserve(2 * lights.size());
+    build(order, lights, 0, lights.size(), 0);
+}
+
+std::uint32_t LightTree::build(std::vector<std::uint32_t>& order, const std::vector<LightBounds>& lights,
+                               std::size_t begin, std::size_t end, std::uint32_t parent) {
+    const auto node = static_cast<std::uint32_t>(nodes_.size());
+    nodes_.push_back({});
+    nodes_[node].parent = parent;
+    if (end - begin == 1) {
+        nodes_[node].bounds = lights[order[begin]];
+        nodes_[node].right = order[begin];
+        leaf_of_[order[begin]] = node;
+        return node;
+    }
+    LightBounds all = lights[order[begin]];
+    dvec3 low = middle(all), high = low;
+    for (std::size_t i = begin + 1; i < end; ++i) {
+        all = united(all, lights[order[i]]);
+        low = glm::min(low, middle(lights[order[i]]));
+        high = glm::max(high, middle(lights[order[i]]));
+    }
+    Split best;
+    for (int axis = 0; axis < 3; ++axis)
+        try_axis(lights, order, begin, end, all, low, high, axis, best);
+    std::size_t cut = begin + (end - begin) / 2;
+    if (best.axis >= 0) {
+        const auto first = order.begin() + static_cast<std::ptrdiff_t>(begin);
+        const auto last = order.begin() + static_cast<std::ptrdiff_t>(end);
+        const auto there = std::stable_partition(
+            first, last, [&](std::uint32_t i) { return middle(lights[i])[best.axis] < best.position; });
+        if (there != first && there != last)
+            cut = static_cast<std::size_t>(there - order.begin());
+    }
+    const std::uint32_t left = build(order, lights, begin, cut, node);
+    const std::uint32_t right = build(order, lights, cut, end, node);
+    nodes_[node].bounds = all;
+    nodes_[node].left = left;
+    nodes_[node].right = right;
+    return node;
+}
+
+// Below 0: neither can reach the point.
+double LightTree::share_of_left(const Node& node, const LitPoint& point) const {
+    const double left = importance(nodes_[node.left].bounds, point);
+    const double right = importance(nodes_[node.right].bounds, point);
+    return left + right > 0.0 ? left / (left + right) : -1.0;
+}
+
+std::optional<LightTree::Choice> LightTree::choose(const LitPoint& point, double u) const {
+    if (nodes_.empty())
+        return std::nullopt;
+    std::uint32_t at = 0;
+    double probability = 1.0;
+    while (nodes_[at].left != 0) {
+        const double left = share_of_left(nodes_[at], point);
+        if (left < 0.0)
+            return std::nullopt;
+        const bool goes_left = u < left;
+        const double share = goes_left ? left : 1.0 - left;
+        u = std::min((goes_left ? u : u - left) / share, 1.0 - 0x1p-53);
+        probability *= share;
+        at = goes_left ? nodes_[at].left : nodes_[at].right;
+    }
+    if (!(importance(nodes_[at].bounds, point) > 0.0))
+        return std::nullopt;
+    return Choice{nodes_[at].right, probability};
+}
+
+double LightTree::probability(const LitPoint& point, std::size_t light) const {
+    std::uint32_t at = leaf_of_[light];
+    if (!(importance(nodes_[at].bounds, point) > 0.0))
+        return 0.0;
+    double probability = 1.0;
+    while (at != 0) {
+        const std::uint32_t parent = nodes_[at].parent;
+        const double left = share_of_left(nodes_[parent], point);
+        if (left < 0.0)
+            return 0.0;
+        probability *= nodes_[parent].left == at ? left : 1.0 - left;
+        at = parent;
+    }
+    return probability;
+}
+
+}  // namespace brisance

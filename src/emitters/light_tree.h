@@ -1,0 +1,67 @@
+// A binary tree over bounded lights that picks one of them for a point, about in proportion to what it may send there
+// (Conty Estevez and Kulla, Importance Sampling of Many Lights with Adaptive Tree Splitting, HPG 2018; the bounds of
+// angles as in Pharr, Jakob, Humphreys, Physically Based Rendering, 4th edition, section 12.6).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/vec.h"
+
+namespace brisance {
+
+// Where a group of lights lies, where it sends light to, and how much.
+struct LightBounds {
+    dvec3 low{0.0}, high{0.0};
+    dvec3 axis{0.0, 0.0, 1.0};  // of emission
+    double spread = 0.0;        // the lights' axes lie within this angle of it; pi: everywhere
+    double reach = 0.0;         // each emits within this angle of its own axis
+    double intensity = 0.0;     // largest toward anywhere, summed, luminance [W/sr]
+    bool two_sided = false;     // along both directions of the axis
+};
+
+// Who asks: a point of a medium, or of a surface, that faces `normal` (or both ways, where it lets light through).
+struct LitPoint {
+    dvec3 position{0.0};
+    dvec3 normal{0.0};
+    enum class Kind { Medium, Surface, Transmitting } kind = Kind::Medium;
+};
+
+class LightTree {
+public:
+    explicit LightTree(const std::vector<LightBounds>& lights);
+    bool empty() const { return nodes_.empty(); }
+    std::size_t size() const { return leaf_of_.size(); }
+
+    struct Choice {
+        std::size_t light;
+        double probability;
+    };
+    // From a number in [0, 1). None where no light can reach the point.
+    std::optional<Choice> choose(const LitPoint& point, double u) const;
+    // With which choose() picks that light.
+    double probability(const LitPoint& point, std::size_t light) const;
+
+    std::uint64_t bytes() const { return nodes_.size() * sizeof(Node) + leaf_of_.size() * sizeof(std::uint32_t); }
+
+private:
+    struct Node {
+        LightBounds bounds;
+        std::uint32_t parent = 0, left = 0, right = 0;  // left == 0: a leaf of the light `right`
+    };
+    std::uint32_t build(std::vector<std::uint32_t>& order, const std::vector<LightBounds>& lights, std::size_t begin,
+                        std::size_t end, std::uint32_t parent);
+    double share_of_left(const Node& node, const LitPoint& point) const;
+
+    std::vector<Node> nodes_;
+    std::vector<std::uint32_t> leaf_of_;
+};
+
+// Bounds of both.
+LightBounds united(const LightBounds& a, const LightBounds& b);
+
+// What the bounded lights send to the point at most, by the bounds' own geometry: their importance.
+double importance(const LightBounds& lights, const LitPoint& point);
+
+}  // namespace brisance

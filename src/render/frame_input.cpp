@@ -1,0 +1,111 @@
+#include "render/frame_input.h"
+
+#include <optional>
+
+#include "core/error.h"
+#include "core/stopwatch.h"
+#include "render/camera.h"
+#include "render/load_medium.h"
+#include "scene/load_scene.h"
+
+namespace brisance {
+
+namespace {
+
+constexpr std::uint64_t kSceneMemory = std::uint64_t{12} << 30;
+
+// The camera that the shot names, or the first of the first file that has one.
+std::optional<SceneCamera> camera_of_files(const Shot& shot, double seconds) {
+    std::string known;
+    for (const SceneFile& file : shot.scene.files)
+        for (SceneCamera& camera : load_cameras(file, shot.folder, seconds)) {
+            if (shot.scene.camera.empty() || camera.name == shot.scene.camera)
+                return std::move(camera);
+            known += (known.empty() ? "" : ", ") + camera.name;
+        }
+    if (!shot.scene.camera.empty())
+        throw Error(ExitCode::Usage, "scene.camera: no glTF file has a camera \"" + shot.scene.camera + "\"; there " +
+                                         (known.empty() ? "is none at all" : "are " + known));
+    return std::nullopt;
+}
+
+CameraSettings with_file_camera(CameraSettings settings, const SceneCamera& camera, Progress& progress) {
+    settings.world_from_camera = camera.world_from_camera;
+    settings.vertical_fov_degrees = camera.vertical_fov_degrees;
+    const double aspect = double(settings.width) / settings.height;
+    if (camera.aspect && std::abs(aspect / *camera.aspect - 1.0) > 0.01)
+        progress.notice("camera " + camera.name + " is made for pictures of " + std::to_string(*camera.aspect) +
+                        " times their height; this one's sides are " + (aspect < *camera.aspect ? "cut" : "wider"));
+    return settings;
+}
+
+// A medium of nothing, whose local space begins at `origin`.
+Medium empty_medium(const dvec3& origin) {
+    Medium medium;
+    medium.world_from_index[3] = glm::dvec4(origin, 1.0);
+    return medium;
+}
+
+dvec3 origin_of(const Medium& medium) {
+    return medium.world_of_local(vec3(0.0f));
+}
+
+std::unique_ptr<Surroundings> load_surroundings(const Shot& shot, double seconds, const dvec3& origin,
+                                                Statistics& statistics, Progress& progress) {
+    progress.stage("surfaces");
+    const Stopwatch watch;
+    Scene scene = load_scene(shot.scene, shot.folder, seconds, origin, kSceneMemory, progress);
+    std::vector<LightSettings> lights = shot.scene.lights;
+    std::vector<Texture> pictures;
+    for (const LightSettings& light : lights)
+        pictures.push_back(light.kind == LightKind::Environment && !light.file.empty()
+                               ? read_texture(shot.folder / light.file, light.file)
+                               : Texture{});
+    const std::size_t triangles = scene.triangle_count();
+    auto out = std::make_unique<Surroundings>(std::move(scene), std::move(lights), std::move(pictures));
+    statistics.stages.push_back({"surfaces",
+                                 watch.seconds(),
+                                 out->bytes(),
+                                 {{"triangles", triangles}, {"emitters", out->emitters().near_count()}}});
+    return out;
+}
+
+CameraSettings choose_camera(const Shot& shot, const std::optional<SceneCamera>& of_file, const FrameInput& input,
+                             Progress& progress) {
+    if (shot.camera_given)
+        return shot.camera;
+    if (of_file)
+        return with_file_camera(shot.camera, *of_file, progress);
+    if (input.medium.lattice.brick_count() > 0 || !input.surroundings)
+        return framed_camera(input.medium, shot.camera);
+    const bool y_up = !shot.scene.files.empty() && shot.scene.files.front().up == 'y';
+    progress.notice("no camera: the picture is framed on the scene");
+    return framed_camera(input.surroundings->scene(), y_up ? dvec3(0, 1, 0) : dvec3(0, 0, 1), shot.camera);
+}
+
+}  // namespace
+
+FrameInput load_frame(const Shot& shot, const std::filesystem::path& volume, int frame, Statistics& statistics,
+                      Progress& progress) {
+    FrameInput input;
+    const double seconds = frame / shot.scene.frames_per_second;
+    std::optional<SceneCamera> of_file;
+    if (!shot.camera_given && !shot.scene.files.empty())
+        of_file = camera_of_files(shot, seconds);
+    if (volume.empty()) {
+        dvec3 eye(0.0);
+        if (shot.camera_given)
+            eye = shot.camera.world_from_camera ? dvec3((*shot.camera.world_from_camera)[3]) : shot.camera.eye;
+        else if (of_file)
+            eye = dvec3(of_file->world_from_camera[3]);
+        input.medium = empty_medium(eye);
+    } else {
+        input.medium = load_medium(shot, volume, statistics, progress);
+    }
+    if (!shot.scene.empty())
+        input.surroundings = load_surroundings(shot, seconds, origin_of(input.medium), statistics, progress);
+    input.camera = choose_camera(shot, of_file, input, progress);
+    return input;
+}
+
+}  // namespace brisance

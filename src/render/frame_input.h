@@ -1,0 +1,26 @@
+// What one frame is rendered from: its medium, its surroundings, its camera.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "core/progress.h"
+#include "emitters/surroundings.h"
+#include "medium/medium.h"
+#include "render/statistics.h"
+#include "shot/shot.h"
+
+namespace brisance {
+
+struct FrameInput {
+    Medium medium;                               // without nodes where the shot has no volume
+    std::unique_ptr<Surroundings> surroundings;  // none where it has no scene; local space as the medium's
+    CameraSettings camera;
+};
+
+// `volume`: the frame's .vdb file; empty where the shot has none, and then no volume is started.
+// The camera is the shot's, else that of a glTF file, else one that sees everything. Throws Error.
+FrameInput load_frame(const Shot& shot, const std::filesystem::path& volume, int frame, Statistics& statistics,
+                      Progress& progress);
+
+}  // namespace brisance
