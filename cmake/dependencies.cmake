@@ -9,6 +9,12 @@ find_package(glm REQUIRED)
 find_package(hwy REQUIRED)
 find_package(OpenEXR CONFIG REQUIRED)
 
+# Debian's library of tinygltf brings stb and decodes pictures by it. The header alone does without: it is compiled once,
+# in src/scene.
+find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
+add_library(tinygltf INTERFACE)
+target_include_directories(tinygltf SYSTEM INTERFACE ${TINYGLTF_INCLUDE_DIR})
+
 # OpenVDB's find module is not on CMake's own path, and asks for boost's iostreams.
 if(CMAKE_LIBRARY_ARCHITECTURE)
     list(APPEND CMAKE_MODULE_PATH /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB)

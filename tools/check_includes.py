@@ -11,7 +11,7 @@ import sys
 ROW = re.compile(r"^\| `(\w+)` \|[^|]*\|([^|]*)\|([^|]*)\|\s*$")
 INCLUDE = re.compile(r"^\s*#\s*include\s*([<\"])([^>\"]+)[>\"]", re.MULTILINE)
 # Other names under which a library's headers are found.
-ALIASES = {"oneapi": "tbb", "nanovdb": "openvdb"}
+ALIASES = {"oneapi": "tbb", "nanovdb": "openvdb", "tiny_gltf.h": "tinygltf"}
 SOURCES = {".h", ".hpp", ".cpp", ".cc", ".inl"}
 
 

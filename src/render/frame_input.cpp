@@ -7,6 +7,7 @@
 #include "render/camera.h"
 #include "render/load_medium.h"
 #include "scene/load_scene.h"
+#include "scene/read_texture.h"
 
 namespace brisance {
 
@@ -50,16 +51,26 @@ dvec3 origin_of(const Medium& medium) {
     return medium.world_of_local(vec3(0.0f));
 }
 
+// Around, but not over the poles. Pictures with eight bits a channel are meant for screens.
+Texture read_environment(const std::filesystem::path& file) {
+    Texture picture = read_texture(file, false, kSceneMemory);
+    picture.srgb = !picture.bytes.empty();
+    picture.wrap_u = Wrap::Repeat;
+    picture.wrap_v = Wrap::Clamp;
+    return picture;
+}
+
 std::unique_ptr<Surroundings> load_surroundings(const Shot& shot, double seconds, const dvec3& origin,
                                                 Statistics& statistics, Progress& progress) {
     progress.stage("surfaces");
     const Stopwatch watch;
     Scene scene = load_scene(shot.scene, shot.folder, seconds, origin, kSceneMemory, progress);
     std::vector<LightSettings> lights = shot.scene.lights;
+    lights.insert(lights.end(), scene.lights.begin(), scene.lights.end());
     std::vector<Texture> pictures;
     for (const LightSettings& light : lights)
         pictures.push_back(light.kind == LightKind::Environment && !light.file.empty()
-                               ? read_texture(shot.folder / light.file, light.file)
+                               ? read_environment(shot.folder / light.file)
                                : Texture{});
     const std::size_t triangles = scene.triangle_count();
     auto out = std::make_unique<Surroundings>(std::move(scene), std::move(lights), std::move(pictures));

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/vec.h"
+#include "scene/settings.h"
 #include "scene/texture.h"
 #include "surfaces/material.h"
 
@@ -70,6 +71,7 @@ struct Scene {
     std::vector<SceneMaterial> materials;  // at least one where there are meshes
     std::vector<Texture> textures;
     std::vector<SceneCamera> cameras;
+    std::vector<LightSettings> lights;  // of the files: Point, Spot and Sun
 
     std::size_t triangle_count() const;
     std::uint64_t bytes() const;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -26,8 +25,5 @@ public:
     // Linear RGBA at uv, interpolated in linear light.
     vec4 at(vec2 uv) const;
 };
-
-// From a picture file. `name` stands for it in messages. Throws Error MissingInput or BadData.
-Texture read_texture(const std::filesystem::path& file, const std::string& name);
 
 }  // namespace brisance

@@ -1,0 +1,94 @@
+#include "scene/load_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include "core/error.h"
+#include "scene/gltf_cameras.h"
+#include "scene/gltf_meshes.h"
+#include "scene/quick_shapes.h"
+
+namespace brisance {
+namespace {
+
+// Passes every line on once: a file may have a thousand materials with the same trait.
+class Once : public Progress {
+public:
+    explicit Once(Progress& listener) : listener_(listener) {}
+    void notice(const std::string& line) override {
+        if (told_.insert(line).second)
+            listener_.notice(line);
+    }
+    void warning(const std::string& code, const std::string& line) override {
+        if (told_.insert(line).second)
+            listener_.warning(code, line);
+    }
+
+private:
+    Progress& listener_;
+    std::set<std::string> told_;
+};
+
+dmat4 world_from_gltf(const SceneFile& file) {
+    if (file.up != 'y' && file.up != 'z')
+        throw Error(ExitCode::Usage, fmt::format("{}: up is '{}', it may be y or z", file.file, file.up));
+    dmat4 up(1.0);
+    if (file.up == 'z')
+        up = dmat4({1.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 1.0, 0.0}, {0.0, -1.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 1.0});
+    return file.world_from_file * up;
+}
+
+// One file and where its nodes are.
+struct Opened {
+    GltfFile gltf;
+    std::vector<PlacedNode> nodes;
+};
+
+Opened open(const SceneFile& file, const std::filesystem::path& folder, double seconds, MemoryBudget& budget,
+            Progress& progress) {
+    GltfFile gltf = read_gltf(folder / file.file, budget, progress);
+    std::vector<PlacedNode> nodes = place_nodes(gltf, world_from_gltf(file), seconds, progress);
+    return {std::move(gltf), std::move(nodes)};
+}
+
+template <class T>
+void append(std::vector<T>& to, std::vector<T>&& from) {
+    std::move(from.begin(), from.end(), std::back_inserter(to));
+}
+
+}  // namespace
+
+Scene load_scene(const SceneSettings& settings, const std::filesystem::path& folder, double seconds,
+                 const dvec3& origin, std::uint64_t memory_limit, Progress& progress) {
+    Scene scene;
+    scene.origin = origin;
+    MemoryBudget budget(memory_limit);
+    Once once(progress);
+    for (const SceneFile& file : settings.files) {
+        const Opened opened = open(file, folder, seconds, budget, once);
+        read_meshes(opened.gltf, opened.nodes, scene, budget, once);
+        append(scene.cameras, read_cameras(opened.gltf, opened.nodes, once));
+        append(scene.lights, read_lights(opened.gltf, opened.nodes, once));
+    }
+    for (std::size_t i = 0; i < settings.quads.size(); ++i)
+        add_quad(settings.quads[i], fmt::format("quad {}", i), scene, once);
+    for (std::size_t i = 0; i < settings.spheres.size(); ++i)
+        add_sphere(settings.spheres[i], fmt::format("sphere {}", i), scene, budget);
+    for (const LightSettings& light : settings.lights)
+        if (light.kind == LightKind::Quad)
+            add_quad_light(light, scene, once);
+    return scene;
+}
+
+std::vector<SceneCamera> load_cameras(const SceneFile& file, const std::filesystem::path& folder, double seconds) {
+    MemoryBudget unlimited(std::numeric_limits<std::uint64_t>::max());
+    Progress silent;
+    const Opened opened = open(file, folder, seconds, unlimited, silent);
+    return read_cameras(opened.gltf, opened.nodes, silent);
+}
+
+}  // namespace brisance

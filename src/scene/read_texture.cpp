@@ -1,0 +1,147 @@
+#include "scene/read_texture.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <memory>
+
+#include "core/error.h"
+#include "scene/srgb.h"
+
+namespace brisance {
+namespace {
+
+[[noreturn]] void reject(const std::string& where, const std::string& why) {
+    throw Error(ExitCode::BadData, fmt::format("{}: {}; export or copy the picture again", where, why));
+}
+
+// A library's message as the rest of one line.
+std::string one_line(std::string text) {
+    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())))
+        text.pop_back();
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c); }, ' ');
+    return text.substr(0, 160);
+}
+
+// glTF's colours are not multiplied by alpha, and PNG's are not either: OpenImageIO would multiply them.
+OIIO::ImageSpec as_stored() {
+    OIIO::ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1);
+    return config;
+}
+
+// One, two, three or four channels as RGBA: grey is R = G = B, what has no alpha is opaque.
+template <class T>
+std::vector<T> as_rgba(const std::vector<T>& pixels, int channels, T opaque) {
+    const auto n = static_cast<std::size_t>(channels);
+    const bool grey = channels < 3, alpha = channels == 2 || channels == 4;
+    std::vector<T> rgba(pixels.size() / n * 4);
+    for (std::size_t i = 0; i < rgba.size() / 4; ++i) {
+        const T* const from = &pixels[i * n];
+        for (std::size_t c = 0; c < 3; ++c)
+            rgba[4 * i + c] = from[grey ? 0 : c];
+        rgba[4 * i + 3] = alpha ? from[n - 1] : opaque;
+    }
+    return rgba;
+}
+
+template <class T>
+std::vector<T> read_rgba(OIIO::ImageInput& input, const std::string& where, OIIO::TypeDesc type, T opaque) {
+    const OIIO::ImageSpec& spec = input.spec();
+    const int channels = std::min(spec.nchannels, 4);
+    std::vector<T> pixels(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
+                          static_cast<std::size_t>(channels));
+    if (!input.read_image(0, 0, 0, channels, type, pixels.data()))
+        reject(where, "truncated or damaged: " + one_line(input.geterror()));
+    return channels == 4 ? pixels : as_rgba(pixels, channels, opaque);
+}
+
+void make_linear(std::vector<float>& rgba, bool srgb) {
+    for (std::size_t i = 0; i < rgba.size(); ++i) {
+        rgba[i] = std::isfinite(rgba[i]) ? rgba[i] : 0.0f;
+        if (srgb && i % 4 != 3)
+            rgba[i] = linear_from_srgb(rgba[i]);
+    }
+}
+
+Texture read_opened(OIIO::ImageInput& input, const std::string& where, bool srgb, std::uint64_t memory_limit) {
+    const OIIO::ImageSpec& spec = input.spec();
+    const bool bytes = spec.format == OIIO::TypeDesc::UINT8;
+    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1)
+        reject(where, fmt::format("its size of {} x {} makes no sense", spec.width, spec.height));
+    const double size = 4.0 * spec.width * spec.height * (bytes ? 1.0 : 4.0);
+    if (size > static_cast<double>(memory_limit))
+        throw Error(ExitCode::Temporary, fmt::format("{}: {} x {} pixels need {:.2f} GiB, more than is left; use a "
+                                                     "smaller picture, or a machine with more memory",
+                                                     where, spec.width, spec.height, size / 0x1p30));
+    Texture texture;
+    texture.width = spec.width;
+    texture.height = spec.height;
+    texture.srgb = srgb && bytes;
+    if (bytes) {
+        texture.bytes = read_rgba<std::uint8_t>(input, where, OIIO::TypeDesc::UINT8, 255);
+    } else {
+        texture.floats = read_rgba<float>(input, where, OIIO::TypeDesc::FLOAT, 1.0f);
+        make_linear(texture.floats, srgb);
+    }
+    return texture;
+}
+
+// OpenImageIO's name of the format; nullptr for those that glTF does not have.
+const char* format_of(std::span<const unsigned char> bytes) {
+    static constexpr unsigned char kPng[] = {0x89, 'P', 'N', 'G'}, kJpeg[] = {0xff, 0xd8, 0xff};
+    const auto starts_with = [&](std::span<const unsigned char> magic) {
+        return bytes.size() >= magic.size() && std::equal(magic.begin(), magic.end(), bytes.begin());
+    };
+    return starts_with(kPng) ? "png" : starts_with(kJpeg) ? "jpeg" : nullptr;
+}
+
+// libjpeg fills what is missing with grey and goes on: a JPEG that does not end is found by its end marker.
+bool jpeg_ends(std::span<const unsigned char> bytes) {
+    static constexpr unsigned char kEnd[] = {0xff, 0xd9};
+    const auto half = bytes.subspan(bytes.size() / 2);  // a preview within it may end, but it comes first
+    return std::search(half.begin(), half.end(), std::begin(kEnd), std::end(kEnd)) != half.end();
+}
+
+}  // namespace
+
+Texture read_texture(const std::filesystem::path& file, bool srgb, std::uint64_t memory_limit) {
+    std::error_code error;
+    if (!std::filesystem::exists(file, error))
+        throw Error(ExitCode::MissingInput, fmt::format("{}: no such file", file.string()));
+    const OIIO::ImageSpec config = as_stored();
+    const auto input = OIIO::ImageInput::open(file.string(), &config);
+    if (!input)
+        reject(file.string(), "not a picture that can be read: " + one_line(OIIO::geterror()));
+    Texture texture = read_opened(*input, file.string(), srgb, memory_limit);
+    texture.name = file.filename().string();
+    return texture;
+}
+
+Texture read_texture(std::span<const unsigned char> bytes, const std::string& where, bool srgb,
+                     std::uint64_t memory_limit) {
+    const char* const format = format_of(bytes);
+    if (format == nullptr)
+        reject(where, "neither a PNG nor a JPEG");
+    if (std::strcmp(format, "jpeg") == 0 && !jpeg_ends(bytes))
+        reject(where, "the JPEG is truncated");
+    OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
+    const auto input = OIIO::ImageInput::create(format);
+    OIIO::ImageSpec spec;
+    if (!input || !input->set_ioproxy(&memory))
+        reject(where, std::string("OpenImageIO was built without ") + format);
+    // The proxy is set twice: JPEG's reader forgets one that its configuration does not name.
+    OIIO::ImageSpec config = as_stored();
+    void* const proxy = &memory;
+    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    if (!input->open("", spec, config))
+        reject(where, "damaged: " + one_line(input->geterror()));
+    return read_opened(*input, where, srgb, memory_limit);
+}
+
+}  // namespace brisance

@@ -1,0 +1,52 @@
+#include "scene/scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "scene/memory_budget.h"
+
+namespace brisance {
+namespace {
+
+template <class T>
+std::uint64_t bytes_of(const std::vector<T>& values) {
+    return values.size() * sizeof(T);
+}
+
+}  // namespace
+
+std::size_t Scene::triangle_count() const {
+    std::size_t count = 0;
+    for (const SceneMesh& mesh : meshes)
+        count += mesh.triangles.size();
+    return count;
+}
+
+std::uint64_t Scene::bytes() const {
+    std::uint64_t sum = bytes_of(meshes) + bytes_of(materials) + bytes_of(textures) + bytes_of(cameras);
+    for (const SceneMesh& mesh : meshes)
+        sum += bytes_of(mesh.positions) + bytes_of(mesh.normals) + bytes_of(mesh.uv) + bytes_of(mesh.triangles);
+    for (const Texture& texture : textures)
+        sum += bytes_of(texture.bytes) + bytes_of(texture.floats);
+    return sum;
+}
+
+void MemoryBudget::claim(const std::string& where, double bytes, double triangles) {
+    bytes_ += bytes;
+    triangles_ += triangles;
+    if (bytes_ <= limit_)
+        return;
+    constexpr double kGiB = 1024.0 * 1024.0 * 1024.0;
+    throw Error(ExitCode::Temporary,
+                fmt::format("{}: with it the set's surfaces ({:.0f} triangles so far) need about {:.2f} GiB, more than "
+                            "the {:.2f} GiB allowed; use simpler files, or a machine with more memory",
+                            where, triangles_, bytes_ / kGiB, limit_ / kGiB));
+}
+
+std::uint64_t MemoryBudget::left() const {
+    return bytes_ < limit_ ? static_cast<std::uint64_t>(std::min(limit_ - bytes_, 0x1p62)) : 0;
+}
+
+}  // namespace brisance

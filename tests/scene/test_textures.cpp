@@ -1,0 +1,174 @@
+// Looking up textures, and decoding pictures.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "gltf_fixture.h"
+#include "scene/read_texture.h"
+
+namespace brisance::testing {
+namespace {
+
+// Red of texel (x, y) is 10 y + x; all else 0, alpha 1.
+Texture numbered(int width, int height) {
+    Texture texture;
+    texture.width = width;
+    texture.height = height;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            texture.floats.insert(texture.floats.end(),
+                                  {10.0f * static_cast<float>(y) + static_cast<float>(x), 0, 0, 1});
+    return texture;
+}
+
+std::span<const unsigned char> as_bytes(const std::string& text) {
+    return {reinterpret_cast<const unsigned char*>(text.data()), text.size()};
+}
+
+TEST(TextureLookup, TexelCentresGiveTheirTexel) {
+    Texture texture = numbered(4, 2);
+    for (const bool nearest : {false, true}) {
+        texture.nearest = nearest;
+        for (int y = 0; y < 2; ++y)
+            for (int x = 0; x < 4; ++x) {
+                const vec2 centre((static_cast<float>(x) + 0.5f) / 4.0f, (static_cast<float>(y) + 0.5f) / 2.0f);
+                EXPECT_FLOAT_EQ(texture.at(centre).x, static_cast<float>(10 * y + x));
+                EXPECT_EQ(texture.at(centre).w, 1.0f);
+            }
+    }
+}
+
+TEST(TextureLookup, BilinearBetweenCentres) {
+    const Texture texture = numbered(4, 2);
+    EXPECT_FLOAT_EQ(texture.at({0.25f, 0.25f}).x, 0.5f);
+    EXPECT_FLOAT_EQ(texture.at({0.125f, 0.5f}).x, 5.0f);
+    EXPECT_FLOAT_EQ(texture.at({0.1875f, 0.375f}).x, 0.25f + 2.5f);
+}
+
+TEST(TextureLookup, NearestTakesTheTexelAround) {
+    Texture texture = numbered(4, 2);
+    texture.nearest = true;
+    EXPECT_EQ(texture.at({0.24f, 0.49f}).x, 0.0f);
+    EXPECT_EQ(texture.at({0.26f, 0.51f}).x, 11.0f);
+}
+
+TEST(TextureLookup, RepeatGoesOnAcrossTheBorder) {
+    Texture texture = numbered(4, 2);
+    EXPECT_FLOAT_EQ(texture.at({1.0f, 0.25f}).x, 1.5f) << "half of the last texel, half of the first";
+    EXPECT_FLOAT_EQ(texture.at({0.0f, 0.25f}).x, 1.5f);
+    EXPECT_FLOAT_EQ(texture.at({-0.875f, 0.25f}).x, 0.0f);
+    EXPECT_FLOAT_EQ(texture.at({1000.125f, -7.75f}).x, 0.0f);
+    texture.nearest = true;
+    EXPECT_EQ(texture.at({1.0f, 1.0f}).x, 0.0f);
+    EXPECT_EQ(texture.at({-0.01f, 0.0f}).x, 3.0f);
+}
+
+TEST(TextureLookup, MirrorTurnsBackAtTheBorder) {
+    Texture texture = numbered(4, 2);
+    texture.wrap_u = Wrap::Mirror;
+    EXPECT_FLOAT_EQ(texture.at({1.0f, 0.25f}).x, 3.0f);
+    EXPECT_FLOAT_EQ(texture.at({1.375f, 0.25f}).x, 2.0f);
+    EXPECT_FLOAT_EQ(texture.at({-0.375f, 0.25f}).x, 1.0f);
+    EXPECT_FLOAT_EQ(texture.at({2.125f, 0.25f}).x, 0.0f);
+    texture.nearest = true;
+    EXPECT_EQ(texture.at({1.01f, 0.25f}).x, 3.0f);
+    EXPECT_EQ(texture.at({-0.01f, 0.25f}).x, 0.0f);
+}
+
+TEST(TextureLookup, ClampKeepsTheBorder) {
+    Texture texture = numbered(4, 2);
+    texture.wrap_u = texture.wrap_v = Wrap::Clamp;
+    EXPECT_FLOAT_EQ(texture.at({1.0f, 0.25f}).x, 3.0f);
+    EXPECT_FLOAT_EQ(texture.at({1e30f, 1e30f}).x, 13.0f);
+    EXPECT_FLOAT_EQ(texture.at({-5.0f, -5.0f}).x, 0.0f);
+    texture.nearest = true;
+    EXPECT_EQ(texture.at({7.0f, 0.25f}).x, 3.0f);
+}
+
+TEST(TextureLookup, CoordinatesThatAreNoNumbersAreSafe) {
+    for (const Wrap wrap : {Wrap::Repeat, Wrap::Mirror, Wrap::Clamp}) {
+        Texture texture = numbered(3, 3);
+        texture.wrap_u = texture.wrap_v = wrap;
+        for (const float x : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+                              -std::numeric_limits<float>::infinity(), 3e38f, -3e38f, -1e-30f, 0x1.fffffep-1f})
+            for (texture.nearest = false; !texture.nearest; texture.nearest = true)
+                EXPECT_TRUE(std::isfinite(texture.at({x, x}).x));
+    }
+}
+
+TEST(TextureLookup, SrgbIsDecodedBeforeItIsInterpolated) {
+    Texture texture;
+    texture.width = 2;
+    texture.height = 1;
+    texture.bytes = {0, 0, 0, 0, 255, 188, 10, 255};
+    texture.wrap_u = Wrap::Clamp;
+    EXPECT_NEAR(texture.at({0.75f, 0.5f}).y, 188.0 / 255.0, 1e-6);
+    texture.srgb = true;
+    EXPECT_NEAR(texture.at({0.75f, 0.5f}).y, std::pow((188.0 / 255.0 + 0.055) / 1.055, 2.4), 1e-6);
+    EXPECT_NEAR(texture.at({0.75f, 0.5f}).z, 10.0 / 255.0 / 12.92, 1e-7) << "the linear part";
+    EXPECT_FLOAT_EQ(texture.at({0.5f, 0.5f}).x, 0.5f);
+    EXPECT_FLOAT_EQ(texture.at({0.5f, 0.5f}).w, 0.5f) << "alpha is linear";
+}
+
+TEST(ReadTexture, EightBitsStayBytes) {
+    const std::string png = encoded(".png", 2, 1, 4, {1, 2, 3, 4, 250, 128, 64, 0});
+    const Texture texture = read_texture(as_bytes(png), "picture", true, kPlenty);
+    EXPECT_EQ(texture.bytes, (std::vector<std::uint8_t>{1, 2, 3, 4, 250, 128, 64, 0}))
+        << "colours are not multiplied by alpha";
+    EXPECT_TRUE(texture.srgb);
+    EXPECT_TRUE(texture.floats.empty());
+}
+
+TEST(ReadTexture, FewerChannelsAreFilledUp) {
+    const Texture grey = read_texture(as_bytes(encoded(".png", 2, 1, 1, {7, 9})), "grey", true, kPlenty);
+    EXPECT_EQ(grey.bytes, (std::vector<std::uint8_t>{7, 7, 7, 255, 9, 9, 9, 255}));
+    const Texture grey_alpha = read_texture(as_bytes(encoded(".png", 1, 1, 2, {7, 9})), "grey", true, kPlenty);
+    EXPECT_EQ(grey_alpha.bytes, (std::vector<std::uint8_t>{7, 7, 7, 9}));
+    const Texture rgb = read_texture(as_bytes(encoded(".png", 1, 1, 3, {7, 8, 9})), "rgb", true, kPlenty);
+    EXPECT_EQ(rgb.bytes, (std::vector<std::uint8_t>{7, 8, 9, 255}));
+}
+
+TEST(ReadTexture, SixteenBitsBecomeLinearFloats) {
+    const std::string png = encoded_png16(1, 1, 3, {65535, 32768, 0});
+    const Texture linear = read_texture(as_bytes(png), "picture", false, kPlenty);
+    ASSERT_EQ(linear.floats.size(), 4u);
+    EXPECT_NEAR(linear.floats[1], 32768.0 / 65535.0, 1e-6);
+    EXPECT_EQ(linear.floats[3], 1.0f);
+    const Texture srgb = read_texture(as_bytes(png), "picture", true, kPlenty);
+    EXPECT_NEAR(srgb.at({0.5f, 0.5f}).y, std::pow((32768.0 / 65535.0 + 0.055) / 1.055, 2.4), 1e-5);
+    EXPECT_FALSE(srgb.srgb);
+}
+
+TEST(ReadTexture, JpegsAreReadTopRowFirst) {
+    std::vector<std::uint8_t> pixels(16 * 16 * 3, 20);
+    std::fill(pixels.begin(), pixels.begin() + 8 * 16 * 3, std::uint8_t{230});
+    const Texture texture = read_texture(as_bytes(encoded(".jpg", 16, 16, 3, pixels)), "picture", false, kPlenty);
+    EXPECT_NEAR(texture.at({0.5f, 0.1f}).x, 230.0 / 255.0, 0.02);
+    EXPECT_NEAR(texture.at({0.5f, 0.9f}).x, 20.0 / 255.0, 0.02);
+}
+
+TEST(ReadTexture, WhatIsNoPictureSaysSo) {
+    const std::string jpeg = encoded(".jpg", 64, 64, 3, std::vector<std::uint8_t>(64 * 64 * 3, 99));
+    const std::string png = encoded(".png", 64, 64, 3, std::vector<std::uint8_t>(64 * 64 * 3, 99));
+    for (const std::string& damaged :
+         {std::string(), std::string("hello"), jpeg.substr(0, jpeg.size() / 2), jpeg.substr(0, 20),
+          png.substr(0, png.size() / 2), png.substr(0, 20), "\xff\xd8\xff" + std::string(100, 'x') + "\xff\xd9"}) {
+        const Failure failure = failure_of([&] { read_texture(as_bytes(damaged), "p.glb: image 3", true, kPlenty); });
+        EXPECT_EQ(failure.code, ExitCode::BadData) << damaged.size();
+        EXPECT_TRUE(contains(failure.message, "p.glb: image 3")) << failure.message;
+    }
+}
+
+TEST(ReadTexture, FilesMayBeMissingOrTooLarge) {
+    const TempFolder folder;
+    EXPECT_EQ(failure_of([&] { read_texture(folder / "none.png", true, kPlenty); }).code, ExitCode::MissingInput);
+    write_bytes(folder / "a.png", encoded(".png", 64, 64, 3, std::vector<std::uint8_t>(64 * 64 * 3, 99)));
+    EXPECT_EQ(failure_of([&] { read_texture(folder / "a.png", true, 64 * 64 * 4 - 1); }).code, ExitCode::Temporary);
+    EXPECT_EQ(read_texture(folder / "a.png", true, 64 * 64 * 4).name, "a.png");
+    write_bytes(folder / "b.png", "hello");
+    EXPECT_EQ(failure_of([&] { read_texture(folder / "b.png", true, kPlenty); }).code, ExitCode::BadData);
+}
+
+}  // namespace
+}  // namespace brisance::testing
