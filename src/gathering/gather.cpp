@@ -92,8 +92,9 @@ void interaction_list(const LightField& field, const GridLevel& level, bool top,
 
 class FarGather {
 public:
-    FarGather(const LightField& field, const Receivers& receivers, float mean_cosine, Gathered& out, Progress& progress)
-        : field_(field), receivers_(receivers), mean_cosine_(mean_cosine), out_(out), progress_(progress) {
+    FarGather(const LightField& field, const Receivers& receivers, float mean_cosine, Gathered& out, Progress& progress,
+              ReceiverKind kind = ReceiverKind::Medium)
+        : field_(field), receivers_(receivers), mean_cosine_(mean_cosine), kind_(kind), out_(out), progress_(progress) {
         fine_ = field.pyramid->view(0);
     }
 
@@ -163,9 +164,12 @@ private:
             lights.extinction = &fine_;
             lights.index_from_local = field_.pyramid->medium().index_from_local;
             lights.step_nodes = 0.5f;
-            const FarOutput output{receivers_.size(), out_.fluence.data(),
+            const FarOutput output{receivers_.size(),
+                                   out_.fluence.data(),
                                    out_.scattered.empty() ? nullptr : out_.scattered.data(),
-                                   out_.moments.empty() ? nullptr : out_.moments.data(), mean_cosine_};
+                                   out_.moments.empty() ? nullptr : out_.moments.data(),
+                                   mean_cosine_,
+                                   kind_};
             evaluations[b] = gather_far(lights, receivers_, block, output);
         });
         std::uint64_t sum = 0;
@@ -177,6 +181,7 @@ private:
     const LightField& field_;
     const Receivers& receivers_;
     float mean_cosine_;
+    ReceiverKind kind_;
     Gathered& out_;
     Progress& progress_;
     PackedExtinction fine_;
@@ -284,10 +289,10 @@ Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request,
 }
 
 Gathered gather_at_points(const LightField& field, const GridLevel& bottom, const Receivers& receivers,
-                          float mean_cosine, std::vector<LevelCost>& costs, Progress& progress) {
+                          float mean_cosine, std::vector<LevelCost>& costs, Progress& progress, ReceiverKind kind) {
     Gathered out;
     out.resize(receivers.size(), !receivers.out_x.empty(), false);
-    FarGather gather(field, receivers, mean_cosine, out, progress);
+    FarGather gather(field, receivers, mean_cosine, out, progress, kind);
     costs.push_back(gather.run(bottom, false));
     gather_upper_levels(field, gather, costs);
     return out;

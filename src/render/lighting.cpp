@@ -1,6 +1,7 @@
 #include "render/lighting.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/parallel.h"
 #include "core/stopwatch.h"
@@ -10,6 +11,9 @@
 namespace brisance {
 
 namespace {
+
+// Of the pyramid that rays toward extended lights march: which part of a light is hidden by smoke needs no more.
+constexpr int kAimLevel = 2;
 
 nlohmann::ordered_json level_table(const std::vector<LevelCost>& costs) {
     auto table = nlohmann::ordered_json::array();
@@ -76,29 +80,52 @@ std::vector<vec3> directions_to(const Medium& medium, const vec3& eye) {
     return directions;
 }
 
-// March points as receivers, sorted into blocks by brick; `order` says which point each padded receiver is.
+// Sorts points into cubes of four nodes inside the medium, of ever more with their distance from it: only coarse lights
+// matter there.
+class PointCells {
+public:
+    explicit PointCells(const Medium& medium) : medium_(medium) {
+        const ivec3 first = (medium.lattice.min_brick() * BrickLattice::kSize) - medium.reference_node;
+        low_ = vec3(first);
+        high_ = vec3(first + medium.lattice.brick_extent() * BrickLattice::kSize);
+    }
+
+    std::uint64_t key(const vec3& local) const {
+        const vec3 p = medium_.index_from_local * local;
+        const vec3 outside = glm::max(glm::max(low_ - p, p - high_), vec3(0.0f));
+        const float distance = glm::length(outside) / 8.0f;
+        const int shift = 2 + std::clamp(distance > 1.0f ? std::ilogb(distance) + 1 : 0, 0, 24);
+        const vec3 scaled = p / std::ldexp(1.0f, shift);
+        const ivec3 cell = ivec3(glm::clamp(glm::floor(scaled), vec3(-(1 << 18)), vec3((1 << 18) - 1))) + (1 << 18);
+        return std::uint64_t(shift) << 57 | std::uint64_t(cell.x) << 38 | std::uint64_t(cell.y) << 19 |
+               std::uint64_t(cell.z);
+    }
+
+private:
+    const Medium& medium_;
+    vec3 low_, high_;  // of the medium, in nodes from the reference node
+};
+
+// March points as receivers, sorted into blocks by cell; `order` says which point each padded receiver is.
 Receivers point_receivers(const Medium& medium, const std::vector<MarchPoint>& points, bool directional,
                           std::vector<std::uint32_t>& order) {
     struct Keyed {
-        std::uint64_t brick;
+        std::uint64_t cell;
         std::uint32_t point;
     };
     std::vector<Keyed> keyed(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const ivec3 node = ivec3(glm::floor(medium.index_from_local * points[i].local)) + (1 << 20);
-        const ivec3 b = node >> 2;
-        keyed[i] = {std::uint64_t(b.x) << 42 | std::uint64_t(b.y) << 21 | std::uint64_t(b.z), std::uint32_t(i)};
-    }
-    std::sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) {
-        return a.brick != b.brick ? a.brick < b.brick : a.point < b.point;
-    });
+    const PointCells cells(medium);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        keyed[i] = {cells.key(points[i].local), std::uint32_t(i)};
+    std::sort(keyed.begin(), keyed.end(),
+              [](const Keyed& a, const Keyed& b) { return a.cell != b.cell ? a.cell < b.cell : a.point < b.point; });
     Receivers receivers;
     std::vector<vec3> positions, directions;
     for (std::size_t i = 0; i < keyed.size();) {
         positions.clear();
         directions.clear();
         std::size_t end = i;
-        for (; end < keyed.size() && keyed[end].brick == keyed[i].brick; ++end) {
+        for (; end < keyed.size() && keyed[end].cell == keyed[i].cell; ++end) {
             positions.push_back(points[keyed[end].point].local);
             if (directional)
                 directions.push_back(points[keyed[end].point].toward_camera);
@@ -122,7 +149,8 @@ Lighting::Lighting(const Shot& shot, const Plan& plan, const Medium& medium, con
       statistics_(statistics),
       progress_(progress),
       pyramid_(medium, ExtinctionPyramid::kMaxLevels),
-      needed_(nodes_beside_extinction(medium)) {
+      needed_(nodes_beside_extinction(medium)),
+      depths_(pyramid_, kAimLevel) {
     if (plan.directional)
         toward_camera_ = directions_to(medium, vec3(camera.eye_local()));
     light_from_fire();
@@ -156,7 +184,7 @@ void Lighting::light_from_fire() {
 
     progress_.stage("light from the fire (MV)");
     watch = Stopwatch();
-    const bool nodes = !marching() || plan_.multiple || shot_.lighting.energy_balance;
+    const bool nodes = plan_.single && (!marching() || plan_.multiple || shot_.lighting.energy_balance);
     StageCost stage{"light from the fire (MV)", 0.0, 0, {}};
     Rgb scale(1.0f);
     if (nodes) {
@@ -183,13 +211,20 @@ void Lighting::light_from_fire() {
         if (plan_.multiple)
             light_from_smoke(first);
     }
-    if (marching()) {
+    if (marching() || lights_surfaces()) {
         fire_ = std::make_unique<PointLights>();
         fire_->lights = std::move(lights);
-        fire_->field = fire_->lights.field(pyramid_, shot_.lighting.alpha, shot_.lighting, &fire_->maps);
-        fire_->bottom = bottom_level(fire_->field);
         fire_->scale = scale;
+        keep(*fire_, shot_.lighting.alpha);
     }
+}
+
+// Makes what gathering at points asks for, from lights that have found their place.
+void Lighting::keep(PointLights& lights, float alpha) {
+    lights.field = lights.lights.field(pyramid_, alpha, shot_.lighting, &lights.maps);
+    lights.bottom = bottom_level(lights.field);
+    if (lights_surfaces())
+        lights.aim = std::make_unique<ExtendedLight>(medium_, depths_, lights.lights.light.intensity);
 }
 
 Gathered Lighting::gather_last_flight(const HierarchyLights& lights, int order, nlohmann::ordered_json& balances,
@@ -246,7 +281,8 @@ void Lighting::light_from_smoke(const Gathered& first) {
     std::vector<LevelCost> levels;
     Gathered sum;
     sum.resize(needed_.size(), plan_.directional, false);
-    if (marching())
+    const bool kept = marching() || lights_surfaces();
+    if (kept)
         smoke_ = std::make_unique<PointLights>();
     for (std::size_t k = 0; k < orders.size(); ++k) {
         orders[k].sharpen(medium_.lattice);
@@ -261,21 +297,43 @@ void Lighting::light_from_smoke(const Gathered& first) {
                 nodes_.orders.push_back(source_function(g));
             sum.add(g);
         }
-        if (marching())
+        if (kept)
             smoke_->lights = std::move(lights);
     }
-    if (marching()) {
-        smoke_->field = smoke_->lights.field(pyramid_, shot_.scattering.alpha, shot_.lighting, &smoke_->maps);
-        smoke_->bottom = bottom_level(smoke_->field);
-    } else {
+    if (kept)
+        keep(*smoke_, shot_.scattering.alpha);
+    if (!marching())
         nodes_.multiple = source_function(sum);
-    }
     last.seconds = watch.seconds();
     last.bytes = most_held(levels) + (sum.fluence.size() + sum.scattered.size()) * 4;
     last.detail["levels"] = level_table(levels);
     if (!balances.empty())
         last.detail["balance"] = balances;
     statistics_.stages.push_back(last);
+}
+
+void Lighting::at_surfaces(std::vector<SurfaceReceiver>& points) {
+    if (points.empty())
+        return;
+    std::vector<MarchPoint> places;
+    for (const SurfaceReceiver& p : points)
+        places.push_back({p.local, p.normal});
+    std::vector<std::uint32_t> order;
+    const Receivers receivers = point_receivers(medium_, places, true, order);
+    const std::size_t n = order.size();
+    const auto gather = [&](const std::unique_ptr<PointLights>& lights, Rgb SurfaceReceiver::*slot) {
+        if (!lights)
+            return;
+        std::vector<LevelCost> costs;
+        Progress silent;
+        const Gathered g =
+            gather_at_points(lights->field, lights->bottom, receivers, 0.0f, costs, silent, ReceiverKind::Surface);
+        for (std::size_t i = 0; i < n; ++i)
+            for (int c = 0; c < 3; ++c)
+                (points[order[i]].*slot)[c] = lights->scale[c] * g.scattered[c * n + i];
+    };
+    gather(fire_, &SurfaceReceiver::fire);
+    gather(smoke_, &SurfaceReceiver::smoke);
 }
 
 void Lighting::at_points(const std::vector<MarchPoint>& points, std::vector<PointLighting>& lighting) {

@@ -24,7 +24,7 @@ namespace brisance {
 // Where there are surroundings, the same by cell: either adds up to the whole.
 constexpr int kPathOrders = 10;
 struct PathSum : std::array<Rgb, kPathOrders> {
-    std::array<Rgb, kCells> cells{};
+    CellSum cells;
 };
 
 // A scattering of a path, and what is gathered there; number 0 is the camera, from which all paths of its ray begin.
@@ -57,6 +57,10 @@ public:
     // stratified sequence.
     void trace(const Ray& ray, double place, Rng& rng, PathSum& sum, PathStatistics& statistics) const;
 
+    // Adds one path that begins on a surface, where a ray along `arriving` (unit) has met it: the row S of the ledger.
+    // Needs surroundings.
+    void trace_from_surface(const SurfacePoint& point, const dvec3& arriving, Rng& rng, PathSum& sum) const;
+
     const TrackingField& field() const { return field_; }
     const TracingSettings& settings() const { return settings_; }
     std::uint64_t bytes() const { return field_.bytes() + fire_.bytes(); }
@@ -74,7 +78,7 @@ private:
     Rgb light_at_end(const Segment& segment, double pdf, bool delta, const Vertex* vertex) const;
     Segment segment_along(const Ray& ray) const;
     Vertex in_smoke(const Ray& ray, const Collision& collision, const Rgb& arriving, const Vertex* from) const;
-    Vertex on_surface(const Segment& segment, const Rgb& arriving, const Vertex* from) const;
+    Vertex on_surface(const SurfacePoint& point, const dvec3& direction, const Rgb& arriving, const Vertex* from) const;
     float share_of_sample(const Vertex& vertex, const Ray& ray, double pdf) const;
 
     TracingSettings settings_;

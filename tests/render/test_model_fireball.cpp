@@ -42,7 +42,7 @@ Lit light_ball(float optical_radius, float albedo, float g = 0.0f, int nodes = 1
     lit.nodes = lighting.at_nodes();
     const CellField field(lit.medium, lit.nodes.single, lit.nodes.multiple);
     const RaySum sum = integrate(field, camera.ray(0.5 * eye.width, 0.5 * eye.height), 2);
-    lit.centre = sum.v.x + sum.mv.x + sum.mm.x;
+    lit.centre = sum.cells.at(Cell::V).x + sum.cells.at(Cell::MV).x + sum.cells.at(Cell::MM).x;
     return lit;
 }
 
@@ -121,7 +121,7 @@ TEST(ModelFireball, AskingForNScatteringsLeavesOutTheRest) {
             nodes = Lighting(shot, plan, medium, camera, statistics, silent).at_nodes();
         const CellField field(medium, nodes.single, nodes.multiple);
         const RaySum sum = integrate(field, camera.ray(0.5 * eye.width, 0.5 * eye.height), 2);
-        const double now = sum.v.x + sum.mv.x + sum.mm.x;
+        const double now = sum.cells.at(Cell::V).x + sum.cells.at(Cell::MV).x + sum.cells.at(Cell::MM).x;
         EXPECT_GT(now, previous);
         EXPECT_LT(now, all);
         previous = now;

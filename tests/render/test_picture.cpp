@@ -113,7 +113,7 @@ TEST(Picture, BeautyIsTheSumOfItsCells) {
     }
     const CellField field(medium, single, multiple);
     PictureSettings settings;
-    settings.has_single = settings.has_multiple = true;
+    settings.layers = PictureSettings::layers_of({Cell::V, Cell::MV, Cell::MM});
     Progress silent;
     const Image image = render_picture(field, Camera(front(), medium), settings, {}, silent);
     double largest = 0.0;
@@ -209,7 +209,7 @@ TEST(Picture, LightAskedForAlongTheRayIsLightFromTheField) {
     const Medium medium = make_medium(cloud());
     const std::vector<Rgb> constant(medium.lattice.node_count(), Rgb(0.5f, 0.25f, 0.125f));
     PictureSettings settings;
-    settings.has_single = true;
+    settings.layers = PictureSettings::layers_of({Cell::V, Cell::MV});
     Progress silent;
     const Camera camera(front(), medium);
     const CellField lit(medium, constant, {}), dark(medium, {}, {});
