@@ -219,6 +219,31 @@ void gather_upper_levels(const LightField& field, FarGather& far, std::vector<Le
         costs.push_back(far.run(levels[l], l + 1 == levels.size()));
 }
 
+// Adds what all levels of the grid send to the nodes that ask.
+void gather_grid(const LightField& field, const LatticeRequest& request, Gathered& out, std::vector<LevelCost>& costs,
+                 Progress& progress) {
+    const std::size_t nodes = field.pyramid->medium().lattice.node_count();
+    std::vector<std::uint32_t> node_of;
+    const Receivers receivers = node_receivers(field.pyramid->medium(), request, node_of);
+    Gathered far;
+    far.resize(receivers.size(), request.toward_camera != nullptr, request.moments);
+    FarGather gather(field, receivers, request.mean_cosine, far, progress);
+    gather_upper_levels(field, gather, costs);
+    const auto add = [&](const std::vector<float>& from, std::vector<float>& to, int channels) {
+        parallel_for(from.empty() ? 0 : channels, [&](std::size_t c) {
+            std::uint32_t last = ~0u;
+            for (std::size_t i = 0; i < node_of.size(); ++i) {
+                if (node_of[i] != last)  // padding repeats a block's last node
+                    to[c * nodes + node_of[i]] += from[c * node_of.size() + i];
+                last = node_of[i];
+            }
+        });
+    };
+    add(far.fluence, out.fluence, 3);
+    add(far.scattered, out.scattered, 3);
+    add(far.moments, out.moments, 24);
+}
+
 }  // namespace
 
 GridLevel bottom_level(const LightField& field) {
@@ -265,26 +290,15 @@ Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request,
     bottom.gather_seconds = watch.seconds();
     bottom.evaluations = near.separations() * nodes;
     costs.push_back(bottom);
+    gather_grid(field, request, out, costs, progress);
+    return out;
+}
 
-    std::vector<std::uint32_t> node_of;
-    const Receivers receivers = node_receivers(medium, request, node_of);
-    Gathered far;
-    far.resize(receivers.size(), request.toward_camera != nullptr, request.moments);
-    FarGather gather(field, receivers, request.mean_cosine, far, progress);
-    gather_upper_levels(field, gather, costs);
-    const auto add = [&](const std::vector<float>& from, std::vector<float>& to, int channels) {
-        parallel_for(from.empty() ? 0 : channels, [&](std::size_t c) {
-            std::uint32_t last = ~0u;
-            for (std::size_t i = 0; i < node_of.size(); ++i) {
-                if (node_of[i] != last)  // padding repeats a block's last node
-                    to[c * nodes + node_of[i]] += from[c * node_of.size() + i];
-                last = node_of[i];
-            }
-        });
-    };
-    add(far.fluence, out.fluence, 3);
-    add(far.scattered, out.scattered, 3);
-    add(far.moments, out.moments, 24);
+Gathered gather_from_outside(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
+                             Progress& progress) {
+    Gathered out;
+    out.resize(field.pyramid->medium().lattice.node_count(), request.toward_camera != nullptr, request.moments);
+    gather_grid(field, request, out, costs, progress);
     return out;
 }
 

@@ -61,6 +61,11 @@ struct LatticeRequest {
 Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
                          Progress& progress);
 
+// At the nodes of the medium from lights outside of its lattice, all of whose levels `field.grid` holds from level 0 on
+// (point_grid.h); field.intensity and field.directional are not asked for.
+Gathered gather_from_outside(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
+                             Progress& progress);
+
 // The lit nodes as a level of lights for gather_at_points; its vertices are the nodes.
 GridLevel bottom_level(const LightField& field);
 

@@ -34,6 +34,7 @@ vec3 sample_position(const CellSegment& s, double t) {
 struct Part {
     CellRecord record;
     SimilarRecord similar;  // where the field has one
+    OutsideRecord outside;  // the same
     float length, distance;
 };
 
@@ -71,6 +72,10 @@ void add_part(RaySum& sum, const CellField& field, const Part& p) {
     sum.cells.at(Cell::V) += v;
     sum.cells.at(Cell::MV) += slot(r, CellRecord::MV) * scattering.opacity;
     sum.cells.at(Cell::MM) += slot(r, CellRecord::MM) * scattering.opacity;
+    if (field.has_outside()) {
+        sum.cells.at(Cell::MS) += slot(p.outside.value, OutsideRecord::MS) * scattering.opacity;
+        sum.cells.at(Cell::MA) += slot(p.outside.value, OutsideRecord::MA) * scattering.opacity;
+    }
     sum.albedo_sum += Rgb(own.opacity * r[CellRecord::Albedo]);
     sum.distance_weight += own.opacity;
     sum.distance_sum += own.opacity * p.distance;
@@ -86,7 +91,9 @@ void walk_parts(const CellField& field, const Ray& ray, int parts, double end, c
         for (int k = 0; k < n; ++k) {
             const double t = s.begin + length * sample_place(k, n);
             const vec3 p = sample_position(s, t);
-            Part part{field.sample(s.brick, p), {}, static_cast<float>(length / n), static_cast<float>(t)};
+            Part part{field.sample(s.brick, p), {}, {}, static_cast<float>(length / n), static_cast<float>(t)};
+            if (field.has_outside())
+                part.outside = field.sample_outside(s.brick, p);
             if (field.has_similar())
                 part.similar = field.sample_similar(s.brick, p);
             if (!visit(part))

@@ -7,6 +7,7 @@
 #include "core/stopwatch.h"
 #include "lights/voxel_lights.h"
 #include "medium/phase.h"
+#include "render/emitter_gather.h"
 
 namespace brisance {
 
@@ -142,7 +143,8 @@ Receivers point_receivers(const Medium& medium, const std::vector<MarchPoint>& p
 }  // namespace
 
 Lighting::Lighting(const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera,
-                   Statistics& statistics, Progress& progress)
+                   Statistics& statistics, Progress& progress, const Surroundings* surroundings,
+                   const PointLights* reflecting)
     : shot_(shot),
       plan_(plan),
       medium_(medium),
@@ -153,7 +155,55 @@ Lighting::Lighting(const Shot& shot, const Plan& plan, const Medium& medium, con
       depths_(pyramid_, kAimLevel) {
     if (plan.directional)
         toward_camera_ = directions_to(medium, vec3(camera.eye_local()));
-    light_from_fire();
+    Gathered first;
+    if (plan.emission)
+        first = light_from_fire();
+    else
+        first.resize(needed_.size(), plan.directional, plan.multiple && plan.directional);
+    if (reflecting && plan.needs(Cell::MS)) {
+        const Gathered more = light_from_surfaces(*reflecting);
+        nodes_.from_surfaces = source_function(more);
+        first.add(more);
+    }
+    if (surroundings && plan.needs(Cell::MA)) {
+        const Gathered more = light_from_emitters(*surroundings);
+        nodes_.from_emitters = source_function(more);
+        first.add(more);
+    }
+    if (plan.multiple)
+        light_from_smoke(first);
+}
+
+LatticeRequest Lighting::request() const {
+    const bool moments = plan_.multiple && plan_.directional;
+    return {&needed_, plan_.directional ? &toward_camera_ : nullptr, moments, medium_.mean_cosine};
+}
+
+Gathered Lighting::light_from_surfaces(const PointLights& reflecting) {
+    progress_.stage("light from surfaces (MS)");
+    const Stopwatch watch;
+    const LightingGrid grid = build_point_grid(medium_, reflecting, shot_.lighting.alpha);
+    // Lights outside stand for themselves: no voxel has a share in them.
+    const std::vector<float> no_weight(needed_.size(), 0.0f);
+    const LightField field{&pyramid_, nullptr, nullptr, &grid, &no_weight, shot_.lighting.alpha, shot_.lighting};
+    std::vector<LevelCost> costs;
+    Gathered g = gather_from_outside(field, request(), costs, progress_);
+    prepare_interpolation(medium_.lattice, needed_, g);
+    statistics_.stages.push_back({"light from surfaces (MS)",
+                                  watch.seconds(),
+                                  grid.bytes() + most_held(costs),
+                                  {{"lights", reflecting.size()}, {"levels", level_table(costs)}}});
+    return g;
+}
+
+Gathered Lighting::light_from_emitters(const Surroundings& surroundings) {
+    progress_.stage("light from emitters (MA)");
+    const Stopwatch watch;
+    const LatticeRequest ask = request();
+    Gathered g = gather_from_emitters(surroundings, pyramid_, ask);
+    prepare_interpolation(medium_.lattice, needed_, g);
+    statistics_.stages.push_back({"light from emitters (MA)", watch.seconds(), 0, {}});
+    return g;
 }
 
 std::vector<Rgb> Lighting::source_function(const Gathered& g) const {
@@ -172,7 +222,7 @@ std::vector<Rgb> Lighting::source_function(const Gathered& g) const {
     return source;
 }
 
-void Lighting::light_from_fire() {
+Gathered Lighting::light_from_fire() {
     progress_.stage("fire to lights");
     Stopwatch watch;
     HierarchyLights lights = build_hierarchy(medium_, {voxel_lights(medium_), {}}, shot_.lighting.levels);
@@ -187,13 +237,11 @@ void Lighting::light_from_fire() {
     const bool nodes = plan_.single && (!marching() || plan_.multiple || shot_.lighting.energy_balance);
     StageCost stage{"light from the fire (MV)", 0.0, 0, {}};
     Rgb scale(1.0f);
+    Gathered first;
     if (nodes) {
         std::vector<LevelCost> costs;
         const LightField field = lights.field(pyramid_, shot_.lighting.alpha, shot_.lighting, nullptr);
-        const bool moments = plan_.multiple && plan_.directional;
-        Gathered first = gather_at_nodes(
-            field, {&needed_, plan_.directional ? &toward_camera_ : nullptr, moments, medium_.mean_cosine}, costs,
-            progress_);
+        first = gather_at_nodes(field, request(), costs, progress_);
         prepare_interpolation(medium_.lattice, needed_, first);
         if (shot_.lighting.energy_balance) {
             BounceBalance balance;
@@ -208,19 +256,20 @@ void Lighting::light_from_fire() {
         statistics_.stages.push_back(stage);
         if (!marching())
             nodes_.single = source_function(first);
-        if (plan_.multiple)
-            light_from_smoke(first);
     }
     if (marching() || lights_surfaces()) {
-        fire_ = std::make_unique<PointLights>();
+        fire_ = std::make_unique<KeptLights>();
         fire_->lights = std::move(lights);
         fire_->scale = scale;
         keep(*fire_, shot_.lighting.alpha);
     }
+    if (first.fluence.empty())
+        first.resize(needed_.size(), plan_.directional, plan_.multiple && plan_.directional);
+    return first;
 }
 
 // Makes what gathering at points asks for, from lights that have found their place.
-void Lighting::keep(PointLights& lights, float alpha) {
+void Lighting::keep(KeptLights& lights, float alpha) {
     lights.field = lights.lights.field(pyramid_, alpha, shot_.lighting, &lights.maps);
     lights.bottom = bottom_level(lights.field);
     if (lights_surfaces())
@@ -283,7 +332,7 @@ void Lighting::light_from_smoke(const Gathered& first) {
     sum.resize(needed_.size(), plan_.directional, false);
     const bool kept = marching() || lights_surfaces();
     if (kept)
-        smoke_ = std::make_unique<PointLights>();
+        smoke_ = std::make_unique<KeptLights>();
     for (std::size_t k = 0; k < orders.size(); ++k) {
         orders[k].sharpen(medium_.lattice);
         HierarchyLights lights = build_hierarchy(medium_, std::move(orders[k]), shot_.lighting.levels);
@@ -321,7 +370,7 @@ void Lighting::at_surfaces(std::vector<SurfaceReceiver>& points) {
     std::vector<std::uint32_t> order;
     const Receivers receivers = point_receivers(medium_, places, true, order);
     const std::size_t n = order.size();
-    const auto gather = [&](const std::unique_ptr<PointLights>& lights, Rgb SurfaceReceiver::*slot) {
+    const auto gather = [&](const std::unique_ptr<KeptLights>& lights, Rgb SurfaceReceiver::*slot) {
         if (!lights)
             return;
         std::vector<LevelCost> costs;
@@ -342,7 +391,7 @@ void Lighting::at_points(const std::vector<MarchPoint>& points, std::vector<Poin
     std::vector<std::uint32_t> order;
     const Receivers receivers = point_receivers(medium_, points, plan_.directional, order);
     const std::size_t n = order.size();
-    const auto gather = [&](const std::unique_ptr<PointLights>& lights, Rgb PointLighting::*slot) {
+    const auto gather = [&](const std::unique_ptr<KeptLights>& lights, Rgb PointLighting::*slot) {
         if (!lights)
             return;
         std::vector<LevelCost> costs;

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "gathering/gather.h"
+#include "lights/point_grid.h"
 #include "render/camera.h"
+#include "render/cell_field.h"
 #include "render/extended_light.h"
 #include "render/integrate.h"
 #include "render/plan.h"
@@ -15,10 +17,8 @@
 
 namespace brisance {
 
-// Source functions (albedo times radiance scattered toward the camera, [W/(m^2 sr)]) at the medium's nodes.
-struct NodeLighting {
-    std::vector<Rgb> single;
-    std::vector<Rgb> multiple;
+// Source functions (albedo times radiance scattered toward the camera) at the medium's nodes.
+struct NodeLighting : NodeSources {
     std::vector<std::vector<Rgb>> orders;  // of `multiple`, where orders are kept apart; the last is the tail
 };
 
@@ -31,9 +31,10 @@ struct SurfaceReceiver {
 
 class Lighting {
 public:
-    // Keeps references: the medium must outlive it.
+    // Keeps references: the medium must outlive it. `surroundings`: null where there are none; `reflecting`: what
+    // surfaces send into the medium, as lights.
     Lighting(const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera, Statistics& statistics,
-             Progress& progress);
+             Progress& progress, const Surroundings* surroundings = nullptr, const PointLights* reflecting = nullptr);
 
     // For GatherMethod::Cache.
     const NodeLighting& at_nodes() const { return nodes_; }
@@ -47,7 +48,10 @@ public:
     const ExtendedLight* smoke_to_aim_at() const { return smoke_ ? smoke_->aim.get() : nullptr; }
 
 private:
-    void light_from_fire();
+    Gathered light_from_fire();
+    Gathered light_from_surfaces(const PointLights& reflecting);
+    Gathered light_from_emitters(const Surroundings& surroundings);
+    LatticeRequest request() const;
     std::vector<ScatteredLight> orders_of_scattering(const Gathered& first);
     void light_from_smoke(const Gathered& first);
     Gathered gather_last_flight(const HierarchyLights& lights, int order, nlohmann::ordered_json& balances,
@@ -69,7 +73,7 @@ private:
     NodeLighting nodes_;
 
     // Of the fire and of the smoke, kept for at_points and at_surfaces only.
-    struct PointLights {
+    struct KeptLights {
         HierarchyLights lights;
         LightField field;
         GridLevel bottom;
@@ -77,8 +81,8 @@ private:
         Rgb scale{1.0f};
         std::unique_ptr<ExtendedLight> aim;  // for surfaces
     };
-    void keep(PointLights& lights, float alpha);
-    std::unique_ptr<PointLights> fire_, smoke_;
+    void keep(KeptLights& lights, float alpha);
+    std::unique_ptr<KeptLights> fire_, smoke_;
 };
 
 }  // namespace brisance

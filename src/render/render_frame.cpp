@@ -56,7 +56,7 @@ void add_order_layers(Image& image, const CellField& field, const NodeLighting& 
         add("bounce1", settings.cells ? Layer(image.layer("MV")) : picture.layer("MV"));
     }
     for (std::size_t k = 0; k < lighting.orders.size(); ++k) {
-        const CellField order(medium, {}, lighting.orders[k], similar);
+        const CellField order(medium, {{}, lighting.orders[k], {}, {}}, similar);
         one.layers[static_cast<int>(Cell::MV)] = false;
         const Image picture = render_picture(order, camera, one, {}, progress);
         const bool tail = k + 1 == lighting.orders.size() && k > 0;
@@ -77,9 +77,10 @@ Image draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
                 const Camera& camera, Statistics& statistics, ImageMetadata& metadata, Progress& progress) {
     std::unique_ptr<Lighting> lighting;
     std::optional<Medium> similar;
-    if (plan.single || plan.needs(Cell::SV)) {
+    if (plan.single || plan.needs(Cell::SV) || plan.needs(Cell::MA)) {
         similar = similar_medium(medium, shot.scattering.bounces);
-        lighting = std::make_unique<Lighting>(shot, plan, similar ? *similar : medium, camera, statistics, progress);
+        lighting = std::make_unique<Lighting>(shot, plan, similar ? *similar : medium, camera, statistics, progress,
+                                              surroundings);
     }
     progress.stage("camera");
     const Stopwatch watch;
@@ -87,7 +88,7 @@ Image draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     const NodeLighting none;
     const NodeLighting& nodes = lighting && !marching ? lighting->at_nodes() : none;
     const float forward = forward_left_out(medium.mean_cosine, shot.scattering.bounces);
-    const CellField field(medium, nodes.single, nodes.multiple, similar ? &*similar : nullptr, forward);
+    const CellField field(medium, nodes, similar ? &*similar : nullptr, forward);
     PictureSettings settings;
     settings.samples_per_axis =
         camera.settings().samples_per_axis > 0 ? camera.settings().samples_per_axis : automatic_samples(camera, field);
