@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "elimination/coincident.h"
 #include "elimination/greedy.h"
 #include "elimination/kd_order.h"
@@ -18,6 +19,8 @@ namespace {
 
 // Weight limiting, [1] section 3: what is nearer than d_min counts as if at d_min.
 constexpr double kBeta = 0.65, kGamma = 1.5;
+
+constexpr std::size_t kGrain = 4096;  // points of one task of a simple loop
 
 [[noreturn]] void fail(const std::string& message) {
     throw Error(ExitCode::RenderFailed, "sample elimination: " + message);
@@ -56,16 +59,17 @@ std::vector<std::uint32_t> ranked(std::size_t points, std::span<const std::uint6
 class Normalised {
 public:
     Normalised(std::span<const vec3> points, const std::vector<std::uint32_t>& order) : points_(points.size()) {
-        dvec3 low(points.empty() ? vec3(0.0f) : points[0]), high = low;
+        vec3 low = points.empty() ? vec3(0.0f) : points[0], high = low;
         for (const vec3& p : points) {
-            low = glm::min(low, dvec3(p));
-            high = glm::max(high, dvec3(p));
+            low = glm::min(low, p);
+            high = glm::max(high, p);
         }
-        const dvec3 middle(vec3(0.5 * (low + high))), side = high - low;
+        const dvec3 middle(vec3(0.5 * (dvec3(low) + dvec3(high)))), side = dvec3(high) - dvec3(low);
         const double greatest = std::max({side.x, side.y, side.z});
         unit_ = greatest > 0.0 ? std::exp2(std::ceil(std::log2(greatest))) : 1.0;
-        for (std::size_t r = 0; r < points_.size(); ++r)
-            points_[r] = vec3((dvec3(points[order[r]]) - middle) / unit_);
+        parallel_for(
+            points_.size(), [&](std::size_t r) { points_[r] = vec3((dvec3(points[order[r]]) - middle) / unit_); },
+            kGrain);
     }
 
     const std::vector<vec3>& points() const { return points_; }
@@ -85,11 +89,17 @@ Candidates distinct(const std::vector<vec3>& points, const std::vector<std::uint
             rank.push_back(r);
             places.push_back(points[r]);
         }
+    const std::vector<std::uint32_t> order = kd_order(places);
     Candidates candidates;
-    for (const std::uint32_t i : kd_order(places)) {
-        candidates.position.push_back(places[i]);
-        candidates.rank.push_back(rank[i]);
-    }
+    candidates.position.resize(order.size());
+    candidates.rank.resize(order.size());
+    parallel_for(
+        order.size(),
+        [&](std::size_t i) {
+            candidates.position[i] = places[order[i]];
+            candidates.rank[i] = rank[order[i]];
+        },
+        kGrain);
     return candidates;
 }
 
@@ -102,18 +112,18 @@ void set_reach(Candidates& candidates, std::size_t target, double unit, const El
     candidates.reach.assign(candidates.size(), static_cast<float>(closest_packing_distance(each, s.dimension)));
 }
 
+// The last stage is the one that shows; it gets the full ratio, the first what is left.
 std::vector<std::uint32_t> run_stages(const Candidates& candidates, std::size_t target, const EliminationSettings& s) {
     std::vector<std::uint32_t> alive(candidates.size());
     std::iota(alive.begin(), alive.end(), 0u);
     const double ratio = double(alive.size()) / double(target);
-    const double stages = std::max(1.0, std::ceil(std::log(ratio) / std::log(s.stage_ratio) - 1e-9));
-    for (double stage = stages - 1.0; stage >= 0.0; stage -= 1.0) {
-        const double more = std::pow(ratio, stage / stages);  // survivors of this stage per survivor
-        const std::size_t left = stage > 0.0 ? static_cast<std::size_t>(std::llround(double(target) * more)) : target;
+    const float least = static_cast<float>(kBeta * (1.0 - std::pow(std::min(1.0 / ratio, 1.0), kGamma)));
+    double more = 1.0;  // survivors of a stage per survivor of the last
+    while (more * s.stage_ratio < ratio)
+        more *= s.stage_ratio;
+    for (; more >= 1.0; more /= s.stage_ratio) {
+        const auto left = static_cast<std::size_t>(std::llround(double(target) * more));
         const float scale = static_cast<float>(std::pow(more, -1.0 / s.dimension));
-        const bool limited = s.radius == EliminationRadius::Uniform;
-        const double kept = double(left) / double(alive.size());
-        const float least = limited ? static_cast<float>(kBeta * (1.0 - std::pow(kept, kGamma))) : 0.0f;
         alive = s.one_by_one ? eliminate_one_by_one(candidates, std::move(alive), left, scale, least)
                              : eliminate_greedily(candidates, std::move(alive), left, scale, least);
     }

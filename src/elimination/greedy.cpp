@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <functional>
 #include <iterator>
+#include <limits>
 
 #include "core/parallel.h"
+#include "elimination/bracket_queue.h"
 #include "elimination/leaf_kernels.h"
 
 namespace brisance {
@@ -12,25 +14,14 @@ namespace brisance {
 namespace {
 
 constexpr std::size_t kBlockLeaves = 1024;    // that one task works on: half a megabyte, to stay in the second cache
-constexpr double kShare = 0.1;                // of the remaining points that a round lets go at most
+constexpr double kOverlap = 1.5;              // neighbours above the same round's threshold, on average
+constexpr double kRepack = 0.3;               // of the points left: leaves are filled anew
 constexpr std::size_t kSampledLeaves = 1024;  // from which a round's threshold is read
-
-struct Slot {
-    std::uint32_t leaf, slot;
-};
-
-struct Candidate {
-    Weight weight;
-    std::uint32_t rank;
-    Slot at;
-
-    bool operator<(const Candidate& b) const { return weight < b.weight || (weight == b.weight && rank < b.rank); }
-};
 
 struct Removal {
     Weight weight;  // when it went
     std::uint32_t rank;
-    std::uint32_t candidate;
+    std::uint32_t place;  // in the list of those alive
 };
 
 // A removal near a border: what it takes from a leaf of another block is subtracted there after the round.
@@ -47,11 +38,13 @@ struct Block {
     std::vector<std::uint32_t> near;        // blocks that own them
     std::vector<std::uint32_t> list_begin;  // per owned leaf, into `list`
     std::vector<std::uint32_t> list;        // leaves of this block that may hold neighbours
-    std::vector<Candidate> heap;
+    std::vector<float> square_reach;        // per leaf, see LeafView
+    std::vector<Weight> bound;              // per owned leaf: no weight in it is above
+    std::vector<std::uint8_t> changed;      // per owned leaf: whether this round has changed it
+    BracketQueue queue;
     std::vector<Message> outbox;
     std::vector<Removal> removed;
     Taken taken;
-    bool candidates = false;  // whether there were any this round
 
     bool owns(std::uint32_t leaf) const { return leaf - first < owned; }
     std::span<const std::uint32_t> neighbours(std::uint32_t leaf) const {
@@ -88,11 +81,14 @@ public:
 
 private:
     void find_neighbours(Block& block, const LeafTree& tree) const;
-    void remove_heaviest(Block& block, Weight threshold);
-    void remove(Block& block, const Candidate& heaviest);
+    void remove_heaviest(Block& block, Weight threshold, Weight last_threshold);
+    Weight enqueue(Block& block, std::uint32_t l, Weight threshold);
+    void remove(Block& block, const Queued& heaviest);
     void receive(Block& block);
     void refresh(Block& block);
-    void round(Weight threshold);
+    void round(Weight threshold, Weight last_threshold);
+    double mean_neighbours() const;
+    double round_share(std::size_t left) const;
     Weight quantile(double share);
     void remove_weightless(std::size_t count, std::vector<Removal>& removed);
 
@@ -103,6 +99,7 @@ private:
 
     const std::vector<std::uint32_t>& alive_;
     float least_;
+    double neighbours_ = 1.0;  // of a point, on average
     std::vector<Block> blocks_;
     std::vector<Weight> sample_;
 };
@@ -117,14 +114,32 @@ Rounds::Rounds(const Candidates& candidates, const std::vector<std::uint32_t>& a
     }
     for_each_block([&](Block& block) {
         find_neighbours(block, tree);
+        block.leaves.reserve(block.owned + block.copied.size());
         for (std::uint32_t l = 0; l < block.owned; ++l)
             block.leaves.push_back(make_leaf(candidates, alive, block.first + l, scale));
         for (const std::uint32_t l : block.copied)
             block.leaves.push_back(make_leaf(candidates, alive, l, scale));
+        for (const Leaf& leaf : block.leaves)
+            block.square_reach.push_back(
+                square_reach(*std::min_element(leaf.inverse_reach, leaf.inverse_reach + kLeafSize)));
         for (std::uint32_t l = 0; l < block.owned; ++l)
             sum_weights(block.leaves.data(), l, block.neighbours(l), least_);
+        block.bound.assign(block.owned, std::numeric_limits<Weight>::max());
+        block.changed.assign(block.owned, 1);
     });
     for_each_block([&](Block& block) { refresh(block); });
+    neighbours_ = mean_neighbours();
+}
+
+// Of points here and there, at least 1.
+double Rounds::mean_neighbours() const {
+    double sum = 0.0, points = 0.0;
+    for (const Block& block : blocks_)
+        for (std::uint32_t l = 0; l < block.owned; l += 128) {
+            sum += double(count_in_reach(block.leaves.data(), block.neighbours(l), block.leaves[l]));
+            points += 1.0;
+        }
+    return std::max(1.0, sum / std::max(points, 1.0));
 }
 
 void Rounds::find_neighbours(Block& block, const LeafTree& tree) const {
@@ -145,73 +160,78 @@ void Rounds::find_neighbours(Block& block, const LeafTree& tree) const {
     sort_unique(block.near);
 }
 
-// Goes down the block's points above the threshold. Weights in the heap may be out of date, always too great: those
-// points are put back with what they weigh by now. Points with a heavier one beside them, in another block or held up
+// Goes down the block's points above the threshold. Points with a heavier one beside them, in another block or held up
 // itself, wait for the next round.
-void Rounds::remove_heaviest(Block& block, Weight threshold) {
-    block.heap.clear();
-    for (std::uint32_t l = 0; l < block.owned; ++l)
-        for (std::uint32_t s = 0; s < kLeafSize; ++s)
-            if (const Weight weight = block.leaves[l].weight[s]; weight > threshold)
-                block.heap.push_back({weight, block.leaves[l].rank[s], {l, s}});
-    std::make_heap(block.heap.begin(), block.heap.end());
-    block.candidates = !block.heap.empty();
-    while (!block.heap.empty()) {
-        std::pop_heap(block.heap.begin(), block.heap.end());
-        Candidate heaviest = block.heap.back();
-        block.heap.pop_back();
-        const Weight weight = block.leaves[heaviest.at.leaf].weight[heaviest.at.slot];
-        if (weight == heaviest.weight) {
-            remove(block, heaviest);
-        } else if (weight > threshold) {
-            heaviest.weight = weight;
-            block.heap.push_back(heaviest);
-            std::push_heap(block.heap.begin(), block.heap.end());
-        }
+void Rounds::remove_heaviest(Block& block, Weight threshold, Weight last_threshold) {
+    block.queue.reset(threshold, last_threshold);
+    for (std::uint32_t l = 0; l < block.owned; ++l) {
+        if (block.bound[l] > threshold)
+            block.bound[l] = enqueue(block, l, threshold);
     }
+    block.queue.drain([&](const Queued& item) { return block.leaves[item.at.leaf].weight[item.at.slot]; },
+                      [&](const Queued& item) { remove(block, item); });
+}
+
+// Puts the leaf's points above the threshold into the queue; returns the greatest weight.
+Weight Rounds::enqueue(Block& block, std::uint32_t l, Weight threshold) {
+    const Leaf& leaf = block.leaves[l];
+    Weight greatest = -1;
+    for (std::uint32_t s = 0; s < kLeafSize; ++s) {
+        greatest = std::max(greatest, leaf.weight[s]);
+        if (leaf.weight[s] > threshold)
+            block.queue.push({leaf.weight[s], leaf.rank[s], {l, s}});
+    }
+    return greatest;
 }
 
 // Removes the point, if it may go by now.
-void Rounds::remove(Block& block, const Candidate& heaviest) {
+void Rounds::remove(Block& block, const Queued& heaviest) {
     const auto [l, s] = heaviest.at;
     Leaf& leaf = block.leaves[l];
     const Probe probe{vec3(leaf.x[s], leaf.y[s], leaf.z[s]), leaf.inverse_reach[s], heaviest.weight, heaviest.rank};
     const std::span<const std::uint32_t> list = block.neighbours(l);
     leaf.clear(s);
-    if (!take_weights(block.leaves.data(), list, probe, least_, block.taken)) {
+    if (!take_weights({block.leaves.data(), block.square_reach.data()}, list, probe, least_, block.taken)) {
         leaf.set(s, probe.position, probe.inverse_reach, probe.rank, probe.weight);
         return;
     }
     for (std::size_t n = 0; n < list.size(); ++n) {
         if (!block.taken.touched[n])
             continue;
-        if (list[n] < block.owned)
+        if (list[n] < block.owned) {
             subtract(block.leaves[list[n]], block.taken.weight.data() + n * kLeafSize);
-        else
+            block.changed[list[n]] = 1;
+        } else {
             block.outbox.push_back({block.copied[list[n] - block.owned], probe.position});
+        }
     }
-    block.removed.push_back({probe.weight, probe.rank, alive_[(block.first + l) * kLeafSize + s]});
+    block.changed[l] = 1;
+    block.removed.push_back({probe.weight, probe.rank, static_cast<std::uint32_t>((block.first + l) * kLeafSize + s)});
 }
 
 void Rounds::receive(Block& block) {
     for (const std::uint32_t other : block.near)
         for (const Message& message : blocks_[other].outbox)
-            if (block.owns(message.leaf))
+            if (block.owns(message.leaf)) {
                 subtract(block.leaves[message.leaf - block.first], message.position, least_);
+                block.changed[message.leaf - block.first] = 1;
+            }
 }
 
 void Rounds::refresh(Block& block) {
     for (std::size_t c = 0; c < block.copied.size(); ++c) {
         const Block& other = blocks_[block.copied[c] / kBlockLeaves];
-        block.leaves[block.owned + c] = other.leaves[block.copied[c] - other.first];
+        if (other.changed[block.copied[c] - other.first])
+            block.leaves[block.owned + c] = other.leaves[block.copied[c] - other.first];
     }
 }
 
 // In three steps, as nobody may look at what another block is changing.
-void Rounds::round(Weight threshold) {
+void Rounds::round(Weight threshold, Weight last_threshold) {
     for_each_block([&](Block& block) {
         block.outbox.clear();
-        remove_heaviest(block, threshold);
+        std::fill(block.changed.begin(), block.changed.end(), std::uint8_t(0));
+        remove_heaviest(block, threshold, last_threshold);
     });
     for_each_block([&](Block& block) { receive(block); });
     for_each_block([&](Block& block) { refresh(block); });
@@ -239,9 +259,16 @@ void Rounds::remove_weightless(std::size_t count, std::vector<Removal>& removed)
         for (std::size_t l = 0; l < block.owned; ++l)
             for (std::size_t s = 0; s < kLeafSize; ++s)
                 if (block.leaves[l].weight[s] >= 0)
-                    left.push_back({0, block.leaves[l].rank[s], alive_[(block.first + l) * kLeafSize + s]});
+                    left.push_back(
+                        {0, block.leaves[l].rank[s], static_cast<std::uint32_t>((block.first + l) * kLeafSize + s)});
     keep_greatest(left, count);
     removed.insert(removed.end(), left.begin(), left.end());
+}
+
+// Among the points above a round's threshold few should be neighbours: across a border between blocks the lighter of
+// two waits for the next round.
+double Rounds::round_share(std::size_t left) const {
+    return std::min(kOverlap * double(alive_.size()) / (neighbours_ * double(left)), 0.5);
 }
 
 void Rounds::run(std::size_t goal, std::vector<Removal>& removed) {
@@ -250,18 +277,19 @@ void Rounds::run(std::size_t goal, std::vector<Removal>& removed) {
     bool idle = true;  // nobody above the threshold
     for (;;) {
         const std::size_t left = alive_.size() - (removed.size() - before);
-        if (removed.size() >= goal ? idle : 2 * left < alive_.size())
+        if (removed.size() >= goal ? idle : double(left) < kRepack * double(alive_.size()))
             return;
+        const Weight last_threshold = threshold;
         if (removed.size() < goal) {
             if (idle && threshold == 0)
                 return remove_weightless(goal - removed.size(), removed);
-            const double share = std::min(kShare, double(goal - removed.size()) / double(left));
+            const double share = std::min(round_share(left), double(goal - removed.size()) / double(left));
             threshold = std::max<Weight>(std::min(threshold - idle, quantile(share)), 0);
         }
-        round(threshold);
+        round(threshold, last_threshold);
         idle = true;
         for (Block& block : blocks_) {
-            idle = idle && !block.candidates;
+            idle = idle && block.queue.empty();
             removed.insert(removed.end(), block.removed.begin(), block.removed.end());
             block.removed.clear();
         }
@@ -281,15 +309,17 @@ std::vector<std::uint32_t> eliminate_greedily(const Candidates& candidates, std:
     while (removed.size() < goal) {
         const std::size_t before = removed.size();
         Rounds(candidates, left, scale, least).run(goal, removed);
-        for (std::size_t r = before; r < removed.size(); ++r)
-            gone[removed[r].candidate] = true;
+        for (std::size_t r = before; r < removed.size(); ++r) {
+            removed[r].place = left[removed[r].place];  // among all candidates from now on
+            gone[removed[r].place] = true;
+        }
         std::erase_if(left, [&](std::uint32_t i) { return gone[i]; });
     }
     for (const Removal& r : removed)
-        gone[r.candidate] = false;
+        gone[r.place] = false;
     keep_greatest(removed, goal);  // the others stay after all
     for (const Removal& r : removed)
-        gone[r.candidate] = true;
+        gone[r.place] = true;
     std::erase_if(alive, [&](std::uint32_t i) { return gone[i]; });
     return alive;
 }

@@ -13,6 +13,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using D = hn::CappedTag<float, kLeafSize>;
 using V = hn::Vec<D>;
+constexpr std::size_t kLanes = hn::MaxLanes(D());
 using D64 = hn::CappedTag<std::int64_t, kLeafSize>;
 using D32 = hn::Rebind<std::int32_t, D64>;
 
@@ -23,20 +24,22 @@ HWY_INLINE V square_distance(D d, const Leaf& leaf, std::size_t k, const vec3& p
     return hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
 }
 
+// The squared distances from p to a leaf's points; false where none is within reach.
+HWY_INLINE bool squares_in_reach(D d, const Leaf& leaf, const vec3& p, V square_reach, V* squares) {
+    bool any = false;
+    for (std::size_t k = 0; k < kLeafSize; k += kLanes) {
+        squares[k / kLanes] = square_distance(d, leaf, k, p);
+        any = any || !hn::AllFalse(d, hn::Lt(squares[k / kLanes], square_reach));
+    }
+    return any;
+}
+
 // As pair_weight().
 HWY_INLINE auto weight(D d, V distance, V inverse_reach, float least) {
     const V t = hn::Max(hn::Mul(distance, inverse_reach), hn::Set(d, least));
     const V u = hn::Max(hn::Sub(hn::Set(d, 1.0f), t), hn::Zero(d));
     const V square = hn::Mul(u, u), fourth = hn::Mul(square, square);
     return hn::NearestInt(hn::Mul(hn::Mul(fourth, fourth), hn::Set(d, kWeightUnit)));
-}
-
-HWY_INLINE Weight sum_of(const std::int32_t* values) {
-    const D64 d;
-    auto sum = hn::Zero(d);
-    for (std::size_t k = 0; k < kLeafSize; k += hn::Lanes(d))
-        sum = hn::Add(sum, hn::PromoteTo(d, hn::Load(D32(), values + k)));
-    return hn::GetLane(hn::SumOfLanes(d, sum));
 }
 
 // A point adds to its own weight as any other at distance 0 does.
@@ -53,15 +56,29 @@ void sum_weights(Leaf* leaves, std::uint32_t l, std::span<const std::uint32_t> l
         const vec3 p(leaf.x[s], leaf.y[s], leaf.z[s]);
         const V inverse = hn::Set(d, leaf.inverse_reach[s]);
         auto sum = hn::Zero(d64);
+        const V reach = hn::Set(d, square_reach(leaf.inverse_reach[s]));
         for (const std::uint32_t other : list) {
-            for (std::size_t k = 0; k < kLeafSize; k += hn::Lanes(d))
-                hn::Store(weight(d, hn::Sqrt(square_distance(d, leaves[other], k, p)), inverse, least),
-                          hn::RebindToSigned<D>(), w + k);
+            V squares[kLeafSize / kLanes];
+            if (!squares_in_reach(d, leaves[other], p, reach, squares))
+                continue;
+            for (std::size_t k = 0; k < kLeafSize; k += kLanes)
+                hn::Store(weight(d, hn::Sqrt(squares[k / kLanes]), inverse, least), hn::RebindToSigned<D>(), w + k);
             for (std::size_t k = 0; k < kLeafSize; k += hn::Lanes(d64))
                 sum = hn::Add(sum, hn::PromoteTo(d64, hn::Load(D32(), w + k)));
         }
         leaf.weight[s] = hn::GetLane(hn::SumOfLanes(d64, sum)) - own_weight(least);
     }
+}
+
+std::size_t count_in_reach(const Leaf* leaves, std::span<const std::uint32_t> list, const Leaf& leaf) {
+    const D d;
+    const vec3 p(leaf.x[0], leaf.y[0], leaf.z[0]);
+    const V reach = hn::Set(d, square_reach(leaf.inverse_reach[0]));
+    std::size_t count = 0;
+    for (const std::uint32_t other : list)
+        for (std::size_t k = 0; k < kLeafSize; k += kLanes)
+            count += hn::CountTrue(d, hn::Lt(square_distance(d, leaves[other], k, p), reach));
+    return count;
 }
 
 HWY_INLINE bool outranks(const Leaf& leaf, std::size_t slot, const Probe& probe) {
@@ -87,22 +104,25 @@ HWY_INLINE bool any_heavier(const Leaf& leaf, Weight weight) {
     return !hn::AllFalse(d, hn::Gt(heaviest, hn::Set(d, weight - 1)));
 }
 
-bool take_weights(const Leaf* leaves, std::span<const std::uint32_t> list, const Probe& probe, float least,
+bool take_weights(const LeafView& view, std::span<const std::uint32_t> list, const Probe& probe, float least,
                   Taken& taken) {
     const D d;
     const hn::RebindToSigned<D> di;
+    const float own_reach = square_reach(probe.inverse_reach);
     for (std::size_t n = 0; n < list.size(); ++n) {
-        const Leaf& leaf = leaves[list[n]];
+        const Leaf& leaf = view.leaves[list[n]];
+        V squares[kLeafSize / kLanes];
+        const V reach = hn::Set(d, std::max(own_reach, view.square_reach[list[n]]));
+        taken.touched[n] = squares_in_reach(d, leaf, probe.position, reach, squares);
+        if (!taken.touched[n])
+            continue;
         if (any_heavier(leaf, probe.weight) && any_outranks(leaf, probe))
             return false;
-        auto any = hn::Zero(di);
-        for (std::size_t k = 0; k < kLeafSize; k += hn::Lanes(d)) {
-            const V distance = hn::Sqrt(square_distance(d, leaf, k, probe.position));
-            const auto w = weight(d, distance, hn::Load(d, leaf.inverse_reach + k), least);
-            hn::StoreU(w, di, taken.weight.data() + n * kLeafSize + k);
-            any = hn::Or(any, w);
+        for (std::size_t k = 0; k < kLeafSize; k += kLanes) {
+            const V distance = hn::Sqrt(squares[k / kLanes]);
+            hn::StoreU(weight(d, distance, hn::Load(d, leaf.inverse_reach + k), least), di,
+                       taken.weight.data() + n * kLeafSize + k);
         }
-        taken.touched[n] = !hn::AllTrue(di, hn::Eq(any, hn::Zero(di)));
     }
     return true;
 }
@@ -158,6 +178,7 @@ HWY_AFTER_NAMESPACE();
 namespace brisance {
 
 HWY_EXPORT(sum_weights);
+HWY_EXPORT(count_in_reach);
 HWY_EXPORT(take_weights);
 HWY_EXPORT(subtract_sixteen);
 HWY_EXPORT(subtract_point);
@@ -169,7 +190,11 @@ void sum_weights(Leaf* leaves, std::uint32_t leaf, std::span<const std::uint32_t
     HWY_DYNAMIC_DISPATCH(sum_weights)(leaves, leaf, list, least);
 }
 
-bool take_weights(const Leaf* leaves, std::span<const std::uint32_t> list, const Probe& probe, float least,
+std::size_t count_in_reach(const Leaf* leaves, std::span<const std::uint32_t> list, const Leaf& leaf) {
+    return HWY_DYNAMIC_DISPATCH(count_in_reach)(leaves, list, leaf);
+}
+
+bool take_weights(const LeafView& leaves, std::span<const std::uint32_t> list, const Probe& probe, float least,
                   Taken& taken) {
     taken.resize(list.size());
     return HWY_DYNAMIC_DISPATCH(take_weights)(leaves, list, probe, least, taken);

@@ -17,6 +17,16 @@ struct Probe {
     std::uint32_t rank;
 };
 
+// The square of a distance beyond which a point adds to no weight, with a margin for rounding.
+inline float square_reach(float inverse_reach) {
+    return 1.000001f / inverse_reach / inverse_reach;
+}
+
+struct LeafView {
+    const Leaf* leaves;
+    const float* square_reach;  // the greatest of each leaf's points
+};
+
 // What the removal of a point takes from its neighbours.
 struct Taken {
     std::vector<std::int32_t> weight;   // per leaf of the list, sixteen each
@@ -31,9 +41,12 @@ struct Taken {
 // Sets the weights of a leaf's points to the sum over their neighbours, which are all in the leaves of `list`.
 void sum_weights(Leaf* leaves, std::uint32_t leaf, std::span<const std::uint32_t> list, float least);
 
+// How many points of the leaves listed are in reach of the first point of `leaf`, itself included.
+std::size_t count_in_reach(const Leaf* leaves, std::span<const std::uint32_t> list, const Leaf& leaf);
+
 // Fills `taken`, unless a point that reaches the probe or is reached by it would be removed before it: then false. The
 // probe itself must have been taken out of its leaf.
-bool take_weights(const Leaf* leaves, std::span<const std::uint32_t> list, const Probe& probe, float least,
+bool take_weights(const LeafView& leaves, std::span<const std::uint32_t> list, const Probe& probe, float least,
                   Taken& taken);
 
 // Subtracts sixteen weights from a leaf's.
