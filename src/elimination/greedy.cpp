@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <optional>
 
 #include "core/parallel.h"
@@ -15,7 +16,7 @@ namespace {
 constexpr std::size_t kLeastBlock = 256, kGreatestBlock = 4096;  // leaves that one task works on
 constexpr std::size_t kBlocks = 32;                              // unless those would be too small or too large
 constexpr double kOverlap = 1.5;              // neighbours above the same round's threshold, on average
-constexpr double kRepack = 0.3;               // of the points left: leaves are filled anew
+constexpr double kRepack = 0.3;               // when as few of the points are left, leaves are filled anew
 constexpr std::size_t kSampledLeaves = 1024;  // from which a round's threshold is read
 
 struct Removal {
@@ -72,14 +73,14 @@ void keep_greatest(std::vector<Removal>& removed, std::size_t count) {
     removed.erase(last, removed.end());
 }
 
-// The candidates left at some time, and what is removed of them until half are gone.
+// The candidates left at some time, packed into leaves, and the rounds in which they are removed.
 class Rounds {
 public:
     Rounds(const Candidates& candidates, const std::vector<std::uint32_t>& alive, float scale, float least);
 
-    // Removes until `goal` have been removed or half of the points are gone; appends to `removed`. Once the goal is
-    // reached, whoever is left would have gone after all that went.
-    void run(std::size_t goal, std::vector<Removal>& removed);
+    // Removes points above a falling threshold until `goal` have been removed or so many that leaves are nearly empty;
+    // appends to `removed`. Once the goal is reached all above the threshold have gone, and none below it.
+    void run(std::size_t goal, Weight& threshold, std::vector<Removal>& removed);
 
 private:
     void find_neighbours(Block& block, const LeafTree& tree) const;
@@ -292,10 +293,9 @@ double Rounds::round_share(std::size_t left) const {
     return std::min(kOverlap * double(alive_.size()) / (neighbours_ * double(left)), 0.5);
 }
 
-void Rounds::run(std::size_t goal, std::vector<Removal>& removed) {
+void Rounds::run(std::size_t goal, Weight& threshold, std::vector<Removal>& removed) {
     const std::size_t before = removed.size();
-    Weight threshold = quantile(0.0);
-    bool idle = true;  // nobody above the threshold
+    bool idle = false;  // nobody above the threshold
     for (;;) {
         const std::size_t left = alive_.size() - (removed.size() - before);
         if (removed.size() >= goal ? idle : double(left) < kRepack * double(alive_.size()))
@@ -325,10 +325,11 @@ std::vector<std::uint32_t> eliminate_greedily(const Candidates& candidates, std:
     const std::size_t goal = alive.size() - target;
     std::vector<bool> gone(candidates.size());
     std::vector<Removal> removed;
+    Weight threshold = std::numeric_limits<Weight>::max();
     std::vector<std::uint32_t> left = alive;
     while (removed.size() < goal) {
         const std::size_t before = removed.size();
-        Rounds(candidates, left, scale, least).run(goal, removed);
+        Rounds(candidates, left, scale, least).run(goal, threshold, removed);
         for (std::size_t r = before; r < removed.size(); ++r) {
             removed[r].place = left[removed[r].place];  // among all candidates from now on
             gone[removed[r].place] = true;
