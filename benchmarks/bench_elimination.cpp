@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t kPoints = 1'200'000;
 
-enum Way { OneByOne, OneStage, Default, Adaptive };  // the third and fourth in stages
+// Uniform radii by the textbook's algorithm, in parallel, and in parallel by stages; adaptive radii by stages.
+enum Way { OneByOne, OneStage, Stages, Adaptive };
 
 std::vector<vec3> points_on_sphere() {
     Rng rng(Stream::Points, 1);
@@ -43,7 +44,7 @@ void eliminate_points(benchmark::State& state) {
 
 BENCHMARK(eliminate_points)
     ->ArgNames({"survivors", "way", "threads"})
-    ->ArgsProduct({{kPoints / 10, kPoints / 100}, {OneStage, Default, Adaptive}, {1, 0}})
+    ->ArgsProduct({{kPoints / 10, kPoints / 100}, {OneStage, Stages, Adaptive}, {1, 0}})
     ->ArgsProduct({{kPoints / 10, kPoints / 100}, {OneByOne}, {1}})
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()

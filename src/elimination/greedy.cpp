@@ -187,9 +187,9 @@ void Rounds::remove_heaviest(Block& block, Weight threshold) {
 // One step from the end of the path.
 void Rounds::climb(Block& block, Weight threshold) {
     const Slot at = block.path.back();
-    if (block.leaves[at.leaf].weight[at.slot] <= threshold)
-        block.path.pop_back();
-    else if (const std::optional<Slot> heavier = remove(block, at); !heavier)
+    const bool above = block.leaves[at.leaf].weight[at.slot] > threshold;
+    const std::optional<Slot> heavier = above ? remove(block, at) : std::nullopt;
+    if (!heavier)
         block.path.pop_back();
     else if (heavier->leaf < block.owned && !block.waits(*heavier))
         block.path.push_back(*heavier);
@@ -197,6 +197,7 @@ void Rounds::climb(Block& block, Weight threshold) {
         hold(block);
 }
 
+// Nobody on the path can go before the end of the round.
 void Rounds::hold(Block& block) {
     for (const Slot& at : block.path)
         block.waiting[at.leaf] |= static_cast<std::uint16_t>(1u << at.slot);
