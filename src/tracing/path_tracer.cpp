@@ -35,7 +35,7 @@ void note(PathStatistics& statistics, const TracedVertex& vertex) {
         statistics.vertices->push_back(vertex);
 }
 
-// Paths between surfaces that lose nothing must end, too.
+// Paths between surfaces that lose nothing must end, too; smoke lets them out.
 constexpr int kManyScatterings = 64;
 constexpr float kGoesOn = 0.95f;
 
@@ -43,12 +43,12 @@ constexpr float kGoesOn = 0.95f;
 // shared by them. Where there is none a ray costs little.
 constexpr int kFirstReflections = 4;
 
-// Ends the path, or makes up for those that ended. False: ended.
-bool survives(Rgb& throughput, float begin, int order, Rng& rng) {
+// Ends the path, or makes up for those that ended. False: ended. `endless`: nothing else may end it.
+bool survives(Rgb& throughput, float begin, bool endless, Rng& rng) {
     float part = largest(throughput) / begin;
-    if (order > kManyScatterings)
-        part = std::min(part, kGoesOn) * kRouletteBelow;
-    if (part >= kRouletteBelow)
+    if (endless)
+        part = std::min(part, kGoesOn);
+    else if (part >= kRouletteBelow)
         return true;
     if (!(rng.next() < part))
         return false;
@@ -217,7 +217,8 @@ void PathTracer::trace_from_surface(const SurfacePoint& point, const dvec3& arri
 
 void PathTracer::trace_from(Vertex vertex, Rng& rng, PathSum& sum, PathStatistics& statistics) const {
     const float begin = largest(vertex.throughput);
-    while (survives(vertex.throughput, begin, vertex.order, rng)) {
+    const auto endless = [&] { return vertex.place.on_surface() && vertex.order > kManyScatterings; };
+    while (survives(vertex.throughput, begin, endless(), rng)) {
         ++statistics.scatterings;
         const Scatterer& place = vertex.place;
         TracedVertex seen{vertex.order, place.position(), vertex.throughput, Rgb(0.0f),
