@@ -174,10 +174,11 @@ TEST(MaterialTextures, InFilesWithAnyName) {
         write_bytes(folder / name, encoded(".png", 1, 1, 4, kRed));
         for (const bool escaped : {false, true}) {
             std::string uri;
-            for (const char c : name)
-                uri += escaped || c == '%'
-                           ? "%" + std::string{"0123456789abcdef"[(c >> 4) & 15]} + "0123456789ABCDEF"[c & 15]
-                           : std::string{c};
+            for (const char c : name) {
+                uri += escaped || c == '%' ? '%' : c;
+                if (uri.back() == '%')
+                    uri.append({"0123456789abcdef"[(c >> 4) & 15], "0123456789ABCDEF"[c & 15]});
+            }
             TestGltf gltf = textured();
             gltf.json["images"][0] = {{"uri", uri}};
             gltf.write_glb(folder / "scene.glb");
