@@ -169,6 +169,12 @@ std::string encoded_png16(int width, int height, int channels, const std::vector
     return encoded_by_oiio(".png", width, height, channels, OIIO::TypeDesc::UINT16, pixels.data());
 }
 
+void write_float_picture(const std::filesystem::path& file, int width, int height, const std::vector<float>& rgb) {
+    const auto output = OIIO::ImageOutput::create(file.string());
+    EXPECT_TRUE(output && output->open(file.string(), OIIO::ImageSpec(width, height, 3, OIIO::TypeDesc::FLOAT)) &&
+                output->write_image(OIIO::TypeDesc::FLOAT, rgb.data()) && output->close());
+}
+
 dvec3 cross_of(const SceneMesh& mesh, std::size_t triangle) {
     const glm::uvec3 t = mesh.triangles[triangle];
     const dvec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
