@@ -22,7 +22,7 @@ struct GltfFile {
     tinygltf::Model model;  // images hold the encoded bytes of data: URIs
 
     // Throws Error BadData: the path, `why`, and what would help.
-    [[noreturn]] void reject(const std::string& why) const;
+    [[noreturn]] void reject(const std::string& why, const std::string& remedy = "export or copy the file again") const;
     // `path` of a URI of this file, percent signs decoded.
     std::filesystem::path resolved(const std::string& uri) const;
 };

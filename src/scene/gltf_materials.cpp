@@ -108,7 +108,8 @@ void GltfMaterials::read_extensions(const tinygltf::Material& material, SceneMat
     if (const Value* const ior = extension(material, "KHR_materials_ior")) {
         const double value = number(*ior, "ior", 1.5);
         if (value == 0.0)
-            reject("an ior of 0 (a reflection that no material has) is not supported, give 1 to 10");
+            file_.reject(label_ + ": its ior is 0, by which other renderers ask for a reflection that no index gives",
+                         "give it an ior of 1 to 10");
         surface.ior = clamped(value, 1.0, 10.0, "ior");
     }
     if (const Value* const specular = extension(material, "KHR_materials_specular")) {

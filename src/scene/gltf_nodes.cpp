@@ -144,8 +144,12 @@ public:
         checked(file_, file_.model.nodes, channel_.target_node, "animated node");
         const std::string what = label("animation of node", channel_.target_node, channel_.target_path);
         const std::string& path = channel_.target_path;
-        if (path != "translation" && path != "rotation" && path != "scale")
-            return;  // weights: told with the meshes, which keep their base shape
+        if (path == "weights")
+            return;  // told with the meshes, which keep their base shape
+        if (path != "translation" && path != "rotation" && path != "scale") {
+            progress.notice(fmt::format("{}: {} is left out", file_.path.string(), what));
+            return;
+        }
         if (poses[node].matrix) {
             progress.warning("animated-matrix",
                              fmt::format("{}: {} has a matrix, its animation is left out", file_.path.string(),

@@ -90,16 +90,19 @@ nlohmann::json& TestGltf::add_mesh(const std::vector<float>& positions, const st
     return json["meshes"].back()["primitives"][0];
 }
 
+std::string glb_of(const std::string& json, const std::string& binary) {
+    const std::string text = padded(json, ' '), data = padded(binary, '\0');
+    std::string chunks = u32(text.size()) + "JSON" + text;
+    if (!data.empty())
+        chunks += u32(data.size()) + std::string("BIN\0", 4) + data;
+    return "glTF" + u32(2) + u32(12 + chunks.size()) + chunks;
+}
+
 std::string TestGltf::glb() const {
     nlohmann::json whole = json;
-    const std::string binary = padded(buffer, '\0');
     if (!buffer.empty())
         whole["buffers"] = {{{"byteLength", buffer.size()}}};
-    const std::string text = padded(whole.dump(), ' ');
-    std::string chunks = u32(text.size()) + "JSON" + text;
-    if (!buffer.empty())
-        chunks += u32(binary.size()) + std::string("BIN\0", 4) + binary;
-    return "glTF" + u32(2) + u32(12 + chunks.size()) + chunks;
+    return glb_of(whole.dump(), buffer);
 }
 
 void TestGltf::write_glb(const std::filesystem::path& file) const {

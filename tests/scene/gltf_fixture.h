@@ -34,6 +34,8 @@ public:
     std::string buffer;
 };
 
+std::string glb_of(const std::string& json, const std::string& binary);
+
 TestGltf one_triangle();  // (0 0 0) (1 0 0) (0 1 0), facing +z
 
 // Remembers what it is told.

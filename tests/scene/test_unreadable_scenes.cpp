@@ -296,8 +296,8 @@ TEST(UnreadableScenes, PartsThatAreNotGltfAreLeftOutWithAWarning) {
     EXPECT_TRUE(loaded.told.warned("gltf-part"));
 }
 
-// Whatever bytes are damaged: either it loads or it says so.
-TEST(UnreadableScenes, DamagedBytes) {
+// Something of everything.
+TestGltf rich() {
     TestGltf gltf;
     auto& primitive = gltf.add_mesh({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}, {0, 1, 2, 1, 3, 2});
     primitive["attributes"]["NORMAL"] = gltf.add_floats("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1});
@@ -310,23 +310,64 @@ TEST(UnreadableScenes, DamagedBytes) {
     const int places = gltf.add_floats("VEC3", {0, 0, 0, 1, 1, 1});
     gltf.add("animations", {{"samplers", {{{"input", times}, {"output", places}}}},
                             {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "scale"}}}}}}});
-    const std::string whole = gltf.glb();
+    gltf.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}, {"aspectRatio", 1}}}});
+    gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}, {"spot", {{"innerConeAngle", 0}}}}};
+    gltf.add_node({{"camera", 0},
+                   {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}},
+                   {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
+    gltf.json["nodes"][0]["children"] = {gltf.add("nodes", {{"mesh", 0}, {"rotation", {0, 0, 0, 1}}})};
+    const int indices = gltf.add_view(std::string("\3\0", 2));
+    const int values = gltf.add_view(std::string(12, '\0'));
+    gltf.json["accessors"][0]["sparse"] = {
+        {"count", 1},
+        {"indices", {{"bufferView", indices}, {"byteOffset", 0}, {"componentType", 5123}}},
+        {"values", {{"bufferView", values}, {"byteOffset", 0}}}};
+    gltf.json["bufferViews"][0]["byteStride"] = 12;
+    gltf.json["accessors"][0]["byteOffset"] = 0;
+    return gltf;
+}
+
+// Either it loads or it says why it does not.
+void expect_no_accident(const std::filesystem::path& folder, const std::string& bytes, const std::string& what) {
+    write_bytes(folder / "damaged.glb", bytes);
+    SceneSettings settings;
+    settings.files.push_back({"damaged.glb"});
+    const Failure failure = failure_of([&] { load_settings(settings, folder, 0.5, 1 << 26); });
+    EXPECT_TRUE(failure.code == ExitCode::Success || failure.code == ExitCode::BadData ||
+                failure.code == ExitCode::Temporary || failure.code == ExitCode::MissingInput)
+        << what;
+}
+
+TEST(UnreadableScenes, DamagedBytes) {
+    const std::string whole = rich().glb();
     ASSERT_EQ(code_of_bytes(whole), ExitCode::Success);
     const TempFolder folder;
     Rng rng(Stream::Path, 7);
     const auto below = [&](std::size_t n) {
         return static_cast<std::size_t>(rng.next_double() * static_cast<double>(n));
     };
-    for (int i = 0; i < 1000; ++i) {
+    for (int i = 0; i < 500; ++i) {
         std::string damaged = whole;
         for (std::size_t k = 1 + below(3); k > 0; --k)
             damaged[below(damaged.size())] =
                 below(2) == 0 ? "0123456789-.eE[]{},:\"9"[below(22)] : static_cast<char>(below(256));
-        write_bytes(folder / "damaged.glb", damaged);
-        const Failure failure = failure_of([&] { load_file(folder / "damaged.glb", 0.5, 1 << 26); });
-        EXPECT_TRUE(failure.code == ExitCode::Success || failure.code == ExitCode::BadData ||
-                    failure.code == ExitCode::Temporary || failure.code == ExitCode::MissingInput);
+        expect_no_accident(folder.path(), damaged, std::to_string(i));
     }
+}
+
+// Every value of the JSON that is no list, replaced by what it should not be.
+TEST(UnreadableScenes, DamagedValues) {
+    TestGltf gltf = rich();
+    gltf.json["buffers"] = {{{"byteLength", gltf.buffer.size()}}};
+    const json flat = gltf.json.flatten();
+    const json wrong[] = {-1, 0, 3, 255, 0.5, 1e300, 2147483647, 4294967295u, ~std::uint64_t{0}, "x", nullptr, {}};
+    const TempFolder folder;
+    for (const auto& [path, value] : flat.items())
+        for (const json& replacement : wrong) {
+            json damaged = gltf.json;
+            damaged[json::json_pointer(path)] = replacement;
+            expect_no_accident(folder.path(), glb_of(damaged.dump(), gltf.buffer), path + " " + replacement.dump());
+        }
 }
 
 }  // namespace
