@@ -1,5 +1,5 @@
-// A glTF file in memory. The only door to tinygltf, which checks little: no index and no length in `model` may be
-// trusted, except that bufferViews' and images' JSON had the right types.
+// A glTF file in memory. The only door to tinygltf, which checks little: no index, no length and no count in `model`
+// may be trusted. gltf_accessor.h reads buffers with all bounds checked.
 #pragma once
 
 #include <filesystem>

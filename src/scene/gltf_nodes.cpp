@@ -86,6 +86,9 @@ Keys read_keys(const GltfFile& file, const tinygltf::AnimationSampler& sampler, 
     Keys keys;
     keys.components = static_cast<std::size_t>(components);
     keys.values_per_key = sampler.interpolation == "CUBICSPLINE" ? 3 : 1;
+    for (const int accessor : {sampler.input, sampler.output})  // which bounds how many there can be
+        if (checked(file, file.model.accessors, accessor, "animation accessor").bufferView < 0)
+            file.reject(what + " has no data");
     keys.times = read_floats(file, sampler.input, 1, what + ": times");
     keys.values = read_floats(file, sampler.output, components, what + ": values");
     if (keys.times.empty() || keys.values.size() != keys.times.size() * keys.values_per_key * keys.components)

@@ -180,6 +180,12 @@ TEST(Animations, BadOnesAreRefused) {
     EXPECT_EQ(failure({0, 1}, {0, 0, 0, 1, 1, nan}), ExitCode::BadData);
     EXPECT_EQ(failure({0}, {0, 0, 0}, "BOUNCE"), ExitCode::BadData);
     EXPECT_EQ(failure({0}, {0, 0, 0}, "LINEAR", 9), ExitCode::BadData) << "no such node";
+    TestGltf no_data = one_triangle();
+    animate(no_data, "translation", "LINEAR", {0}, {0, 0, 0});
+    no_data.json["accessors"][2].erase("bufferView");
+    no_data.json["accessors"][2]["sparse"] = {
+        {"count", 0}, {"indices", {{"bufferView", 0}, {"componentType", 5123}}}, {"values", {{"bufferView", 0}}}};
+    EXPECT_EQ(failure_of_loading(no_data).code, ExitCode::BadData);
     TestGltf no_sampler = one_triangle();
     animate(no_sampler, "translation", "LINEAR", {0}, {0, 0, 0});
     no_sampler.json["animations"][0]["channels"][0]["sampler"] = 4;

@@ -277,6 +277,27 @@ TEST(UnreadableScenes, TooManyTrianglesForTheMemoryAreToldWithTheirNumber) {
     EXPECT_EQ(failure_of_loading(folder / "scene.glb").code, ExitCode::Temporary);
 }
 
+TEST(UnreadableScenes, MoreThanAnyMemoryHoldsIsToldWithoutALimitToo) {
+    const TempFolder folder;
+    TestGltf gltf = claiming(std::uint64_t{1} << 62);
+    gltf.json["accessors"][0].erase("bufferView");
+    gltf.json["accessors"][0]["sparse"] = {
+        {"count", 0}, {"indices", {{"bufferView", 0}, {"componentType", 5123}}}, {"values", {{"bufferView", 0}}}};
+    gltf.write_glb(folder / "scene.glb");
+    const Failure failure =
+        failure_of([&] { load_file(folder / "scene.glb", 0.0, std::numeric_limits<std::uint64_t>::max()); });
+    EXPECT_EQ(failure.code, ExitCode::Temporary) << failure.message;
+}
+
+TEST(UnreadableScenes, AFileWithNothingInItCostsAWarning) {
+    EXPECT_TRUE(load(TestGltf()).told.warned("empty-file"));
+    TestGltf circle = one_triangle();
+    circle.json["nodes"][0]["children"] = {0};
+    circle.json.erase("scenes");
+    circle.json.erase("scene");
+    EXPECT_TRUE(load(circle).told.warned("empty-file")) << "nodes without a root";
+}
+
 TEST(UnreadableScenes, ABufferLargerThanTheMemoryIsNotRead) {
     const TempFolder folder;
     TestGltf gltf = one_triangle();
