@@ -65,7 +65,7 @@ bool is_binary(const Bytes& bytes) {
 // The lengths that a .glb claims, and its JSON.
 std::span<const unsigned char> json_of_binary(const GltfFile& file, const Bytes& bytes) {
     if (bytes.size() >= 8 && u32_at(bytes, 4) != 2)
-        file.reject(fmt::format("it is glTF {}, only glTF 2 can be read", u32_at(bytes, 4)));
+        file.reject(fmt::format("it is glTF {}, only glTF 2 can be read", u32_at(bytes, 4)), "convert it to glTF 2");
     constexpr std::uint64_t kJson = 20, kChunkHeader = 8;
     if (bytes.size() < kJson || u32_at(bytes, 8) > bytes.size())
         file.reject(fmt::format("truncated: it ends after {} of {} bytes", bytes.size(),
@@ -163,13 +163,15 @@ void parse(GltfFile& file, Bytes& bytes, MemoryBudget& budget, Progress& progres
 void check_version_and_extensions(const GltfFile& file, Progress& progress) {
     const tinygltf::Model& model = file.model;
     if (!model.asset.version.starts_with("2."))
-        file.reject(fmt::format("it is glTF {}, only glTF 2 can be read", printable(model.asset.version, 16)));
+        file.reject(fmt::format("it is glTF {}, only glTF 2 can be read", printable(model.asset.version, 16)),
+                    "convert it to glTF 2");
     const auto known = [](const std::string& name) {
         return std::find(kKnownExtensions.begin(), kKnownExtensions.end(), name) != kKnownExtensions.end();
     };
     for (const std::string& name : model.extensionsRequired)
         if (!known(name))
-            file.reject(fmt::format("it requires {}, which is not supported; export it without", printable(name, 60)));
+            file.reject(fmt::format("it requires {}, which is not supported", printable(name, 60)),
+                        "export it without");
     std::set<std::string> unknown;
     for (const std::string& name : model.extensionsUsed)
         if (!known(name))
@@ -180,8 +182,8 @@ void check_version_and_extensions(const GltfFile& file, Progress& progress) {
 
 }  // namespace
 
-void GltfFile::reject(const std::string& why) const {
-    throw Error(ExitCode::BadData, fmt::format("{}: {}; export or copy the file again", path.string(), why));
+void GltfFile::reject(const std::string& why, const std::string& remedy) const {
+    throw Error(ExitCode::BadData, fmt::format("{}: {}; {}", path.string(), why, remedy));
 }
 
 std::filesystem::path GltfFile::resolved(const std::string& uri) const {
@@ -203,7 +205,7 @@ GltfFile read_gltf(const std::filesystem::path& path, MemoryBudget& budget, Prog
     try {
         Bytes bytes = read_bytes(path, "no such file", budget);
         if (bytes.size() > 0xfffffff0u)
-            file.reject("4 GiB or more in one file are not supported; keep buffers in files of their own");
+            file.reject("it is larger than 4 GiB", "keep its buffers in files of their own");
         check_depth(file, is_binary(bytes) ? json_of_binary(file, bytes) : std::span<const unsigned char>(bytes));
         parse(file, bytes, budget, progress);
     } catch (const Error&) {
