@@ -13,7 +13,7 @@ namespace brisance {
 namespace {
 
 constexpr int kRays = PointDepths::kRays;
-constexpr int kBatches = 4;  // of kRays each
+constexpr int kBatches = 2;  // of kRays each
 
 // What kRays places on the emitters send to one node: irradiances perpendicular to their directions [W/m^2].
 struct Arriving {
@@ -49,7 +49,8 @@ private:
     // Where the ray ends that number `number` of all nodes asks; its light before any smoke.
     vec3 place(const vec3& p, int number, vec3& direction, Rgb& light) const {
         Rng rng(Stream::NodeEmitter, static_cast<std::uint64_t>(number));
-        const auto sample = surroundings_.emitters().sample({dvec3(p), dvec3(0.0), LitPoint::Kind::Medium}, rng);
+        const auto sample = surroundings_.emitters().sample({dvec3(p), dvec3(0.0), LitPoint::Kind::Medium},
+                                                            (number + 0.5) / (kRays * kBatches), rng);
         direction = vec3(0.0f, 0.0f, 1.0f);
         light = Rgb(0.0f);
         if (!sample)

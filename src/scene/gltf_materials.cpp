@@ -89,7 +89,7 @@ SceneMaterial GltfMaterials::convert(const tinygltf::Material& material) {
         progress_.notice(file_.path.string() + ": occlusion textures are left out, light finds its own shadows");
     if (extension(material, "KHR_materials_unlit") != nullptr) {
         result.surface.metallic = result.surface.specular = result.surface.transmission = 0.0f;
-        result.thin = false;
+        result.surface.thin = false;
         result.surface.roughness = 1.0f;
         result.metal_rough = {};
         progress_.notice(

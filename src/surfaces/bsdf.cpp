@@ -356,7 +356,8 @@ std::optional<BsdfSample> Bsdf::draw_delta(const View& view, double choice) cons
 
 // Turned back to world space, and weighted for what flows.
 BsdfSample Bsdf::finished(const View& view, BsdfSample s, Transport transport) const {
-    if (s.transmitted && !matched_ && transport == Transport::Radiance)
+    const bool bent = s.transmitted && !matched_ && sheet_ == 0.0f;
+    if (bent && transport == Transport::Radiance)
         s.weight /= static_cast<float>(view.eta * view.eta);
     if (view.side == 1)
         s.wi.z = -s.wi.z;

@@ -72,7 +72,7 @@ TEST(Materials, FactorsOfTheCoreAndOfExtensions) {
     EXPECT_EQ(m.alpha, 0.4f);
     EXPECT_EQ(m.alpha_cutoff, 0.3f);
     EXPECT_TRUE(m.double_sided);
-    EXPECT_TRUE(m.thin);
+    EXPECT_TRUE(m.surface.thin);
     EXPECT_TRUE(loaded.told.warnings.empty());
     EXPECT_TRUE(loaded.told.notices.empty());
 }
@@ -83,7 +83,7 @@ TEST(Materials, ThicknessMakesGlassSolid) {
                                {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
                                 {"KHR_materials_volume", {{"thicknessFactor", thickness}}}}}})
             .scene.materials.at(0)
-            .thin;
+            .surface.thin;
     };
     EXPECT_TRUE(thin(0.0));
     EXPECT_FALSE(thin(0.1));
