@@ -162,6 +162,17 @@ TEST(UnreadableScenes, ARequiredExtensionThatIsNotKnownIsNamed) {
     EXPECT_TRUE(contains(failure.message, "KHR_draco_mesh_compression")) << failure.message;
 }
 
+TEST(UnreadableScenes, CompressedMeshesNameTheirCompression) {
+    TestGltf gltf;
+    gltf.add_mesh({0, 0, 0, 1, 0, 0, 0, 1, 0}, {0, 1, 2});
+    for (json& accessor : gltf.json["accessors"])
+        accessor.erase("bufferView");  // the data are in the extension
+    gltf.json["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+    const Failure failure = failure_of_loading(gltf);
+    EXPECT_EQ(failure.code, ExitCode::BadData);
+    EXPECT_TRUE(contains(failure.message, "KHR_draco_mesh_compression")) << failure.message;
+}
+
 TEST(UnreadableScenes, OptionalExtensionsThatAreNotKnownCostOneNotice) {
     TestGltf gltf = one_triangle();
     gltf.json["extensionsUsed"] = {"KHR_materials_ior", "KHR_materials_sheen", "EXT_other"};
