@@ -7,7 +7,7 @@
 namespace brisance {
 
 // One name per independent source of randomness. Append only: the value seeds the stream.
-enum class Stream : std::uint32_t { EscapeRay = 1, Path, PathRotation, Certificate, Cutout };
+enum class Stream : std::uint32_t { EscapeRay = 1, Path, PathRotation, Certificate, Cutout, LightCandidate, LightArea, Photon };
 
 // SplitMix64 (Steele, Lea, Flood 2014), keyed by identity.
 class Rng {
