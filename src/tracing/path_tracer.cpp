@@ -31,7 +31,7 @@ void note(PathStatistics& statistics, const TracedVertex& vertex) {
 
 // Paths between surfaces that lose nothing must end, too.
 constexpr int kManyScatterings = 64;
-constexpr float kGoesOn = 0.95f;
+constexpr float kGoesOn = 0.99f;
 
 // Surface paths that begin at the end of one ray of the camera that comes through smoke: what the ray itself costs is
 // shared by them. Where there is none a ray costs little.
@@ -41,8 +41,8 @@ constexpr int kFirstReflections = 4;
 bool survives(Rgb& throughput, float begin, int order, Rng& rng) {
     float part = largest(throughput) / begin;
     if (order > kManyScatterings)
-        part = std::min(part, kGoesOn) * kRouletteBelow;
-    if (part >= kRouletteBelow)
+        part = std::min(part, kGoesOn);
+    else if (part >= kRouletteBelow)
         return true;
     if (!(rng.next() < part))
         return false;

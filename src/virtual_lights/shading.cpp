@@ -12,7 +12,7 @@ namespace {
 // Extended paths are ended by roulette, as the path tracer's are.
 constexpr float kRouletteBelow = 0.5f;
 constexpr int kManyScatterings = 64;
-constexpr float kGoesOn = 0.95f;
+constexpr float kGoesOn = 0.99f;
 
 float largest(const Rgb& c) {
     return std::max({c.x, c.y, c.z});
@@ -21,8 +21,8 @@ float largest(const Rgb& c) {
 bool survives(Rgb& throughput, int order, Rng& rng) {
     float part = largest(throughput);
     if (order > kManyScatterings)
-        part = std::min(part, kGoesOn) * kRouletteBelow;
-    if (part >= kRouletteBelow)
+        part = std::min(part, kGoesOn);
+    else if (part >= kRouletteBelow)
         return true;
     if (!(rng.next() < part))
         return false;
