@@ -15,7 +15,10 @@ enum class Stream : std::uint32_t {
     Cutout,
     Surface,
     NodeEmitter,
-    Points
+    Points,
+    LightCandidate,
+    LightArea,
+    Photon
 };
 
 // SplitMix64 (Steele, Lea, Flood 2014), keyed by identity.

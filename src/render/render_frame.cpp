@@ -13,6 +13,7 @@
 #include "render/integrate.h"
 #include "render/lighting.h"
 #include "render/plan.h"
+#include "render/reflected_lights.h"
 #include "render/surface_shader.h"
 #include "render/trace_picture.h"
 #include "shot/write_shot.h"
@@ -70,17 +71,52 @@ std::uint64_t peak_resident_bytes() {
     return std::uint64_t(usage.ru_maxrss) * 1024;
 }
 
+std::unique_ptr<VirtualLights> place_virtual_lights(const Shot& shot, const DirectLight& scene, const Camera& camera,
+                                                    Statistics& statistics, Progress& progress) {
+    progress.stage("virtual lights");
+    const Stopwatch watch;
+    const PixelCamera pixels{camera.settings().width, camera.settings().height,
+                             [&](double x, double y) { return camera.ray(x, y); }};
+    auto lights = std::make_unique<VirtualLights>(scene, pixels, shot.virtual_lights);
+    const VirtualLightReport& r = lights->report();
+    statistics.stages.push_back({"virtual lights",
+                                 watch.seconds(),
+                                 r.bytes + r.photon_bytes,
+                                 {{"candidates", r.candidates},
+                                  {"lights", r.lights},
+                                  {"with_profiles", r.profiles},
+                                  {"photons", r.photons.photons},
+                                  {"photons_from_fire", r.photons.from_fire},
+                                  {"photons_not_finite", r.photons.not_finite},
+                                  {"unshared_fraction", r.photons.unshared_fraction()},
+                                  {"candidate_seconds", r.candidate_seconds},
+                                  {"elimination_seconds", r.elimination_seconds},
+                                  {"area_seconds", r.area_seconds},
+                                  {"photon_seconds", r.photon_seconds},
+                                  {"profile_seconds", r.profile_seconds}}});
+    return lights;
+}
+
 // Anti-aliasing samples along a pixel's side where there are surfaces: their edges are sharp.
 constexpr int kSurfaceSamples = 4;
 
 Image draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const Surroundings* surroundings,
                 const Camera& camera, Statistics& statistics, ImageMetadata& metadata, Progress& progress) {
+    std::optional<PathTracer> paths;
+    if (plan.surfaces)
+        paths.emplace(medium, shot.tracing, shot.scattering.bounces, surroundings);
+    std::unique_ptr<VirtualLights> virtual_lights;
+    if (shot.virtual_lights.count > 0 && (plan.needs(Cell::SS) || plan.needs(Cell::MS)))
+        virtual_lights = place_virtual_lights(shot, paths->direct(), camera, statistics, progress);
     std::unique_ptr<Lighting> lighting;
     std::optional<Medium> similar;
     if (plan.single || plan.needs(Cell::SV) || plan.needs(Cell::MA)) {
         similar = similar_medium(medium, shot.scattering.bounces);
+        std::optional<PointLights> reflecting;
+        if (virtual_lights)
+            reflecting = reflected_lights(*virtual_lights);
         lighting = std::make_unique<Lighting>(shot, plan, similar ? *similar : medium, camera, statistics, progress,
-                                              surroundings);
+                                              surroundings, reflecting ? &*reflecting : nullptr);
     }
     progress.stage("camera");
     const Stopwatch watch;
@@ -98,12 +134,10 @@ Image draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     settings.surroundings = surroundings;
     if (plan.surfaces && camera.settings().samples_per_axis == 0)
         settings.samples_per_axis = std::max(settings.samples_per_axis, kSurfaceSamples);
-    std::optional<PathTracer> paths;
     std::optional<SurfaceShader> shader;
     LightSurfaces light_surfaces;
     if (plan.surfaces) {
-        paths.emplace(medium, shot.tracing, shot.scattering.bounces, surroundings);
-        shader.emplace(plan, *surroundings, field, lighting.get(), *paths, settings.parts);
+        shader.emplace(plan, field, lighting.get(), virtual_lights.get(), *paths, settings.parts);
         light_surfaces = [&](const auto& samples, auto& light) { shader->shade(samples, light); };
     }
     LightPoints light_points;

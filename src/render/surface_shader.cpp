@@ -21,9 +21,30 @@ bool has_specular(const SurfaceMaterial& m) {
 
 }  // namespace
 
-SurfaceShader::SurfaceShader(const Plan& plan, const Surroundings& surroundings, const CellField& field,
-                             Lighting* lighting, const PathTracer& paths, int parts)
-    : plan_(plan), surroundings_(surroundings), field_(field), lighting_(lighting), paths_(paths), parts_(parts) {}
+SurfaceShader::SurfaceShader(const Plan& plan, const CellField& field, Lighting* lighting, const VirtualLights* lights,
+                             const PathTracer& paths, int parts)
+    : plan_(plan),
+      field_(field),
+      lighting_(lighting),
+      lights_(lights),
+      paths_(paths),
+      surroundings_(*paths.direct().surroundings()),
+      parts_(parts) {}
+
+Rgb SurfaceShader::from_emitters(const Scatterer& place, Rng& rng) const {
+    const DirectLight& direct = paths_.direct();
+    Rgb sum(0.0f);
+    if (!place.only_delta())
+        sum += direct.from_emitters(place, rng);
+    const std::optional<Scatterer::Sample> turn = place.sample(rng);
+    if (!turn)
+        return sum;
+    const RaySegment segment = direct.segment_along(place.leaving(turn->wi));
+    const Rgb seen = direct.at_end(segment, turn->pdf, turn->delta, &place);
+    if (seen != Rgb(0.0f))
+        sum += turn->weight * seen * float(direct.lines().transmittance(segment.ray, segment.end, rng));
+    return sum;
+}
 
 void SurfaceShader::light_bases(const std::vector<SurfaceSample>& samples, std::vector<SurfacePoint>& points,
                                 std::vector<SurfaceReceiver>& receivers) const {
@@ -107,9 +128,17 @@ void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector
             }
             if (lighting_ && has_specular(point.material))
                 reflect_medium(point, toward_viewer, rng, out);
+            const Scatterer place(point, samples[i].ray.direction);
+            if (plan_.needs(Cell::SA))
+                out.at(Cell::SA) += from_emitters(place, rng);
+            if (!plan_.needs(Cell::SS))
+                return;
+            if (lights_) {
+                out.at(Cell::SS) += lights_->shade(place, rng);
+                return;
+            }
             PathSum path{};
             paths_.trace_from_surface(point, samples[i].ray.direction, rng, path);
-            out.at(Cell::SA) += path.cells.at(Cell::SA);
             out.at(Cell::SS) += path.cells.at(Cell::SS);
         },
         kSamplesAtOnce);

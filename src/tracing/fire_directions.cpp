@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/parallel.h"
 
@@ -57,22 +58,40 @@ FireDirections::FireDirections(const TrackingField& field)
         density_.push_back(g / total / cube_volume);
         cumulative_.push_back((sum += g) / total);
     }
+    power_ = 4.0 * std::numbers::pi * total * cube_volume / (kCube * kCube * kCube);
+}
+
+FireDirections::Drawn FireDirections::draw(Rng& rng) const {
+    const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), rng.next_double());
+    const std::size_t i = std::min<std::size_t>(found - cumulative_.begin(), cumulative_.size() - 1);
+    const int cube = static_cast<int>(i % kCubes);
+    const auto brick = static_cast<std::size_t>(brick_of_[i / kCubes]);
+    const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
+    const dvec3 in_brick = double(kCube) * (dvec3(cube >> 2, cube >> 1 & 1, cube & 1) + dvec3(x, y, z));
+    const dvec3 first(field_->bricks().first_node(brick) - field_->bricks().min_brick() * BrickLattice::kSize);
+    return {brick, vec3(in_brick), origin_ + local_from_index_ * (first + in_brick), density_[i]};
 }
 
 dvec3 FireDirections::sample(const dvec3& point, Rng& rng) const {
     for (;;) {
-        const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), rng.next_double());
-        const std::size_t i = std::min<std::size_t>(found - cumulative_.begin(), cumulative_.size() - 1);
-        const int cube = static_cast<int>(i % kCubes);
-        const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
-        const dvec3 node = dvec3(field_->bricks().brick(brick_of_[i / kCubes]) - field_->bricks().min_brick()) *
-                               double(BrickLattice::kSize) +
-                           double(kCube) * (dvec3(cube >> 2, cube >> 1 & 1, cube & 1) + dvec3(x, y, z));
-        const dvec3 way = origin_ + local_from_index_ * node - point;
+        const dvec3 way = draw(rng).position - point;
         const double distance = glm::length(way);
         if (distance > 0.0)
             return way / distance;
     }
+}
+
+EmittedParticle FireDirections::emit(Rng& rng) const {
+    const Drawn drawn = draw(rng);
+    Rgb glow(0.0f);
+    if (field_->has_source())
+        glow += field_->extinction(drawn.brick, drawn.in_brick) * field_->source(drawn.brick, drawn.in_brick);
+    if (field_->has_emission())
+        glow += field_->emission(drawn.brick, drawn.in_brick);
+    const double z = 1.0 - 2.0 * rng.next_double(), azimuth = 2.0 * std::numbers::pi * rng.next_double();
+    const double across = std::sqrt(std::max(0.0, (1.0 - z) * (1.0 + z)));
+    const dvec3 direction(across * std::cos(azimuth), across * std::sin(azimuth), z);
+    return {{drawn.position, direction}, glow * float(4.0 * std::numbers::pi / drawn.density)};
 }
 
 double FireDirections::pdf(const Ray& ray) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/rng.h"
+#include "emitters/emitters.h"
 #include "tracing/tracking_field.h"
 
 namespace brisance {
@@ -21,6 +22,12 @@ public:
     // Of a ray's direction, [1/sr]: the integral of the points' density times distance squared along the whole ray.
     double pdf(const Ray& ray) const;
 
+    // A particle that leaves a point of the fire in any direction, and the power that it stands for, 4 pi j over the
+    // density of points [W]. There must be a fire.
+    EmittedParticle emit(Rng& rng) const;
+    // All power that emit() draws, luminance [W]; by the cells' middles, good to share particles out by.
+    double power() const { return power_; }
+
     // Half the diagonal of the box of all that burns [m].
     float radius() const { return radius_; }
 
@@ -31,12 +38,21 @@ private:
     static constexpr int kCubes =
         (BrickLattice::kSize / kCube) * (BrickLattice::kSize / kCube) * (BrickLattice::kSize / kCube);
 
+    struct Drawn {
+        std::size_t brick;
+        vec3 in_brick;  // nodes from the brick's first node
+        dvec3 position;
+        double density;  // [1/m^3]
+    };
+    Drawn draw(Rng& rng) const;
+
     const TrackingField* field_;
     std::vector<std::int32_t> brick_of_;    // of the field, per burning brick
     std::vector<std::int32_t> burning_of_;  // and back, or -1
     std::vector<double> density_;           // per cube [1/m^3]
     std::vector<double> cumulative_;        // probability, inclusive
     float radius_ = 0.0f;
+    double power_ = 0.0;
     dvec3 origin_{0.0};  // local position of the lattice's first node [m]
     dmat3 local_from_index_{1.0};
 };

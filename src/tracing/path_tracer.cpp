@@ -13,12 +13,6 @@ namespace {
 // First scatterings drawn on one ray of the camera: the ray itself, integrated cell by cell, costs as much as several.
 constexpr int kFirstCollisions = 16;
 
-// Lines toward the fire at a vertex, where the smoke around it lets them get there: its optical depth across the fire's
-// radius is less than this. Deeper in the smoke they cost more than they bring (measured), and what they would find is
-// found along the path's own segments.
-constexpr float kLightLines = 0.25f;
-constexpr float kThickToFire = 1.0f;
-
 // Paths that carry less than this part of what they began with are ended by roulette.
 constexpr float kRouletteBelow = 0.5f;
 
@@ -67,22 +61,9 @@ struct PathTracer::Vertex {
     Sender column;      // ... and the second there, or in smoke: the cell of what it brings
 };
 
-// A ray up to the surface that it meets.
-struct PathTracer::Segment {
-    Ray ray;
-    double end = kNoEnd;
-    std::optional<SurfaceHit> hit;
-    std::optional<SurfacePoint> point;
-};
-
 PathTracer::PathTracer(const Medium& medium, const TracingSettings& settings, int bounces,
                        const Surroundings* surroundings)
-    : settings_(settings),
-      bounces_(bounces),
-      surroundings_(surroundings),
-      field_(medium),
-      fire_(field_),
-      lines_(field_, settings_) {
+    : bounces_(bounces), direct_(medium, settings, surroundings) {
     if (surroundings && settings.emission == EmissionEstimator::Collision)
         throw Error(ExitCode::Usage,
                     "tracing.emission: \"collision\", the plain tracker, knows neither surfaces nor lights; "
@@ -90,9 +71,9 @@ PathTracer::PathTracer(const Medium& medium, const TracingSettings& settings, in
 }
 
 void PathTracer::trace(const Ray& ray, double place, Rng& rng, PathSum& sum, PathStatistics& statistics) const {
-    if (fire_.empty() && !surroundings_)
+    if (direct_.fire().empty() && !direct_.surroundings())
         return;
-    if (settings_.emission == EmissionEstimator::Collision)
+    if (settings().emission == EmissionEstimator::Collision)
         trace_plain(ray, rng, sum, statistics);
     else
         trace_lines(ray, place, rng, sum, statistics);
@@ -102,7 +83,7 @@ void PathTracer::trace(const Ray& ray, double place, Rng& rng, PathSum& sum, Pat
 void PathTracer::add(PathSum& sum, const Vertex* vertex, Sender source, const Rgb& radiance) const {
     const int order = vertex ? vertex->order : 0;
     sum[std::min(order, kPathOrders - 1)] += radiance;
-    if (!surroundings_)
+    if (!direct_.surroundings())
         return;
     Cell cell = source == Sender::V ? Cell::V : Cell::A;
     if (order == 1)
@@ -112,81 +93,16 @@ void PathTracer::add(PathSum& sum, const Vertex* vertex, Sender source, const Rg
     sum.cells.at(cell) += radiance;
 }
 
-PathTracer::Segment PathTracer::segment_along(const Ray& ray) const {
-    Segment segment{ray, kNoEnd, std::nullopt, std::nullopt};
-    if (!surroundings_)
-        return segment;
-    segment.hit = surroundings_->intersector().first_hit(ray);
-    if (segment.hit) {
-        segment.end = segment.hit->distance;
-        segment.point = surface_point(surroundings_->scene(), *segment.hit, -ray.direction);
-    }
-    return segment;
-}
-
-// The line toward the fire; with the balance heuristic its weight cancels all but both densities in the denominator.
-Rgb PathTracer::light_from_fire(const Vertex& vertex, Rng& rng) const {
-    const Ray line = vertex.place.leaving(fire_.sample(vertex.place.position(), rng));
-    const Scatterer::Value scattered = vertex.place.at(line.direction);
-    if (scattered.value == Rgb(0.0f))
-        return Rgb(0.0f);
-    double end = kNoEnd;
-    if (surroundings_)
-        if (const std::optional<SurfaceHit> hit = surroundings_->intersector().first_hit(line))
-            end = hit->distance;
-    const Rgb seen = lines_.follow_line(line, rng, end);
-    if (seen == Rgb(0.0f))
-        return seen;
-    return scattered.value / float(vertex.light_lines * fire_.pdf(line) + scattered.pdf) * seen;
-}
-
-// A place on one of the emitters, seen through the smoke.
-Rgb PathTracer::light_from_emitters(const Vertex& vertex, Rng& rng) const {
-    const std::optional<EmitterSample> light = surroundings_->emitters().sample(vertex.place.lit(), rng);
-    if (!light)
-        return Rgb(0.0f);
-    const Scatterer::Value scattered = vertex.place.at(light->direction);
-    if (scattered.value == Rgb(0.0f))
-        return Rgb(0.0f);
-    double end = light->distance;
-    const bool near = std::isfinite(end);
-    const Ray ray = near ? vertex.place.toward(light->end, end) : vertex.place.leaving(light->direction);
-    if (surroundings_->intersector().occluded(ray, end))
-        return Rgb(0.0f);
-    const double seen = lines_.transmittance(ray, end, rng);
-    const double share = light->pdf > 0.0 ? light->pdf / (light->pdf + scattered.pdf) : 1.0;
-    return scattered.value * light->weight * float(seen * share);
-}
-
-// What the surface at the end of the segment, or the background, emits: its share, if a ray toward the emitters could
-// have found it as well. `pdf`: of the segment's direction.
-Rgb PathTracer::light_at_end(const Segment& segment, double pdf, bool delta, const Vertex* vertex) const {
-    const Emitters& emitters = surroundings_->emitters();
-    const dvec3& direction = segment.ray.direction;
-    Rgb seen(0.0f);
-    double other = 0.0;
-    if (segment.hit) {
-        seen = segment.point->emission;
-        if (seen != Rgb(0.0f) && vertex && !delta)
-            other = emitters.pdf_of_hit(vertex->place.lit(), *segment.hit, direction, segment.end);
-    } else {
-        seen = emitters.background(direction);
-        if (seen != Rgb(0.0f) && vertex && !delta)
-            other = emitters.pdf_of_background(direction);
-    }
-    return other > 0.0 ? seen * float(pdf / (pdf + other)) : seen;
-}
-
 void PathTracer::trace_lines(const Ray& camera_ray, double place, Rng& rng, PathSum& sum,
                              PathStatistics& statistics) const {
     thread_local CameraLine seen;
-    const Segment segment = segment_along(camera_ray);
-    lines_.follow_camera(camera_ray, rng, seen, segment.end);
+    const RaySegment segment = direct_.segment_along(camera_ray);
+    direct_.lines().follow_camera(camera_ray, rng, seen, segment.end);
     add(sum, nullptr, Sender::V, seen.radiance);
     const auto through = static_cast<float>(seen.transmittance());
     Rgb at_end(0.0f);
-    if (surroundings_) {
-        at_end = through * light_at_end(segment, 0.0, true, nullptr);
+    if (direct_.surroundings()) {
+        at_end = through * direct_.at_end(segment, 0.0, true, nullptr);
         add(sum, nullptr, Sender::A, at_end);
     }
     note(statistics, {0, camera_ray.origin, Rgb(1.0f), seen.radiance + at_end, Rgb(0.0f)});
@@ -196,7 +112,7 @@ void PathTracer::trace_lines(const Ray& camera_ray, double place, Rng& rng, Path
     const Rgb arriving(static_cast<float>(opacity / kFirstCollisions));
     for (int i = 0; i < kFirstCollisions && opacity > 0.0; ++i) {
         ++statistics.paths;
-        const Collision first = lines_.choose(seen, (i + place) / kFirstCollisions);
+        const Collision first = direct_.lines().choose(seen, (i + place) / kFirstCollisions);
         trace_from(in_smoke(camera_ray, first, arriving, nullptr), rng, sum, statistics);
     }
     if (!segment.point || !(through > 0.0f))
@@ -224,11 +140,11 @@ void PathTracer::trace_from(Vertex vertex, Rng& rng, PathSum& sum, PathStatistic
         TracedVertex seen{vertex.order, place.position(), vertex.throughput, Rgb(0.0f),
                           Rgb(0.0f),    Rgb(0.0f),        place.on_surface()};
         if (vertex.light_lines > 0.0f && (vertex.light_lines == 1.0f || rng.next() < vertex.light_lines)) {
-            seen.from_fire = vertex.throughput * light_from_fire(vertex, rng);
+            seen.from_fire = vertex.throughput * direct_.from_fire(place, vertex.light_lines, rng);
             add(sum, &vertex, Sender::V, seen.from_fire);
         }
-        if (surroundings_ && !surroundings_->emitters().empty() && !place.only_delta()) {
-            seen.from_emitters = vertex.throughput * light_from_emitters(vertex, rng);
+        if (direct_.has_emitters() && !place.only_delta()) {
+            seen.from_emitters = vertex.throughput * direct_.from_emitters(place, rng);
             add(sum, &vertex, Sender::A, seen.from_emitters);
         }
         const std::optional<Scatterer::Sample> turn = place.sample(rng);
@@ -236,21 +152,22 @@ void PathTracer::trace_from(Vertex vertex, Rng& rng, PathSum& sum, PathStatistic
             note(statistics, seen);
             return;
         }
-        const Segment segment = segment_along(place.leaving(turn->wi));
+        const RaySegment segment = direct_.segment_along(place.leaving(turn->wi));
         const Rgb leaving = vertex.throughput * turn->weight;
         const bool goes_on = bounces_ < 0 || vertex.order < bounces_;
         LineResult line;
-        if (goes_on || surroundings_)
-            line = lines_.follow_path(segment.ray, rng, segment.end);
+        if (goes_on || direct_.surroundings())
+            line = direct_.lines().follow_path(segment.ray, rng, segment.end);
         else
-            line.radiance = lines_.follow_line(segment.ray, rng);
+            line.radiance = direct_.lines().follow_line(segment.ray, rng);
         if (line.radiance != Rgb(0.0f)) {
-            const float share = turn->delta ? 1.0f : share_of_sample(vertex, segment.ray, turn->pdf);
+            const float share =
+                turn->delta ? 1.0f : direct_.share_of_sample(vertex.light_lines, segment.ray, turn->pdf);
             seen.along_segment = share * leaving * line.radiance;
             add(sum, &vertex, Sender::V, seen.along_segment);
         }
-        if (surroundings_ && !line.collision) {
-            const Rgb at_end = leaving * light_at_end(segment, turn->pdf, turn->delta, &vertex);
+        if (direct_.surroundings() && !line.collision) {
+            const Rgb at_end = leaving * direct_.at_end(segment, turn->pdf, turn->delta, &place);
             add(sum, &vertex, Sender::A, at_end);
             seen.along_segment += at_end;
         }
@@ -265,16 +182,9 @@ void PathTracer::trace_from(Vertex vertex, Rng& rng, PathSum& sum, PathStatistic
 PathTracer::Vertex PathTracer::in_smoke(const Ray& ray, const Collision& c, const Rgb& arriving,
                                         const Vertex* from) const {
     const int order = from ? from->order + 1 : 1;
-    Vertex v{Scatterer(ray.origin + ray.direction * c.distance, ray.direction, field_.mean_cosine()),
-             arriving * field_.albedo(c.brick, c.position),
-             0.0f,
-             order,
-             from ? from->row_surface : false,
-             order > 2 ? from->column : Sender::M};
-    if (settings_.light_sampling && !fire_.empty() &&
-        field_.extinction(c.brick, c.position) * fire_.radius() < kThickToFire)
-        v.light_lines = kLightLines;
-    return v;
+    return {direct_.in_smoke(ray, c),         arriving * field().albedo(c.brick, c.position),
+            direct_.lines_in_smoke(c),        order,
+            from ? from->row_surface : false, order > 2 ? from->column : Sender::M};
 }
 
 PathTracer::Vertex PathTracer::on_surface(const SurfacePoint& point, const dvec3& direction, const Rgb& arriving,
@@ -282,16 +192,8 @@ PathTracer::Vertex PathTracer::on_surface(const SurfacePoint& point, const dvec3
     const int order = from ? from->order + 1 : 1;
     Vertex v{Scatterer(point, direction),         arriving, 0.0f, order, from ? from->row_surface : true,
              order > 2 ? from->column : Sender::S};
-    if (settings_.light_sampling && !fire_.empty() && !v.place.only_delta())
-        v.light_lines = 1.0f;
+    v.light_lines = direct_.lines_on_surface(v.place);
     return v;
-}
-
-// Of what glows along a segment that the phase function or the BSDF drew.
-float PathTracer::share_of_sample(const Vertex& vertex, const Ray& ray, double pdf) const {
-    if (vertex.light_lines == 0.0f)
-        return 1.0f;
-    return static_cast<float>(pdf / (vertex.light_lines * fire_.pdf(ray) + pdf));
 }
 
 // The plain tracker: emission at every tentative collision, absorption or scattering at real ones. Where only emission
@@ -302,21 +204,21 @@ void PathTracer::trace_plain(Ray ray, Rng& rng, PathSum& sum, PathStatistics& st
     for (int order = 0;; ++order) {
         std::optional<Collision> collision;
         note(statistics, {order, ray.origin, throughput, Rgb(0.0f), Rgb(0.0f)});
-        walk_bricks(field_.bricks(), field_.enter(ray), [&](const CellSegment& s) {
-            const bool burns = field_.burns(s.brick);
+        walk_bricks(field().bricks(), field().enter(ray), [&](const CellSegment& s) {
+            const bool burns = field().burns(s.brick);
             const double per_cell = glm::length(s.direction) / 4.0;
             const double majorant =
-                std::max<double>(field_.majorant(s.brick), burns && field_.has_emission() ? per_cell : 0.0);
+                std::max<double>(field().majorant(s.brick), burns && field().has_emission() ? per_cell : 0.0);
             if (majorant <= 0.0)
                 return true;
             for (double t = s.begin + exponential(rng) / majorant; t < s.end; t += exponential(rng) / majorant) {
                 const vec3 p = point_in_brick(s, t);
-                const float sigma = field_.extinction(s.brick, p);
+                const float sigma = field().extinction(s.brick, p);
                 Rgb glow(0.0f);
-                if (burns && field_.has_source())
-                    glow += sigma * field_.source(s.brick, p);
-                if (burns && field_.has_emission())
-                    glow += field_.emission(s.brick, p);
+                if (burns && field().has_source())
+                    glow += sigma * field().source(s.brick, p);
+                if (burns && field().has_emission())
+                    glow += field().emission(s.brick, p);
                 const Rgb gathered = throughput * glow / float(majorant);
                 sum[std::min(order, kPathOrders - 1)] += gathered;
                 if (statistics.vertices) [[unlikely]]
@@ -330,14 +232,14 @@ void PathTracer::trace_plain(Ray ray, Rng& rng, PathSum& sum, PathStatistics& st
         });
         if (!collision || order == bounces_)
             return;
-        const Rgb albedo = field_.albedo(collision->brick, collision->position);
+        const Rgb albedo = field().albedo(collision->brick, collision->position);
         const float scatter = largest(throughput * albedo) / std::max(largest(throughput), 1e-30f);
         if (!(rng.next_double() < scatter))
             return;
         throughput *= albedo / scatter;
         ++statistics.scatterings;
         ray = {ray.origin + ray.direction * collision->distance,
-               sample_henyey_greenstein(ray.direction, field_.mean_cosine(), rng)};
+               sample_henyey_greenstein(ray.direction, field().mean_cosine(), rng)};
     }
 }
 

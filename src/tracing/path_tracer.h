@@ -13,10 +13,7 @@
 #include <vector>
 
 #include "core/cell.h"
-#include "emitters/surroundings.h"
-#include "tracing/fire_directions.h"
-#include "tracing/line.h"
-#include "tracing/scatterer.h"
+#include "tracing/direct_light.h"
 
 namespace brisance {
 
@@ -61,32 +58,23 @@ public:
     // Needs surroundings.
     void trace_from_surface(const SurfacePoint& point, const dvec3& arriving, Rng& rng, PathSum& sum) const;
 
-    const TrackingField& field() const { return field_; }
-    const TracingSettings& settings() const { return settings_; }
-    std::uint64_t bytes() const { return field_.bytes() + fire_.bytes(); }
+    const DirectLight& direct() const { return direct_; }
+    const TrackingField& field() const { return direct_.field(); }
+    const TracingSettings& settings() const { return direct_.settings(); }
+    std::uint64_t bytes() const { return direct_.bytes(); }
 
 private:
     struct Vertex;
-    struct Segment;
     void trace_lines(const Ray& ray, double place, Rng& rng, PathSum& sum, PathStatistics& statistics) const;
     void trace_from(Vertex vertex, Rng& rng, PathSum& sum, PathStatistics& statistics) const;
     void trace_plain(Ray ray, Rng& rng, PathSum& sum, PathStatistics& statistics) const;
 
     void add(PathSum& sum, const Vertex* vertex, Sender source, const Rgb& radiance) const;
-    Rgb light_from_fire(const Vertex& vertex, Rng& rng) const;
-    Rgb light_from_emitters(const Vertex& vertex, Rng& rng) const;
-    Rgb light_at_end(const Segment& segment, double pdf, bool delta, const Vertex* vertex) const;
-    Segment segment_along(const Ray& ray) const;
     Vertex in_smoke(const Ray& ray, const Collision& collision, const Rgb& arriving, const Vertex* from) const;
     Vertex on_surface(const SurfacePoint& point, const dvec3& direction, const Rgb& arriving, const Vertex* from) const;
-    float share_of_sample(const Vertex& vertex, const Ray& ray, double pdf) const;
 
-    TracingSettings settings_;
     int bounces_;
-    const Surroundings* surroundings_;
-    TrackingField field_;
-    FireDirections fire_;
-    LineTracker lines_;
+    DirectLight direct_;
 };
 
 }  // namespace brisance

@@ -89,4 +89,20 @@ std::optional<Scatterer::Sample> Scatterer::sample(Rng& rng) const {
     return Sample{drawn->wi, drawn->weight, drawn->pdf, drawn->delta};
 }
 
+std::optional<Scatterer::Sample> Scatterer::sample_particle(Rng& rng) const {
+    if (!on_surface())
+        return sample(rng);
+    const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
+    const std::optional<BsdfSample> drawn = bsdf_->sample(-arriving_, {x, y, z}, Transport::Importance);
+    if (!drawn || leaks(drawn->wi))
+        return std::nullopt;
+    const auto cosine = [&](const dvec3& n, const dvec3& v) { return std::abs(glm::dot(n, v)); };
+    const dvec3 &shading = point_.frame.normal, &geometric = point_.geometric_normal;
+    const double below = cosine(shading, drawn->wi) * cosine(geometric, arriving_);
+    const double above = cosine(geometric, drawn->wi) * cosine(shading, arriving_);
+    if (!(below > 0.0))
+        return std::nullopt;
+    return Sample{drawn->wi, drawn->weight * float(above / below), drawn->pdf, drawn->delta};
+}
+
 }  // namespace brisance

@@ -40,6 +40,9 @@ public:
         bool delta = false;
     };
     std::optional<Sample> sample(Rng& rng) const;
+    // The same for a particle, which carries power along `arriving` and on: the adjoint, with the factor that shading
+    // normals ask for (Veach, Robust Monte Carlo Methods, 1997, section 5.3).
+    std::optional<Sample> sample_particle(Rng& rng) const;
 
 private:
     bool leaks(const dvec3& wi) const;

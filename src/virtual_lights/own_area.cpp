@@ -1,0 +1,66 @@
+#include "virtual_lights/own_area.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/parallel.h"
+#include "core/rng.h"
+
+namespace brisance {
+
+namespace {
+
+constexpr int kRays = 64;
+constexpr int kLayers = 8;  // surfaces one behind the other within one sphere
+
+// What one ray through the sphere meets: the light's weight there over the cosine by which surface is seen.
+double weight_along(const Intersector& surfaces, const LightCover& cover, Ray ray, double length, std::uint32_t index,
+                    VirtualLight& light) {
+    double sum = 0.0;
+    for (int layer = 0; layer < kLayers; ++layer) {
+        const std::optional<SurfaceHit> hit = surfaces.first_hit(ray, length);
+        if (!hit)
+            break;
+        const SurfacePoint point = surface_point(surfaces.scene(), *hit, -ray.direction);
+        const int material = surfaces.scene().meshes[hit->mesh].material;
+        const dvec3 normal = lit_normal(point);
+        const LightShares shares = cover.shares(point.position, normal, material);
+        const double cosine = glm::dot(normal, light.frame.normal);
+        for (int i = 0; i < shares.count; ++i)
+            if (shares.light[i] == index) {
+                sum += shares.weight[i] / cosine;
+                light.spread = std::max(light.spread, std::acos(std::min(cosine, 1.0)));
+            }
+        ray = point.leaving(ray.direction);
+        length -= hit->distance;
+    }
+    return sum;
+}
+
+}  // namespace
+
+void measure_areas(const Intersector& surfaces, const LightCover& cover, std::span<VirtualLight> lights,
+                   std::uint32_t seed) {
+    parallel_for(
+        lights.size(),
+        [&](std::size_t i) {
+            VirtualLight& light = lights[i];
+            Rng rng(Stream::LightArea, i, seed);
+            const double shift = rng.next_double(), turn = rng.next_double();
+            double sum = 0.0;
+            for (int k = 0; k < kRays; ++k) {
+                // Vogel's spiral: even over the disc.
+                const double square = (k + shift) / kRays;
+                const double angle = 2.0 * std::numbers::pi * (turn + k * 0.6180339887498949);
+                const double across = light.radius * std::sqrt(square), height = light.radius * std::sqrt(1.0 - square);
+                const dvec3 start = light.position + light.frame.world_from_local(
+                                                         {across * std::cos(angle), across * std::sin(angle), height});
+                sum += weight_along(surfaces, cover, {start, -light.frame.normal}, 2.0 * height,
+                                    static_cast<std::uint32_t>(i), light);
+            }
+            light.area = std::numbers::pi * light.radius * light.radius * sum / kRays;
+        },
+        16);
+}
+
+}  // namespace brisance

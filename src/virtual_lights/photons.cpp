@@ -1,0 +1,192 @@
+#include "virtual_lights/photons.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "virtual_lights/hemisphere_map.h"
+
+namespace brisance {
+
+namespace {
+
+constexpr std::size_t kBlock = 1024;
+// From here on photons that lose nothing must end, too.
+constexpr int kManyScatterings = 64;
+constexpr float kGoesOn = 0.95f;
+// Where a shading normal leans far from a surface seen at a grazing angle, one photon would outshine all others.
+constexpr double kMostBrighter = 4.0;
+// Sums hold 2^16 times the power that is emitted, in steps of 2^-46 of it.
+constexpr double kSteps = 0x1p46;
+
+float largest(const Rgb& c) {
+    return std::max({c.x, c.y, c.z});
+}
+
+bool finite(const Rgb& c) {
+    return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);
+}
+
+class PhotonPaths {
+public:
+    PhotonPaths(const DirectLight& scene, const BoundingBall& ball, const LightCover& cover,
+                const VirtualLightSettings& settings, LightAccounts& accounts)
+        : scene_(scene), ball_(ball), cover_(cover), seed_(settings.seed), accounts_(accounts) {
+        const double fire = scene.fire().empty() ? 0.0 : scene.fire().power();
+        const double all = emitted_power(scene, ball);
+        total_ = static_cast<std::uint64_t>(std::max(settings.photons, 0));
+        if (fire > 0.0 && total_ > 1)
+            from_fire_ = fire == all
+                             ? total_
+                             : std::clamp<std::uint64_t>(std::llround(fire / all * double(total_)), 1, total_ - 1);
+    }
+
+    std::uint64_t total() const { return total_; }
+
+    void trace(std::uint64_t index, PhotonReport& report) const {
+        Rng rng(Stream::Photon, index, seed_);
+        const bool fire = index < from_fire_;
+        report.from_fire += fire;
+        ++report.photons;
+        const std::optional<EmittedParticle> particle =
+            fire ? scene_.fire().emit(rng) : scene_.surroundings()->emitters().emit(ball_.centre, ball_.radius, rng);
+        if (!particle)
+            return;
+        const Rgb power = particle->power / float(fire ? from_fire_ : total_ - from_fire_);
+        if (!finite(power) || !(largest(power) > 0.0f)) {
+            report.not_finite += !finite(power);
+            return;
+        }
+        report.emitted += luminance(power);
+        follow(particle->ray, power, rng, report);
+    }
+
+private:
+    void follow(Ray ray, Rgb power, Rng& rng, PhotonReport& report) const {
+        for (int turn = 1;; ++turn) {
+            const RaySegment segment = scene_.segment_along(ray);
+            const std::optional<Collision> collision = null_collision_flight(scene_.field(), ray, segment.end, rng);
+            if (!collision && !segment.point) {
+                report.escaped += luminance(power);
+                return;
+            }
+            if (!collision)
+                deposit(segment, power, report);
+            const Scatterer place =
+                collision ? scene_.in_smoke(ray, *collision) : Scatterer(*segment.point, ray.direction);
+            const std::optional<Scatterer::Sample> next = place.sample_particle(rng);
+            if (!next)
+                return;
+            const Rgb left =
+                power * (collision ? scene_.field().albedo(collision->brick, collision->position) : next->weight);
+            const float part = std::min(largest(left) / largest(power), turn > kManyScatterings ? kGoesOn : 1.0f);
+            if (!(rng.next() < part))  // not so for what is not finite
+                return;
+            power = left / part;
+            ray = place.leaving(next->wi);
+        }
+    }
+
+    void deposit(const RaySegment& segment, const Rgb& power, PhotonReport& report) const {
+        const SurfacePoint& point = *segment.point;
+        if (!holds_light(point.material))
+            return;
+        const int material = scene_.surroundings()->scene().meshes[segment.hit->mesh].material;
+        const LightShares shares = cover_.shares(point.position, lit_normal(point), material);
+        (shares.count > 0 ? report.shared : report.unshared) += luminance(power);
+        const dvec3 toward_source = -segment.ray.direction;
+        const double shading = std::abs(glm::dot(point.frame.normal, toward_source));
+        const double geometric = std::abs(glm::dot(point.geometric_normal, toward_source));
+        const auto brighter = static_cast<float>(std::min(shading / std::max(geometric, 1e-9), kMostBrighter));
+        for (int i = 0; i < shares.count; ++i)
+            accounts_.add(shares.light[i], toward_source, power * (shares.weight[i] * brighter));
+    }
+
+    const DirectLight& scene_;
+    BoundingBall ball_;
+    const LightCover& cover_;
+    std::uint32_t seed_;
+    LightAccounts& accounts_;
+    std::uint64_t total_ = 0, from_fire_ = 0;
+};
+
+void add(PhotonReport& to, const PhotonReport& r) {
+    to.photons += r.photons;
+    to.from_fire += r.from_fire;
+    to.not_finite += r.not_finite;
+    to.emitted += r.emitted;
+    to.shared += r.shared;
+    to.unshared += r.unshared;
+    to.escaped += r.escaped;
+}
+
+}  // namespace
+
+LightAccounts::LightAccounts(std::span<const VirtualLight> lights, int profile_resolution, double power)
+    : lights_(lights), resolution_(profile_resolution), unit_(std::max(power, 1e-300) / kSteps) {
+    std::size_t records = 0;
+    for (const VirtualLight& light : lights) {
+        first_.push_back(records);
+        records += light.profile < 0 ? 1 : static_cast<std::size_t>(resolution_) * resolution_;
+    }
+    sums_.resize(3 * records);
+}
+
+void LightAccounts::add(std::size_t light, const dvec3& toward_source, const Rgb& power) {
+    std::size_t record = first_[light];
+    if (lights_[light].profile >= 0)
+        record += texel_of(lights_[light].frame.local_from_world(toward_source), resolution_);
+    for (int c = 0; c < 3; ++c) {
+        std::atomic_ref<std::int64_t> sum(sums_[3 * record + static_cast<std::size_t>(c)]);
+        sum.fetch_add(std::llround(double(power[c]) / unit_), std::memory_order_relaxed);
+    }
+}
+
+Rgb LightAccounts::read(std::size_t record) const {
+    const std::int64_t* const sum = sums_.data() + 3 * record;
+    return {float(double(sum[0]) * unit_), float(double(sum[1]) * unit_), float(double(sum[2]) * unit_)};
+}
+
+BoundingBall ball_around(const DirectLight& scene) {
+    dvec3 low(1e300), high(-1e300);
+    const auto include = [&](const dvec3& p) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    };
+    if (scene.surroundings())
+        for (const SceneMesh& mesh : scene.surroundings()->scene().meshes)
+            for (const vec3& p : mesh.positions)
+                include(dvec3(p));
+    const Medium& medium = scene.field().medium();
+    const BrickLattice& bricks = scene.field().bricks();
+    for (int corner = 0; corner < 8 && !bricks.empty(); ++corner) {
+        const ivec3 brick =
+            bricks.min_brick() + bricks.brick_extent() * ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+        include(dvec3(medium.local_of_node(brick * BrickLattice::kSize)));
+    }
+    if (!(low.x <= high.x))
+        return {};
+    return {0.5 * (low + high), 0.5 * glm::length(high - low)};
+}
+
+double emitted_power(const DirectLight& scene, const BoundingBall& ball) {
+    return (scene.fire().empty() ? 0.0 : scene.fire().power()) +
+           (scene.has_emitters() ? scene.surroundings()->emitters().power(ball.radius) : 0.0);
+}
+
+PhotonReport trace_photons(const DirectLight& scene, const BoundingBall& ball, const LightCover& cover,
+                           const VirtualLightSettings& settings, LightAccounts& accounts) {
+    const PhotonPaths paths(scene, ball, cover, settings, accounts);
+    std::vector<PhotonReport> parts((paths.total() + kBlock - 1) / kBlock);
+    parallel_blocks(paths.total(), kBlock, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            paths.trace(i, parts[begin / kBlock]);
+    });
+    PhotonReport report;
+    for (const PhotonReport& part : parts)
+        add(report, part);
+    return report;
+}
+
+}  // namespace brisance

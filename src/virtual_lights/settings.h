@@ -1,0 +1,42 @@
+// How light from surfaces is gathered: where virtual lights lie, what they hold, and who is asked.
+#pragma once
+
+#include <cstdint>
+
+namespace brisance {
+
+enum class LightPlacement {
+    BlueNoise,  // camera paths' second vertices, thinned out by weighted sample elimination
+    Random      // the same, any of them
+};
+
+enum class LightRadius {
+    Adaptive,  // small where many camera paths arrive
+    Uniform    // one for all
+};
+
+enum class LightSampling {
+    Power,        // a light in proportion to its power, a direction toward it
+    LightTree,    // a light by what it may send to the place, a direction toward it
+    Bsdf,         // a ray by BSDF or phase function, and all lights where it arrives
+    Combined,     // Power and Bsdf by the balance heuristic
+    CombinedTree  // LightTree and Bsdf
+};
+
+struct VirtualLightSettings {
+    int count = 12000;  // virtual lights; 0: none, all surface light is found by paths
+    LightPlacement placement = LightPlacement::BlueNoise;
+    double candidates_per_pixel = 0.25;  // camera paths; never fewer than eight per light
+    LightRadius radius = LightRadius::Adaptive;
+    int neighbours = 128;         // candidates from whose distance their density is taken
+    double radius_factor = 1.1;   // radius over the distance that a light would keep from others
+    int photons = 1000000;        // particles from fire and emitters
+    int profile_resolution = 16;  // of directions of lights that are not plain Lambert: texels along a side
+    LightSampling sampling = LightSampling::Combined;
+    bool extension = true;   // paths go on where a ray's footprint covers few lights
+    double n_min = 40.0;     // lights in the footprint: with fewer the path goes on, ...
+    double n_max = 80.0;     // ... with more it ends; between them it does both in part
+    std::uint32_t seed = 0;  // other seeds draw other random numbers
+};
+
+}  // namespace brisance

@@ -1,0 +1,186 @@
+// Asking virtual lights: by a light, by a ray, and by both.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "virtual_lights/virtual_lights.h"
+
+namespace brisance {
+
+namespace {
+
+// Extended paths are ended by roulette, as the path tracer's are.
+constexpr float kRouletteBelow = 0.5f;
+constexpr int kManyScatterings = 64;
+constexpr float kGoesOn = 0.99f;
+
+float largest(const Rgb& c) {
+    return std::max({c.x, c.y, c.z});
+}
+
+bool survives(Rgb& throughput, int order, Rng& rng) {
+    float part = largest(throughput);
+    if (order > kManyScatterings)
+        part = std::min(part, kGoesOn);
+    else if (part >= kRouletteBelow)
+        return true;
+    if (!(rng.next() < part))
+        return false;
+    throughput /= part;
+    return true;
+}
+
+// A base colour in place of another.
+Rgb recoloured(const Rgb& to, const Rgb& from) {
+    return {from.x > 0.0f ? to.x / from.x : 0.0f, from.y > 0.0f ? to.y / from.y : 0.0f,
+            from.z > 0.0f ? to.z / from.z : 0.0f};
+}
+
+}  // namespace
+
+// A surface at the end of a ray, and the lights that speak for it.
+struct VirtualLights::Seen {
+    const RaySegment& segment;
+    LightShares shares;
+};
+
+VirtualLights::Seen VirtualLights::seen_by(const RaySegment& segment) const {
+    Seen seen{segment, {}};
+    if (holds_light(segment.point->material)) {
+        const int material = scene_.surroundings()->scene().meshes[segment.hit->mesh].material;
+        seen.shares = cover_.shares(segment.point->position, lit_normal(*segment.point), material);
+    }
+    return seen;
+}
+
+// What one of the lights adds to the radiance seen.
+Rgb VirtualLights::reflected(const Seen& seen, int share) const {
+    const VirtualLight& light = lights_[seen.shares.light[share]];
+    const SurfaceMaterial& there = seen.segment.point->material;
+    if (light.profile < 0)
+        return light.irradiance * there.base_colour * (seen.shares.weight[share] / std::numbers::pi_v<float>);
+    const Rgb radiance = seen.shares.weight[share] * profiles_.radiance(light, -seen.segment.ray.direction);
+    const bool metal = there.metallic == 1.0f && light.material.metallic == 1.0f;
+    return metal ? radiance * recoloured(there.base_colour, light.material.base_colour) : radiance;
+}
+
+// How far the lights are believed, 0..1: by how many of them would lie in the footprint of the ray.
+double VirtualLights::trust(const Seen& seen, double pdf) const {
+    if (seen.shares.count == 0)
+        return 0.0;
+    if (!settings_.extension)
+        return 1.0;
+    double area = 0.0;
+    for (int i = 0; i < seen.shares.count; ++i)
+        area += seen.shares.weight[i] * lights_[seen.shares.light[i]].area;
+    const RaySegment& segment = seen.segment;
+    const double cosine = std::abs(glm::dot(segment.point->geometric_normal, segment.ray.direction));
+    const double n = segment.end * segment.end / (pdf * cosine * area);
+    if (!(n < settings_.n_max))  // pdf * cosine of 0 as well
+        return 1.0;
+    return std::clamp((n - settings_.n_min) / (settings_.n_max - settings_.n_min), 0.0, 1.0);
+}
+
+Rgb VirtualLights::from_chosen_light(const Scatterer& place, Rng& rng) const {
+    const std::optional<LightTree::Choice> choice = choice_.choose(place.lit(), rng.next_double());
+    if (!choice)
+        return Rgb(0.0f);
+    const VirtualLight& light = lights_[choice->light];
+    const dvec3 direction = sample_toward(light, place.lit(), rng);
+    const Scatterer::Value scattered = place.at(direction);
+    if (scattered.value == Rgb(0.0f))
+        return Rgb(0.0f);
+    // What lies beyond the sphere, or before it, is not the light's.
+    const double distance = glm::length(light.position - place.position());
+    RaySegment segment{place.leaving(direction), 0.0, std::nullopt, std::nullopt};
+    segment.hit = scene_.surroundings()->intersector().first_hit(segment.ray, distance + light.radius);
+    if (!segment.hit || segment.hit->distance < 0.999 * distance - light.radius)
+        return Rgb(0.0f);
+    segment.end = segment.hit->distance;
+    segment.point = surface_point(scene_.surroundings()->scene(), *segment.hit, -direction);
+    const Seen seen = seen_by(segment);
+    for (int i = 0; i < seen.shares.count; ++i) {
+        if (seen.shares.light[i] != choice->light)
+            continue;
+        const double pdf = choice->probability * pdf_toward(light, place.lit(), direction);
+        const bool both =
+            settings_.sampling == LightSampling::Combined || settings_.sampling == LightSampling::CombinedTree;
+        const double density = both ? pdf + scattered.pdf : pdf;
+        const double believed = trust(seen, scattered.pdf);
+        if (!(density > 0.0) || believed == 0.0)
+            break;
+        const double through = scene_.lines().transmittance(segment.ray, segment.end, rng);
+        return scattered.value * reflected(seen, i) * float(believed * through / density);
+    }
+    return Rgb(0.0f);
+}
+
+// All lights that speak for the place where a ray ends which `place` drew: their radiance, each its share.
+Rgb VirtualLights::at_end_of_ray(const Scatterer& place, const Seen& seen, double pdf) const {
+    Rgb sum(0.0f);
+    if (settings_.sampling == LightSampling::Power || settings_.sampling == LightSampling::LightTree)
+        return sum;
+    for (int i = 0; i < seen.shares.count; ++i) {
+        const std::size_t light = seen.shares.light[i];
+        const double other = choice_.by_lights()
+                                 ? choice_.probability(place.lit(), light) *
+                                       pdf_toward(lights_[light], place.lit(), seen.segment.ray.direction)
+                                 : 0.0;
+        sum += reflected(seen, i) * float(pdf / (pdf + other));
+    }
+    return sum;
+}
+
+// The place itself asks for what surfaces reflect toward it; places along an extended path for everything.
+Rgb VirtualLights::shade(const Scatterer& asking, Rng& rng) const {
+    Rgb sum(0.0f), throughput(1.0f);
+    if (!shines_)
+        return sum;
+    Scatterer place = asking;
+    float light_lines = 0.0f;
+    for (int order = 0; survives(throughput, order, rng); ++order) {
+        if (choice_.by_lights() && !place.only_delta())
+            sum += throughput * from_chosen_light(place, rng);
+        if (light_lines > 0.0f && (light_lines == 1.0f || rng.next() < light_lines))
+            sum += throughput * scene_.from_fire(place, light_lines, rng);
+        if (order > 0 && scene_.has_emitters() && !place.only_delta())
+            sum += throughput * scene_.from_emitters(place, rng);
+        const std::optional<Scatterer::Sample> turn = place.sample(rng);
+        if (!turn)
+            break;
+        const RaySegment segment = scene_.segment_along(place.leaving(turn->wi));
+        throughput *= turn->weight;
+        std::optional<Collision> collision;
+        if (order > 0) {
+            const LineResult line = scene_.lines().follow_path(segment.ray, rng, segment.end);
+            collision = line.collision;
+            if (line.radiance != Rgb(0.0f))
+                sum += throughput * line.radiance *
+                       (turn->delta ? 1.0f : scene_.share_of_sample(light_lines, segment.ray, turn->pdf));
+            if (!collision)
+                sum += throughput * scene_.at_end(segment, turn->pdf, turn->delta, &place);
+        } else if (segment.hit) {
+            throughput *= float(scene_.lines().transmittance(segment.ray, segment.end, rng));
+        }
+        if (collision) {
+            place = scene_.in_smoke(segment.ray, *collision);
+            throughput *= scene_.field().albedo(collision->brick, collision->position);
+            light_lines = scene_.lines_in_smoke(*collision);
+            continue;
+        }
+        if (!segment.hit)
+            break;
+        if (!turn->delta) {
+            const Seen seen = seen_by(segment);
+            const auto believed = static_cast<float>(trust(seen, turn->pdf));
+            if (believed > 0.0f)
+                sum += throughput * believed * at_end_of_ray(place, seen, turn->pdf);
+            throughput *= 1.0f - believed;
+        }
+        place = Scatterer(*segment.point, segment.ray.direction);
+        light_lines = scene_.lines_on_surface(place);
+    }
+    return sum;
+}
+
+}  // namespace brisance

@@ -1,0 +1,39 @@
+// What one virtual light is: a patch of surface and the light that arrives there, to be reflected.
+#pragma once
+
+#include <cstdint>
+
+#include "geometry/surface_point.h"
+
+namespace brisance {
+
+struct VirtualLight {
+    dvec3 position{0.0};  // local [m]
+    ShadingFrame frame;   // around the surface's normal, on the side that is lit
+    double radius = 0.0;  // of the sphere within which surfaces take part [m]
+    double area = 0.0;    // of surface that the light speaks for: what it shares with others counts in part [m^2]
+    double spread = 0.0;  // largest angle of the surface's normals to its own [rad]
+    int scene_material = 0;
+    SurfaceMaterial material;   // at its position
+    Rgb irradiance{0.0f};       // mean over its area [W/m^2]
+    std::int32_t profile = -1;  // of light reflected, by direction; -1: plain Lambert, `irradiance` is all there is
+    double power = 0.0;         // reflected, luminance [W]
+    double intensity = 0.0;     // the largest in any direction, luminance [W/sr]
+};
+
+// Smoother than this the map of directions cannot hold what is reflected.
+inline constexpr float kLeastRoughness = 0.25f;
+
+// Whether what a surface reflects can be held by virtual lights. Where not, paths go on.
+inline bool holds_light(const SurfaceMaterial& m) {
+    if (m.transmission > 0.0f)
+        return false;
+    return needs_energy_tables(m) ? m.roughness >= kLeastRoughness : m.base_colour != Rgb(0.0f);
+}
+
+// The normal on the side that the point was seen from.
+inline dvec3 lit_normal(const SurfacePoint& point) {
+    return point.front ? point.geometric_normal : -point.geometric_normal;
+}
+
+}  // namespace brisance

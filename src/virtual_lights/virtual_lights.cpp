@@ -1,0 +1,109 @@
+#include "virtual_lights/virtual_lights.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "core/error.h"
+#include "core/stopwatch.h"
+#include "virtual_lights/own_area.h"
+#include "virtual_lights/placement.h"
+
+namespace brisance {
+
+namespace {
+
+// Fewer candidates than this per light leave elimination little to choose from.
+constexpr double kLeastCandidates = 8.0;
+
+void require(bool holds, const char* what) {
+    if (!holds)
+        throw Error(ExitCode::Usage, std::string("virtual lights: ") + what);
+}
+
+void check(const VirtualLightSettings& s) {
+    require(s.count >= 0, "count must not be negative");
+    require(s.photons >= 0, "photons must not be negative");
+    require(s.candidates_per_pixel >= 0.0 && s.candidates_per_pixel <= 1e3, "candidates_per_pixel must lie in 0..1000");
+    require(s.neighbours >= 1, "neighbours must be at least 1");
+    require(s.radius_factor > 0.0 && s.radius_factor <= 10.0, "radius_factor must lie above 0 and not above 10");
+    require(s.profile_resolution >= 2 && s.profile_resolution <= 128, "profile_resolution must lie in 2..128");
+    require(s.n_min >= 0.0 && s.n_max >= s.n_min, "n_min must not be negative, and n_max not below it");
+}
+
+// Seconds since the last call.
+class Lap {
+public:
+    double take() {
+        const double now = watch_.seconds(), passed = now - before_;
+        before_ = now;
+        return passed;
+    }
+
+private:
+    Stopwatch watch_;
+    double before_ = 0.0;
+};
+
+}  // namespace
+
+VirtualLights::VirtualLights(const DirectLight& scene, const PixelCamera& camera, const VirtualLightSettings& settings)
+    : scene_(scene), settings_(settings), choice_({}, settings.sampling) {
+    check(settings);
+    shines_ =
+        scene.surroundings() && scene.surroundings()->has_surfaces() && (scene.has_emitters() || !scene.fire().empty());
+    if (shines_ && settings.count > 0 && settings.photons > 0)
+        build(camera);
+}
+
+void VirtualLights::build(const PixelCamera& camera) {
+    Lap lap;
+    const Scene& scene = scene_.surroundings()->scene();
+    const double paths =
+        std::max(settings_.candidates_per_pixel * camera.width * camera.height, kLeastCandidates * settings_.count);
+    const std::vector<LightCandidate> candidates =
+        light_candidates(scene_, camera, static_cast<std::size_t>(paths), settings_.seed);
+    report_.candidates = candidates.size();
+    report_.candidate_seconds = lap.take();
+    lights_ = place_lights(scene, candidates, settings_);
+    report_.elimination_seconds = lap.take();
+
+    cover_ = LightCover(lights_);
+    measure_areas(scene_.surroundings()->intersector(), cover_, lights_, settings_.seed);
+    for (VirtualLight& light : lights_)
+        if (needs_energy_tables(light.material))
+            light.profile = static_cast<std::int32_t>(report_.profiles++);
+    report_.area_seconds = lap.take();
+
+    const BoundingBall ball = ball_around(scene_);
+    LightAccounts accounts(lights_, settings_.profile_resolution, emitted_power(scene_, ball));
+    report_.photons = trace_photons(scene_, ball, cover_, settings_, accounts);
+    report_.photon_bytes = accounts.bytes();
+    report_.photon_seconds = lap.take();
+
+    finish_lights(accounts);
+    report_.profile_seconds = lap.take();
+    choice_ = LightChoice(lights_, settings_.sampling);
+    report_.choice_seconds = lap.take();
+    report_.lights = lights_.size();
+    report_.bytes = lights_.size() * sizeof(VirtualLight) + cover_.bytes() + profiles_.bytes() + choice_.bytes();
+}
+
+// A light that speaks for no area, as none of the rays that measured it found any, gives back nothing.
+void VirtualLights::finish_lights(const LightAccounts& accounts) {
+    for (VirtualLight& light : lights_)
+        light.area = std::max(light.area, 1e-6 * light.radius * light.radius);
+    profiles_ = Profiles(lights_, accounts, settings_.profile_resolution);
+    for (std::size_t i = 0; i < lights_.size(); ++i) {
+        VirtualLight& light = lights_[i];
+        if (light.profile >= 0) {
+            light.power = luminance(profiles_.exitance(light)) * light.area;
+            light.intensity = profiles_.brightest(light) * light.area;
+        } else {
+            light.irradiance = accounts.whole(i) / float(light.area);
+            light.power = luminance(light.irradiance * light.material.base_colour) * light.area;
+            light.intensity = light.power / std::numbers::pi;
+        }
+    }
+}
+
+}  // namespace brisance

@@ -1,0 +1,73 @@
+// Light that surfaces reflect toward surfaces and smoke, by virtual lights where the camera can see their work.
+//
+// [1] T. Li, W. Wang, D. Lin, C. Yuksel, Virtual Blue Noise Lighting, HPG 2022.
+//
+// Lights lie where camera paths meet surfaces a second time, thinned out to blue noise (placement.h); photons are
+// shared out among the lights around each hit (photons.h); a place that asks draws one light or one ray (shading.cpp).
+// It is an interpolation of light over the surfaces themselves: what a ray meets there decides, so that nothing is seen
+// through walls, and all ways of sampling have the same mean.
+//
+// Departs from [1]: lights share what they speak for by weights that sum up to 1, in receiving and in giving, with the
+// area of each measured: kernels of fixed area darken at edges. Plain Lambert surfaces keep the light that arrives and
+// take the colour of the place where it leaves: textures stay sharp. Where no light speaks for a place, paths go on.
+#pragma once
+
+#include "tracing/direct_light.h"
+#include "virtual_lights/candidates.h"
+#include "virtual_lights/cover.h"
+#include "virtual_lights/light_choice.h"
+#include "virtual_lights/photons.h"
+#include "virtual_lights/profile.h"
+
+namespace brisance {
+
+struct VirtualLightReport {
+    std::uint64_t candidates = 0, lights = 0, profiles = 0;
+    PhotonReport photons;
+    double candidate_seconds = 0.0, elimination_seconds = 0.0, area_seconds = 0.0, photon_seconds = 0.0,
+           profile_seconds = 0.0, choice_seconds = 0.0;
+    std::uint64_t bytes = 0;         // of what stays
+    std::uint64_t photon_bytes = 0;  // needed besides while photons are traced
+};
+
+class VirtualLights {
+public:
+    // Keeps a reference to the scene. Without surfaces, or where nothing shines, nothing is built and shade() is black.
+    // Throws Error Usage for settings out of range.
+    VirtualLights(const DirectLight& scene, const PixelCamera& camera, const VirtualLightSettings& settings);
+
+    // One sample of the radiance [W/(m^2 sr)] that a place scatters of what surfaces reflect toward it: the ledger's
+    // cell SS for a surface, MS for smoke (without its albedo). Light that emitters or the fire send straight to the
+    // place is not part of it. Its mean is right up to the lights' own blur and noise; with extension, that is only
+    // found where many lights lie in a ray's footprint.
+    Rgb shade(const Scatterer& place, Rng& rng) const;
+
+    const std::vector<VirtualLight>& lights() const { return lights_; }
+    // What a light reflects in all directions [W].
+    Rgb flux(const VirtualLight& light) const {
+        return float(light.area) * (light.profile >= 0 ? profiles_.exitance(light)
+                                                       : light.irradiance * light.material.base_colour);
+    }
+    const VirtualLightReport& report() const { return report_; }
+
+private:
+    struct Seen;
+    void build(const PixelCamera& camera);
+    void finish_lights(const LightAccounts& accounts);
+    Seen seen_by(const RaySegment& segment) const;
+    Rgb reflected(const Seen& seen, int share) const;
+    double trust(const Seen& seen, double pdf) const;
+    Rgb from_chosen_light(const Scatterer& place, Rng& rng) const;
+    Rgb at_end_of_ray(const Scatterer& place, const Seen& seen, double pdf) const;
+
+    const DirectLight& scene_;
+    VirtualLightSettings settings_;
+    bool shines_ = false;
+    std::vector<VirtualLight> lights_;
+    LightCover cover_;
+    Profiles profiles_;
+    LightChoice choice_;
+    VirtualLightReport report_;
+};
+
+}  // namespace brisance

@@ -1,0 +1,45 @@
+// Rooms of a few quads, with a camera inside.
+#pragma once
+
+#include <memory>
+
+#include "tracing/estimate.h"
+#include "tracing/path_tracer.h"
+#include "virtual_lights/virtual_lights.h"
+
+namespace brisance::testing {
+
+QuickMaterial lambert(const Rgb& colour);
+QuickMaterial rough_metal(const Rgb& colour, float roughness);
+
+// The inner side of the box from `low` to `high`, all walls of one material; their fronts look inward.
+void add_walls(SceneSettings& scene, const dvec3& low, const dvec3& high, const QuickMaterial& material);
+// The outer side of a box.
+void add_block(SceneSettings& scene, const dvec3& low, const dvec3& high, const QuickMaterial& material);
+void add_lamp(SceneSettings& scene, const dvec3& low, const dvec3& high, double height, const Rgb& radiance);
+
+// A cube of 2 m with a red and a green wall, a lamp under its ceiling and a block on its floor.
+SceneSettings coloured_room();
+
+struct Room {
+    explicit Room(const SceneSettings& settings, Medium m = {});
+
+    // From the middle of the front wall through the whole room; 64 x 64 pixels.
+    static Ray ray(double x, double y);
+    static PixelCamera camera();
+    VirtualLights lights(const VirtualLightSettings& settings) const;
+
+    // What virtual lights, or the path tracer, bring to the cell SS along one ray of the camera through [0, 1]^2.
+    Rgb by_lights(const VirtualLights& lights, double x, double y, Rng& rng) const;
+    Rgb by_paths(double x, double y, Rng& rng) const;
+
+    Medium medium;
+    Surroundings surroundings;
+    DirectLight direct;
+    PathTracer tracer;
+};
+
+// Few lights and photons, for tests that compare with each other.
+VirtualLightSettings few_lights();
+
+}  // namespace brisance::testing

@@ -1,0 +1,92 @@
+// All ways of asking the same lights have one mean, and threads change nothing.
+#include <gtest/gtest.h>
+
+#include "core/parallel.h"
+#include "room.h"
+
+namespace brisance {
+namespace {
+
+using namespace testing;
+
+constexpr LightSampling kSamplings[] = {LightSampling::Power, LightSampling::LightTree, LightSampling::Bsdf,
+                                        LightSampling::Combined, LightSampling::CombinedTree};
+
+SceneSettings glossy_room() {
+    SceneSettings scene = coloured_room();
+    scene.quads[2].material = rough_metal(Rgb(0.9f, 0.7f, 0.4f), 0.4f);  // floor
+    return scene;
+}
+
+Estimate mean_of(const Room& room, const VirtualLights& lights, std::uint64_t per_batch) {
+    return estimate(3, per_batch, [&](const dvec3& place, Rng& rng, double* out) {
+        const Rgb seen = room.by_lights(lights, place.x, place.y, rng);
+        for (int c = 0; c < 3; ++c)
+            out[c] = seen[c];
+    });
+}
+
+void expect_one_mean(const Room& room, VirtualLightSettings settings) {
+    settings.sampling = LightSampling::Bsdf;
+    const Estimate truth = mean_of(room, room.lights(settings), 256);
+    for (const LightSampling sampling : kSamplings) {
+        settings.sampling = sampling;
+        const Estimate other = mean_of(room, room.lights(settings), 256);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(other.mean[c], truth.mean[c], kSigmas * std::hypot(other.error[c], truth.error[c]))
+                << "sampling " << static_cast<int>(sampling) << ", channel " << c;
+    }
+}
+
+TEST(Sampling, HasOneMeanInADiffuseRoom) {
+    expect_one_mean(Room(coloured_room()), few_lights());
+}
+
+TEST(Sampling, HasOneMeanInAGlossyRoom) {
+    expect_one_mean(Room(glossy_room()), few_lights());
+}
+
+TEST(Sampling, HasOneMeanWithoutExtension) {
+    VirtualLightSettings settings = few_lights();
+    settings.extension = false;
+    expect_one_mean(Room(glossy_room()), settings);
+}
+
+TEST(Sampling, HasOneMeanWithLesserLights) {
+    VirtualLightSettings settings = few_lights();
+    settings.placement = LightPlacement::Random;
+    expect_one_mean(Room(coloured_room()), settings);
+    settings.radius = LightRadius::Uniform;
+    expect_one_mean(Room(coloured_room()), settings);
+}
+
+// Some pixels' values, and all of the lights, to the bit.
+std::vector<float> fingerprint(int threads) {
+    const ThreadLimit limit(threads);
+    const Room room(glossy_room());
+    const VirtualLights lights = room.lights(few_lights());
+    std::vector<float> out;
+    for (const VirtualLight& light : lights.lights())
+        for (const double x : {light.position.x, light.area, light.power, light.intensity})
+            out.push_back(static_cast<float>(x));
+    for (int i = 0; i < 200; ++i) {
+        Rng rng(Stream::Path, static_cast<std::uint64_t>(i));
+        const double x = rng.next_double(), y = rng.next_double();
+        const Rgb seen = room.by_lights(lights, x, y, rng);
+        out.insert(out.end(), {seen.x, seen.y, seen.z});
+    }
+    const PhotonReport& photons = lights.report().photons;
+    for (const double x : {photons.emitted, photons.shared, photons.unshared, photons.escaped})
+        out.push_back(static_cast<float>(x));
+    return out;
+}
+
+TEST(Threads, ChangeNoBit) {
+    const std::vector<float> one = fingerprint(1);
+    EXPECT_GT(one.size(), 2000u);
+    EXPECT_EQ(one, fingerprint(2));
+    EXPECT_EQ(one, fingerprint(8));
+}
+
+}  // namespace
+}  // namespace brisance
