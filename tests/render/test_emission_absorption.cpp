@@ -82,7 +82,7 @@ TEST(EmissionAbsorption, ASlabBehindASlabIsSeenThroughIt) {
         r.flame = [](const ivec3& n) { return n.z < 28 ? 3.0f : 0.5f; };
         const double first = 16.0 * voxel, second = 32.0 * voxel;
         const double expected = -3.0 * std::expm1(-first) - 0.5 * std::exp(-first) * std::expm1(-second);
-        EXPECT_NEAR(look(make_medium(r), {0.0, 0.0, -3.0}, {0, 0, 1}).v.x / expected, 1.0, 2e-4);
+        EXPECT_NEAR(look(make_medium(r), {0.0, 0.0, -3.0}, {0, 0, 1}).cells.at(Cell::V).x / expected, 1.0, 2e-4);
     }
 }
 
@@ -92,7 +92,8 @@ TEST(EmissionAbsorption, BallsRadiateAsTheirChordsSay) {
         for (const double b : {0.0, 0.3, 0.6, 0.9}) {
             const double chord = 2.0 * radius_depth * std::sqrt(1.0 - b * b);
             const RaySum sum = look(medium, {b, 0.011, -3.0}, {0, 0, 1});
-            EXPECT_NEAR(sum.cells.at(Cell::V).x / -std::expm1(-chord), 1.0, b > 0.8 ? 0.03 : 0.01) << radius_depth << ", b = " << b;
+            EXPECT_NEAR(sum.cells.at(Cell::V).x / -std::expm1(-chord), 1.0, b > 0.8 ? 0.03 : 0.01)
+                << radius_depth << ", b = " << b;
         }
     }
 }
@@ -136,9 +137,9 @@ TEST(EmissionAbsorption, FinerStepsThroughNoiseConverge) {
     r.flame = [](const ivec3& n) { return testing::noise(n, 2); };
     const Medium medium = make_medium(r);
     const dvec3 origin(-0.3, 0.2, -5.0), direction(0.1, 0.05, 1.0);
-    const double fine = look(medium, origin, direction, 64).v.x;
-    EXPECT_NEAR(look(medium, origin, direction, 2).v.x / fine, 1.0, 0.01);
-    EXPECT_NEAR(look(medium, origin, direction, 16).v.x / fine, 1.0, 1e-3);
+    const double fine = look(medium, origin, direction, 64).cells.at(Cell::V).x;
+    EXPECT_NEAR(look(medium, origin, direction, 2).cells.at(Cell::V).x / fine, 1.0, 0.01);
+    EXPECT_NEAR(look(medium, origin, direction, 16).cells.at(Cell::V).x / fine, 1.0, 1e-3);
 }
 
 TEST(EmissionAbsorption, PhiOneIsRightForEveryDepth) {

@@ -212,7 +212,7 @@ TEST(Picture, LightAskedForAlongTheRayIsLightFromTheField) {
     settings.layers = PictureSettings::layers_of({Cell::V, Cell::MV});
     Progress silent;
     const Camera camera(front(), medium);
-    const CellField lit(medium, constant, {}), dark(medium, {}, {});
+    const CellField lit(medium, {constant, {}, {}, {}}), dark(medium);
     const Image cached = render_picture(lit, camera, settings, {}, silent);
     const LightPoints same = [&](const std::vector<MarchPoint>& points, std::vector<PointLighting>& lighting) {
         ASSERT_EQ(points.size(), lighting.size());

@@ -220,17 +220,19 @@ TEST(MaterialTextures, IndicesBeyondTheListsAreRefused) {
         gltf.json["textures"][0][key] = 5;
         EXPECT_EQ(failure_of_loading(gltf).code, ExitCode::BadData) << key;
     }
-    for (const json wrong : {json(5), json(-1), json(1e300), json(-1e300)}) {
+    for (const json& wrong : {json(5), json(-1), json(1e300), json(-1e300)}) {
         TestGltf gltf = textured();
         gltf.json["materials"][0]["extensions"]["KHR_materials_specular"]["specularTexture"] = {{"index", 0},
                                                                                                 {"texCoord", wrong}};
-        if (wrong == 5)
+        if (wrong == 5) {
             EXPECT_TRUE(load(gltf).told.warned("uv-sets"));
-        else
+        } else {
             EXPECT_EQ(failure_of_loading(gltf).code, ExitCode::BadData) << wrong;
+        }
         gltf.json["materials"][0]["extensions"]["KHR_materials_specular"]["specularTexture"] = {{"index", wrong}};
-        if (wrong != -1)
+        if (wrong != -1) {
             EXPECT_EQ(failure_of_loading(gltf).code, ExitCode::BadData) << wrong;
+        }
     }
     TestGltf no_source = textured();
     no_source.json["textures"][0].erase("source");
