@@ -32,6 +32,13 @@ Shot shot_of(const nlohmann::json& json) {
     shot.camera.vertical_fov_degrees = c["vfov_degrees"];
     shot.camera.width = c["width"];
     shot.camera.height = c["height"];
+    for (const auto& surface : json.value("surfaces", nlohmann::json::array())) {
+        QuickQuad quad;
+        for (int k = 0; k < 4; ++k)
+            quad.corners[k] = triple(surface["quad"][k]);
+        quad.material.colour = Rgb(surface["reflectance"].get<float>());
+        shot.scene.quads.push_back(quad);
+    }
     return shot;
 }
 

@@ -83,6 +83,32 @@ void expect_same(const Comparison& c, const std::string& what) {
         100.0 * std::sqrt((std::max(c.bias.sum, 0.0) + 2.0 * c.bias.error()) / c.norm));
 }
 
+// The same with surfaces. Its paths are noisier: fewer of them, and a mean known to 0.5 %.
+TEST(SurfacePathReferences, FloorAndWallAroundTheExplosion) {
+    const char* data = std::getenv("BRISANCE_DATA");
+    if (!data)
+        GTEST_SKIP() << "BRISANCE_DATA is not set: no reference images";
+    testing::ReferenceShot reference = testing::reference_shot(data, "ember_floor");
+    reference.shot.method = RenderMethod::Path;
+    reference.shot.tracing.samples = 32;
+    Progress silent;
+    const std::vector<Image> halves = render_frame(reference.shot, reference.volume, 0, silent).halves;
+    ASSERT_EQ(halves.size(), 2u);
+    const auto whole = [](const Image& image) {
+        Pixels sum(std::size_t(image.width) * image.height);
+        for (std::size_t p = 0; p < sum.size(); ++p)
+            sum[p] = image.layer("").pixels[4 * p];
+        return sum;
+    };
+    const Comparison c = compare(whole(halves[0]), whole(halves[1]), read_reference(reference.pictures + ".all.A.exr"),
+                                 read_reference(reference.pictures + ".all.B.exr"));
+    std::printf("ember_floor: mean %+.3f %% +- %.3f %%, bias %+.2f standard errors\n", 100.0 * c.mean,
+                100.0 * c.mean_error, c.bias.sum / c.bias.error());
+    EXPECT_LT(std::abs(c.mean), 3.0 * std::hypot(c.mean_error, 1e-3));
+    EXPECT_LT(std::abs(c.mean), 5e-3);
+    EXPECT_LT(c.bias.sum, 4.0 * c.bias.error());
+}
+
 class PathReferences : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(PathReferences, AreWhatThePathTracerTendsTo) {

@@ -30,6 +30,25 @@ Difference difference(const Image& image, const std::vector<std::string>& cells,
     return {std::sqrt(std::max(square, 0.0) / norm), sum / reference_sum - 1.0};
 }
 
+void print(const std::string& what, const Difference& d) {
+    std::printf("%s: error %.3f %%, mean %+.3f %%\n", what.c_str(), 100.0 * d.error, 100.0 * d.mean);
+}
+
+// The fire lights a floor and a wall, they light the smoke, and each other: all cells but those of lamps.
+TEST(SurfaceReferences, FloorAndWallAroundTheExplosion) {
+    const char* data = std::getenv("BRISANCE_DATA");
+    if (!data)
+        GTEST_SKIP() << "BRISANCE_DATA is not set: no reference images";
+    testing::ReferenceShot reference = testing::reference_shot(data, "ember_floor");
+    reference.shot.camera.samples_per_axis = 2;
+    Progress silent;
+    const Image image = render_frame(reference.shot, reference.volume, 0, silent).image;
+    const Difference d = difference(image, {"V", "MV", "MM", "MS", "SV", "SM", "SS"}, reference.pictures + ".all");
+    print("ember_floor all", d);
+    EXPECT_LT(d.error, 0.03);
+    EXPECT_LT(std::abs(d.mean), 0.005);
+}
+
 class References : public ::testing::TestWithParam<const char*> {};
 
 // Bounds are about a fifth above what was measured with the default (final) settings.

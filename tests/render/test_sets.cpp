@@ -1,0 +1,148 @@
+// Whole frames with surfaces: the many-light methods against the path tracer, cell by cell, on a set of our own.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/parallel.h"
+#include "fixtures/media.h"
+#include "fixtures/sets.h"
+#include "render/render_frame.h"
+
+namespace brisance {
+namespace {
+
+using namespace testing;
+
+constexpr int kWidth = 48, kHeight = 36;
+
+// A ball of fire and smoke above a floor, before a wall, beside a screen that hides it from part of the floor.
+Scene stage(const Medium& medium) {
+    Scene scene;
+    scene.origin = medium.world_of_local(vec3(0.0f));
+    add_quad(scene, {-4, -4, -1.3f}, {8, 0, 0}, {0, 8, 0}, lambert(0.6f));
+    SceneMaterial wall = lambert(0.4f);
+    wall.surface.specular = 1.0f;
+    wall.surface.roughness = 0.6f;
+    add_quad(scene, {-4, 2, -1.3f}, {8, 0, 0}, {0, 0, 5}, wall);
+    add_quad(scene, {1.4f, -1.0f, -1.3f}, {0, 1.5f, 0}, {0, 0, 1.2f}, lambert(0.3f));
+    return scene;
+}
+
+Shot shot_of(RenderMethod method) {
+    Shot shot;
+    shot.method = method;
+    shot.camera_given = true;
+    shot.camera.eye = {1.0, -6.0, 1.0};
+    shot.camera.target = {0.3, 0.0, -0.4};
+    shot.camera.vertical_fov_degrees = 40.0;
+    shot.camera.width = kWidth;
+    shot.camera.height = kHeight;
+    shot.camera.samples_per_axis = 4;
+    shot.tracing.samples = 128;
+    shot.virtual_lights.count = 2000;
+    shot.virtual_lights.photons = 200000;
+    return shot;
+}
+
+std::vector<LightSettings> lamps() {
+    LightSettings lamp;
+    lamp.position = {-2.0, -2.0, 1.5};
+    lamp.power = Rgb(2.0f);
+    return {lamp};
+}
+
+struct Whole {
+    double sum = 0.0, error = 0.0;
+};
+
+Whole whole(const Layer& layer) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < layer.pixels.size(); i += layer.channels.size())
+        sum += layer.pixels[i];
+    return {sum / (double(kWidth) * kHeight), 0.0};
+}
+
+// The picture's mean in every cell. What the methods are known to: hierarchies 2 %, and noise, by the tracer's halves.
+TEST(Sets, EveryCellIsThePathTracers) {
+    const Medium medium = make_medium([] {
+        Recipe r = glowing_ball(20, 3.0f);
+        r.settings.smoke.albedo = Rgb(0.8f);
+        return r;
+    }());
+    const Surroundings surroundings(stage(medium), lamps());
+    Progress silent;
+    const RenderedFrame grid = render_medium(shot_of(RenderMethod::LightingGrid), medium, silent, &surroundings);
+    const RenderedFrame paths = render_medium(shot_of(RenderMethod::Path), medium, silent, &surroundings);
+    double all = 0.0, difference = 0.0;
+    for (const std::string& cell : grid.statistics.cells) {
+        const double ours = whole(grid.image.layer(cell)).sum, truth = whole(paths.image.layer(cell)).sum;
+        const double noise = std::abs(whole(paths.halves[0].layer(cell)).sum - whole(paths.halves[1].layer(cell)).sum);
+        EXPECT_NEAR(ours, truth, 0.05 * truth + 2.0 * noise + 1e-4) << cell;
+        std::printf("%s %.5f, paths %.5f (%+.2f %%)\n", cell.c_str(), ours, truth, 100.0 * (ours / truth - 1.0));
+        all += truth;
+        difference += ours - truth;
+    }
+    EXPECT_EQ(grid.statistics.cells, (std::vector<std::string>{"V", "MV", "MM", "MS", "MA", "SV", "SM", "SS", "SA"}));
+    EXPECT_LT(std::abs(difference), 0.015 * all);
+}
+
+TEST(Sets, DoNotKnowHowManyThreadsThereAre) {
+    const Medium medium = make_medium(glowing_ball(12, 3.0f));
+    const Surroundings surroundings(stage(medium), lamps());
+    Shot shot = shot_of(RenderMethod::LightingGrid);
+    shot.camera.samples_per_axis = 2;
+    shot.virtual_lights.count = 300;
+    shot.virtual_lights.photons = 20000;
+    const auto pixels = [&](int threads) {
+        const ThreadLimit limit(threads);
+        Progress silent;
+        return render_medium(shot, medium, silent, &surroundings).image.layer("").pixels;
+    };
+    const std::vector<float> one = pixels(1);
+    EXPECT_EQ(one, pixels(2));
+    EXPECT_EQ(one, pixels(8));
+}
+
+// Without a volume nothing of one is planned or built, and without light nothing at all.
+TEST(Sets, WhatIsNotThereIsNotPlanned) {
+    const Medium nothing;
+    Scene scene = stage(nothing);
+    Progress silent;
+    const Surroundings lit(scene, lamps()), dark(scene, {});
+    const Shot shot = shot_of(RenderMethod::LightingGrid);
+    const RenderedFrame frame = render_medium(shot, nothing, silent, &lit);
+    EXPECT_EQ(frame.statistics.cells, (std::vector<std::string>{"A", "SS", "SA"}));
+    for (const StageCost& stage : frame.statistics.stages)
+        EXPECT_TRUE(stage.name == "virtual lights" || stage.name == "camera") << stage.name;
+    const RenderedFrame black = render_medium(shot, nothing, silent, &dark);
+    EXPECT_TRUE(black.statistics.cells.empty());
+    for (const StageCost& stage : black.statistics.stages)
+        EXPECT_EQ(stage.name, "camera");
+    EXPECT_EQ(whole(black.image.layer("")).sum, 0.0);
+    EXPECT_GT(whole(frame.image.layer("")).sum, 0.0);
+}
+
+// A surface in front hides what is behind it and closes the picture.
+TEST(Sets, SurfacesHideTheSmokeBehindThem) {
+    const Medium medium = make_medium(glowing_ball(12, 3.0f));
+    Scene scene;
+    scene.origin = medium.world_of_local(vec3(0.0f));
+    add_quad(scene, {-9, -2, -9}, {18, 0, 0}, {0, 0, 18}, lambert(0.0f));
+    const Surroundings surroundings(scene, {});
+    Progress silent;
+    for (const RenderMethod method : {RenderMethod::LightingGrid, RenderMethod::Path}) {
+        Shot shot = shot_of(method);
+        shot.tracing.samples = 2;
+        const Image image = render_medium(shot, medium, silent, &surroundings).image;
+        const Layer& colour = image.layer("");
+        const Layer& z = image.layer("Z");
+        for (std::size_t p = 0; p < z.pixels.size(); ++p) {
+            EXPECT_EQ(colour.pixels[4 * p], 0.0f);
+            EXPECT_EQ(colour.pixels[4 * p + 3], 1.0f);
+            EXPECT_LT(z.pixels[p], 10.0f);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace brisance
