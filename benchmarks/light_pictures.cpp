@@ -1,6 +1,6 @@
 // Pictures of a glTF file by direct light and virtual lights, beside the path tracer's, with times and errors.
 //
-//   brisance_light_pictures SCENE.glb FOLDER WIDTH SAMPLES REFERENCE_SAMPLES [lights [sampling [photons]]]
+//   brisance_light_pictures SCENE.glb FOLDER WIDTH SAMPLES REFERENCE_SAMPLES [name=value ...]
 //
 // FOLDER gets lights.exr and .png, and (kept for the next run) two halves of the reference; REFERENCE_SAMPLES of 0:
 // none. The error is that of the cell SS alone, relative, without the references' own noise: the product of the
@@ -125,18 +125,48 @@ LightSampling sampling_of(const std::string& name) {
     throw Error(ExitCode::Usage, "no such sampling: " + name);
 }
 
+// "name=value".
+void apply(VirtualLightSettings& s, const std::string& text) {
+    const std::size_t equals = text.find('=');
+    const std::string name = text.substr(0, equals), value = equals < text.size() ? text.substr(equals + 1) : "";
+    const double number = std::atof(value.c_str());
+    if (name == "count")
+        s.count = static_cast<int>(number);
+    else if (name == "photons")
+        s.photons = static_cast<int>(number);
+    else if (name == "resolution")
+        s.profile_resolution = static_cast<int>(number);
+    else if (name == "per_pixel")
+        s.candidates_per_pixel = number;
+    else if (name == "neighbours")
+        s.neighbours = static_cast<int>(number);
+    else if (name == "n_min")
+        s.n_min = number;
+    else if (name == "n_max")
+        s.n_max = number;
+    else if (name == "radius_factor")
+        s.radius_factor = number;
+    else if (name == "extension")
+        s.extension = number != 0.0;
+    else if (name == "uniform")
+        s.radius = number != 0.0 ? LightRadius::Uniform : LightRadius::Adaptive;
+    else if (name == "random")
+        s.placement = number != 0.0 ? LightPlacement::Random : LightPlacement::BlueNoise;
+    else if (name == "seed")
+        s.seed = static_cast<std::uint32_t>(number);
+    else if (name == "sampling")
+        s.sampling = sampling_of(value);
+    else
+        throw Error(ExitCode::Usage, "no such setting: " + text);
+}
+
 int run(int argc, char** argv) {
     const std::filesystem::path file = std::filesystem::absolute(argv[1]), folder = argv[2];
     std::filesystem::create_directories(folder);
     const int width = std::atoi(argv[3]), samples = std::atoi(argv[4]), reference_samples = std::atoi(argv[5]);
     VirtualLightSettings settings;
-    if (argc > 6)
-        settings.count = std::atoi(argv[6]);
-    if (argc > 7)
-        settings.sampling = sampling_of(argv[7]);
-    if (argc > 8)
-        settings.photons = std::atoi(argv[8]);
-    settings.extension = std::getenv("NO_EXTENSION") == nullptr;
+    for (int i = 6; i < argc; ++i)
+        apply(settings, argv[i]);
     Progress silent;
     SceneSettings scene_settings;
     scene_settings.files.push_back({file.string(), 'y', dmat4(1.0)});
@@ -192,7 +222,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     if (argc < 6) {
-        std::fprintf(stderr, "SCENE.glb FOLDER WIDTH SAMPLES REFERENCE_SAMPLES [lights [sampling [photons]]]\n");
+        std::fprintf(stderr, "SCENE.glb FOLDER WIDTH SAMPLES REFERENCE_SAMPLES [name=value ...]\n");
         return 2;
     }
     try {

@@ -67,8 +67,7 @@ void VirtualLights::build(const PixelCamera& camera) {
     lights_ = place_lights(scene, candidates, settings_);
     report_.elimination_seconds = lap.take();
 
-    cover_ = LightCover(lights_);
-    measure_areas(scene_.surroundings()->intersector(), cover_, lights_, settings_.seed);
+    measure_lights();
     for (VirtualLight& light : lights_)
         if (needs_energy_tables(light.material))
             light.profile = static_cast<std::int32_t>(report_.profiles++);
@@ -88,10 +87,23 @@ void VirtualLights::build(const PixelCamera& camera) {
     report_.bytes = lights_.size() * sizeof(VirtualLight) + cover_.bytes() + profiles_.bytes() + choice_.bytes();
 }
 
-// A light that speaks for no area, as none of the rays that measured it found any, gives back nothing.
+// Lights whose area cannot be told leave their surface to others, or to extended paths.
+void VirtualLights::measure_lights() {
+    const Intersector& surfaces = scene_.surroundings()->intersector();
+    cover_ = LightCover(surfaces, lights_);
+    const std::vector<std::uint8_t> known = measure_areas(surfaces, cover_, lights_, settings_.seed);
+    std::vector<VirtualLight> kept;
+    for (std::size_t i = 0; i < lights_.size(); ++i)
+        if (known[i])
+            kept.push_back(lights_[i]);
+    if (kept.size() == lights_.size())
+        return;
+    lights_ = std::move(kept);
+    cover_ = LightCover(surfaces, lights_);
+    measure_areas(surfaces, cover_, lights_, settings_.seed);
+}
+
 void VirtualLights::finish_lights(const LightAccounts& accounts) {
-    for (VirtualLight& light : lights_)
-        light.area = std::max(light.area, 1e-6 * light.radius * light.radius);
     profiles_ = Profiles(lights_, accounts, settings_.profile_resolution);
     for (std::size_t i = 0; i < lights_.size(); ++i) {
         VirtualLight& light = lights_[i];
