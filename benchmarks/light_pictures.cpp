@@ -152,6 +152,12 @@ void apply(VirtualLightSettings& s, const std::string& text) {
         s.radius = number != 0.0 ? LightRadius::Uniform : LightRadius::Adaptive;
     else if (name == "random")
         s.placement = number != 0.0 ? LightPlacement::Random : LightPlacement::BlueNoise;
+    else if (name == "light_paths")
+        s.placement = number != 0.0 ? LightPlacement::LightPaths : LightPlacement::BlueNoise;
+    else if (name == "kind")
+        s.kind = value == "point"    ? VirtualLightKind::Point
+                 : value == "sphere" ? VirtualLightKind::Sphere
+                                     : VirtualLightKind::Patch;
     else if (name == "seed")
         s.seed = static_cast<std::uint32_t>(number);
     else if (name == "sampling")

@@ -27,6 +27,10 @@ void check(const VirtualLightSettings& s) {
     require(s.neighbours >= 1, "neighbours must be at least 1");
     require(s.radius_factor > 0.0 && s.radius_factor <= 10.0, "radius_factor must lie above 0 and not above 10");
     require(s.profile_resolution >= 2 && s.profile_resolution <= 128, "profile_resolution must lie in 2..128");
+    require(s.point_bound > 0.0, "point_bound must be above 0");
+    const bool by_light = s.sampling == LightSampling::Power || s.sampling == LightSampling::LightTree;
+    require(s.kind == VirtualLightKind::Patch || (by_light && !s.extension),
+            "kinds sphere and point need sampling by power or light tree, and no extension: no ray finds them");
     require(s.n_min >= 0.0 && s.n_max >= s.n_min, "n_min must not be negative, and n_max not below it");
 }
 
@@ -61,7 +65,10 @@ void VirtualLights::build(const PixelCamera& camera) {
     const double paths =
         std::max(settings_.candidates_per_pixel * camera.width * camera.height, kLeastCandidates * settings_.count);
     const std::vector<LightCandidate> candidates =
-        light_candidates(scene_, camera, static_cast<std::size_t>(paths), settings_.seed);
+        settings_.placement == LightPlacement::LightPaths
+            ? light_path_candidates(scene_, static_cast<std::size_t>(kLeastCandidates * settings_.count),
+                                    settings_.seed)
+            : light_candidates(scene_, camera, static_cast<std::size_t>(paths), settings_.seed);
     report_.candidates = candidates.size();
     report_.candidate_seconds = lap.take();
     lights_ = place_lights(scene, candidates, settings_);

@@ -8,8 +8,8 @@
 // through walls, and all ways of sampling have the same mean.
 //
 // Departs from [1]: lights share what they speak for by weights that sum up to 1, in receiving and in giving, with the
-// area of each measured, and only where they see it: kernels of fixed area darken at edges, and surface that lies hidden
-// under things or in walls, where no photon comes, would take its share of light (5 % of a room behind a door).
+// area of each measured, and only where they see it: kernels of fixed area darken at edges, and surface that lies
+// hidden under things or in walls, where no photon comes, would take its share of light (5 % of a room behind a door).
 // Plain Lambert surfaces keep the light that arrives and take the colour of the place where it leaves: textures stay
 // sharp. Where no light speaks for a place, paths go on.
 #pragma once
@@ -54,8 +54,11 @@ private:
     void finish_lights(const LightAccounts& accounts);
     Seen seen_by(const RaySegment& segment) const;
     Rgb reflected(const Seen& seen, int share) const;
+    Rgb radiance(const VirtualLight& light, const dvec3& toward) const;
     double trust(const Seen& seen, double pdf) const;
     Rgb from_chosen_light(const Scatterer& place, Rng& rng) const;
+    Rgb from_patch(const Scatterer& place, const LightTree::Choice& choice, Rng& rng) const;
+    Rgb from_ball_or_point(const Scatterer& place, const LightTree::Choice& choice, Rng& rng) const;
     Rgb at_end_of_ray(const Scatterer& place, const Seen& seen, double pdf) const;
 
     const DirectLight& scene_;

@@ -86,6 +86,23 @@ TEST(AgainstPaths, ByEnvironmentAndPointLight) {
     expect_regions(Room(scene), some_lights(), 0.03, 0.015);
 }
 
+TEST(AgainstPaths, PlacedByLightPaths) {
+    VirtualLightSettings settings = some_lights();
+    settings.placement = LightPlacement::LightPaths;
+    expect_regions(Room(coloured_room()), settings, 0.03, 0.015);
+}
+
+// Balls of fixed area overlap edges, and points lose what their bound takes: near the truth, no more.
+TEST(AgainstPaths, BallsAndPointsComeNear) {
+    VirtualLightSettings settings = some_lights();
+    settings.extension = false;
+    settings.sampling = LightSampling::LightTree;
+    settings.kind = VirtualLightKind::Sphere;
+    expect_regions(Room(coloured_room()), settings, 0.3, 0.08);
+    settings.kind = VirtualLightKind::Point;
+    expect_regions(Room(coloured_room()), settings, 0.3, 0.08);
+}
+
 // A fire in scattering smoke lights a room without a lamp: photons, candidates and extended paths go through smoke.
 TEST(AgainstPaths, ByFireInSmoke) {
     SceneSettings scene = coloured_room();

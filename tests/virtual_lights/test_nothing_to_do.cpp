@@ -103,6 +103,16 @@ TEST(Settings, OutOfRangeAreRefused) {
     refused([](VirtualLightSettings& s) { s.radius_factor = 0.0; });
     refused([](VirtualLightSettings& s) { s.profile_resolution = 1; });
     refused([](VirtualLightSettings& s) { s.n_max = 1.0; });
+    refused([](VirtualLightSettings& s) { s.point_bound = 0.0; });
+    refused([](VirtualLightSettings& s) {
+        s.kind = VirtualLightKind::Point;
+        s.sampling = LightSampling::Power;  // and extension
+    });
+    refused([](VirtualLightSettings& s) {
+        s.kind = VirtualLightKind::Sphere;
+        s.extension = false;
+        s.sampling = LightSampling::Bsdf;
+    });
 }
 
 }  // namespace
