@@ -4,6 +4,8 @@
 
 #include <array>
 
+#include "core/vec.h"
+
 namespace brisance {
 
 // V the emitting medium, A emitters that are no medium (and the background), M the scattering medium, S surfaces.
@@ -15,6 +17,17 @@ constexpr int kCells = static_cast<int>(kCellNames.size());
 constexpr const char* name_of(Cell cell) {
     return kCellNames[static_cast<int>(cell)];
 }
+
+// Radiance by cell [W/(m^2 sr)].
+struct CellSum : std::array<Rgb, kCells> {
+    CellSum() { fill(Rgb(0.0f)); }
+    Rgb& at(Cell cell) { return (*this)[static_cast<int>(cell)]; }
+    const Rgb& at(Cell cell) const { return (*this)[static_cast<int>(cell)]; }
+    void add(const CellSum& other, const Rgb& weight) {
+        for (int c = 0; c < kCells; ++c)
+            (*this)[c] += weight * other[c];
+    }
+};
 
 // The cell of light seen from a medium point or a surface point, by what sent it there.
 enum class Sender { V, M, S, A };

@@ -7,7 +7,19 @@
 namespace brisance {
 
 // One name per independent source of randomness. Append only: the value seeds the stream.
-enum class Stream : std::uint32_t { EscapeRay = 1, Path, PathRotation, Certificate, Cutout, LightCandidate, LightArea, Photon };
+enum class Stream : std::uint32_t {
+    EscapeRay = 1,
+    Path,
+    PathRotation,
+    Certificate,
+    Cutout,
+    Surface,
+    NodeEmitter,
+    Points,
+    LightCandidate,
+    LightArea,
+    Photon
+};
 
 // SplitMix64 (Steele, Lea, Flood 2014), keyed by identity.
 class Rng {

@@ -54,22 +54,21 @@ std::vector<std::uint32_t> ranked(std::size_t points, std::span<const std::uint6
     return order;
 }
 
-// About the middle of their box, in a power of two that makes coordinates at most 1: squares neither overflow nor
-// vanish, and no digit is lost far from the origin.
-class Normalised {
+// In the order of their ids, in units of a power of two about the size of their box: squares of distances neither
+// overflow nor vanish, and no digit is lost.
+class Scaled {
 public:
-    Normalised(std::span<const vec3> points, const std::vector<std::uint32_t>& order) : points_(points.size()) {
+    Scaled(std::span<const vec3> points, const std::vector<std::uint32_t>& order) : points_(points.size()) {
         vec3 low = points.empty() ? vec3(0.0f) : points[0], high = low;
         for (const vec3& p : points) {
             low = glm::min(low, p);
             high = glm::max(high, p);
         }
-        const dvec3 middle(vec3(0.5 * (dvec3(low) + dvec3(high)))), side = dvec3(high) - dvec3(low);
+        const dvec3 side = dvec3(high) - dvec3(low);
         const double greatest = std::max({side.x, side.y, side.z});
         unit_ = greatest > 0.0 ? std::exp2(std::ceil(std::log2(greatest))) : 1.0;
         parallel_for(
-            points_.size(), [&](std::size_t r) { points_[r] = vec3((dvec3(points[order[r]]) - middle) / unit_); },
-            kGrain);
+            points_.size(), [&](std::size_t r) { points_[r] = vec3(dvec3(points[order[r]]) / unit_); }, kGrain);
     }
 
     const std::vector<vec3>& points() const { return points_; }
@@ -151,14 +150,14 @@ Survivors eliminate(std::span<const vec3> points, std::size_t target, const Elim
     if (target == 0)
         return {};
     const std::vector<std::uint32_t> order = ranked(points.size(), ids);
-    const Normalised normalised(points, order);
-    const std::vector<std::uint32_t> first = first_at_place(normalised.points());
-    Candidates candidates = distinct(normalised.points(), first);
-    set_reach(candidates, target, normalised.unit(), settings);
+    const Scaled scaled(points, order);
+    const std::vector<std::uint32_t> first = first_at_place(scaled.points());
+    Candidates candidates = distinct(scaled.points(), first);
+    set_reach(candidates, target, scaled.unit(), settings);
 
     std::vector<float> distance(points.size());  // by index
     for (std::size_t i = 0; i < candidates.size(); ++i)
-        distance[order[candidates.rank[i]]] = static_cast<float>(candidates.reach[i] * normalised.unit());
+        distance[order[candidates.rank[i]]] = static_cast<float>(candidates.reach[i] * scaled.unit());
     Survivors survivors;
     for (const std::uint32_t rank : choose(candidates, first, target, settings)) {
         survivors.index.push_back(order[rank]);

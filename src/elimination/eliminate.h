@@ -29,10 +29,10 @@ enum class EliminationRadius {
 struct EliminationSettings {
     int dimension = 2;  // of what the points lie on: 2 surfaces, 3 volumes
     EliminationRadius radius = EliminationRadius::Adaptive;
-    int neighbours = 128;        // Adaptive: k, from whose distance density is taken; few make distances uneven
-    double measure = 0.0;        // Uniform: area [m^2] or volume [m^3] of the domain
-    double stage_ratio = 128.0;  // greatest ratio of points before the last stage to those after; infinity: one stage
-    bool one_by_one = false;     // the textbook's sequential algorithm: the same survivors, slowly
+    int neighbours = 128;       // Adaptive: k, from whose distance density is taken; few make distances uneven
+    double measure = 0.0;       // Uniform: area [m^2] or volume [m^3] of the domain
+    double stage_ratio = 32.0;  // greatest ratio of points before a stage to those after; infinity: one stage as in [1]
+    bool one_by_one = false;    // the textbook's sequential algorithm: the same survivors, slowly
 };
 
 struct Survivors {

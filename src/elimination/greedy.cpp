@@ -4,18 +4,19 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <optional>
 
 #include "core/parallel.h"
-#include "elimination/bracket_queue.h"
 #include "elimination/leaf_kernels.h"
 
 namespace brisance {
 
 namespace {
 
-constexpr std::size_t kBlockLeaves = 1024;    // that one task works on: half a megabyte, to stay in the second cache
+constexpr std::size_t kLeastBlock = 256, kGreatestBlock = 4096;  // leaves that one task works on
+constexpr std::size_t kBlocks = 32;                              // unless those would be too small or too large
 constexpr double kOverlap = 1.5;              // neighbours above the same round's threshold, on average
-constexpr double kRepack = 0.3;               // of the points left: leaves are filled anew
+constexpr double kRepack = 0.3;               // when as few of the points are left, leaves are filled anew
 constexpr std::size_t kSampledLeaves = 1024;  // from which a round's threshold is read
 
 struct Removal {
@@ -39,13 +40,15 @@ struct Block {
     std::vector<std::uint32_t> list_begin;  // per owned leaf, into `list`
     std::vector<std::uint32_t> list;        // leaves of this block that may hold neighbours
     std::vector<float> square_reach;        // per leaf, see LeafView
-    std::vector<Weight> bound;              // per owned leaf: no weight in it is above
     std::vector<std::uint8_t> changed;      // per owned leaf: whether this round has changed it
-    BracketQueue queue;
+    std::vector<std::uint16_t> waiting;     // per owned leaf, a bit per slot: held up for this round
+    std::vector<Slot> path;                 // from a point to heavier and heavier neighbours
+    bool idle = true;                       // whether this round has found nobody above the threshold
     std::vector<Message> outbox;
     std::vector<Removal> removed;
     Taken taken;
 
+    bool waits(const Slot& at) const { return waiting[at.leaf] >> at.slot & 1; }
     bool owns(std::uint32_t leaf) const { return leaf - first < owned; }
     std::span<const std::uint32_t> neighbours(std::uint32_t leaf) const {
         return std::span(list).subspan(list_begin[leaf], list_begin[leaf + 1] - list_begin[leaf]);
@@ -70,23 +73,24 @@ void keep_greatest(std::vector<Removal>& removed, std::size_t count) {
     removed.erase(last, removed.end());
 }
 
-// The candidates left at some time, and what is removed of them until half are gone.
+// The candidates left at some time, packed into leaves, and the rounds in which they are removed.
 class Rounds {
 public:
     Rounds(const Candidates& candidates, const std::vector<std::uint32_t>& alive, float scale, float least);
 
-    // Removes until `goal` have been removed or half of the points are gone; appends to `removed`. Once the goal is
-    // reached, whoever is left would have gone after all that went.
-    void run(std::size_t goal, std::vector<Removal>& removed);
+    // Removes points above a falling threshold until `goal` have been removed or so many that leaves are nearly empty;
+    // appends to `removed`. Once the goal is reached all above the threshold have gone, and none below it.
+    void run(std::size_t goal, Weight& threshold, std::vector<Removal>& removed);
 
 private:
     void find_neighbours(Block& block, const LeafTree& tree) const;
-    void remove_heaviest(Block& block, Weight threshold, Weight last_threshold);
-    Weight enqueue(Block& block, std::uint32_t l, Weight threshold);
-    void remove(Block& block, const Queued& heaviest);
+    void remove_heaviest(Block& block, Weight threshold);
+    void climb(Block& block, Weight threshold);
+    static void hold(Block& block);
+    std::optional<Slot> remove(Block& block, const Slot& at);
     void receive(Block& block);
     void refresh(Block& block);
-    void round(Weight threshold, Weight last_threshold);
+    void round(Weight threshold);
     double mean_neighbours() const;
     double round_share(std::size_t left) const;
     Weight quantile(double share);
@@ -100,6 +104,7 @@ private:
     const std::vector<std::uint32_t>& alive_;
     float least_;
     double neighbours_ = 1.0;  // of a point, on average
+    std::size_t block_leaves_ = 0;
     std::vector<Block> blocks_;
     std::vector<Weight> sample_;
 };
@@ -107,10 +112,12 @@ private:
 Rounds::Rounds(const Candidates& candidates, const std::vector<std::uint32_t>& alive, float scale, float least)
     : alive_(alive), least_(least) {
     const LeafTree tree = boxes_around(candidates, alive, scale);
-    blocks_.resize((tree.size() + kBlockLeaves - 1) / kBlockLeaves);
+    block_leaves_ = std::clamp(tree.size() / kBlocks, kLeastBlock, kGreatestBlock);
+    blocks_.resize((tree.size() + block_leaves_ - 1) / block_leaves_);
     for (std::size_t b = 0; b < blocks_.size(); ++b) {
-        blocks_[b].first = static_cast<std::uint32_t>(b * kBlockLeaves);
-        blocks_[b].owned = static_cast<std::uint32_t>(std::min(tree.size(), (b + 1) * kBlockLeaves) - b * kBlockLeaves);
+        blocks_[b].first = static_cast<std::uint32_t>(b * block_leaves_);
+        blocks_[b].owned =
+            static_cast<std::uint32_t>(std::min(tree.size(), (b + 1) * block_leaves_) - b * block_leaves_);
     }
     for_each_block([&](Block& block) {
         find_neighbours(block, tree);
@@ -124,7 +131,6 @@ Rounds::Rounds(const Candidates& candidates, const std::vector<std::uint32_t>& a
                 square_reach(*std::min_element(leaf.inverse_reach, leaf.inverse_reach + kLeafSize)));
         for (std::uint32_t l = 0; l < block.owned; ++l)
             sum_weights(block.leaves.data(), l, block.neighbours(l), least_);
-        block.bound.assign(block.owned, std::numeric_limits<Weight>::max());
         block.changed.assign(block.owned, 1);
     });
     for_each_block([&](Block& block) { refresh(block); });
@@ -156,44 +162,59 @@ void Rounds::find_neighbours(Block& block, const LeafTree& tree) const {
     for (std::uint32_t& l : block.list)
         l = block.owns(l) ? l - block.first : block.owned + position_in(block.copied, l);
     for (const std::uint32_t l : block.copied)
-        block.near.push_back(l / kBlockLeaves);
+        block.near.push_back(l / block_leaves_);
     sort_unique(block.near);
 }
 
-// Goes down the block's points above the threshold. Points with a heavier one beside them, in another block or held up
-// itself, wait for the next round.
-void Rounds::remove_heaviest(Block& block, Weight threshold, Weight last_threshold) {
-    block.queue.reset(threshold, last_threshold);
-    for (std::uint32_t l = 0; l < block.owned; ++l) {
-        if (block.bound[l] > threshold)
-            block.bound[l] = enqueue(block, l, threshold);
-    }
-    block.queue.drain([&](const Queued& item) { return block.leaves[item.at.leaf].weight[item.at.slot]; },
-                      [&](const Queued& item) { remove(block, item); });
+// Goes through the block's points above the threshold from neighbour to neighbour, which keeps the cache warm, not by
+// weight: from each up to heavier and heavier ones until one may go, and back. Points held up by a heavier one in
+// another block wait for the next round.
+void Rounds::remove_heaviest(Block& block, Weight threshold) {
+    block.idle = true;
+    block.waiting.assign(block.owned, 0);
+    for (std::uint32_t l = 0; l < block.owned; ++l)
+        for (std::uint32_t s = 0; s < kLeafSize; ++s) {
+            if (block.leaves[l].weight[s] <= threshold)
+                continue;
+            block.idle = false;
+            if (!block.waits({l, s}))
+                block.path.push_back({l, s});
+            while (!block.path.empty())
+                climb(block, threshold);
+        }
 }
 
-// Puts the leaf's points above the threshold into the queue; returns the greatest weight.
-Weight Rounds::enqueue(Block& block, std::uint32_t l, Weight threshold) {
-    const Leaf& leaf = block.leaves[l];
-    Weight greatest = -1;
-    for (std::uint32_t s = 0; s < kLeafSize; ++s) {
-        greatest = std::max(greatest, leaf.weight[s]);
-        if (leaf.weight[s] > threshold)
-            block.queue.push({leaf.weight[s], leaf.rank[s], {l, s}});
-    }
-    return greatest;
+// One step from the end of the path.
+void Rounds::climb(Block& block, Weight threshold) {
+    const Slot at = block.path.back();
+    const bool above = block.leaves[at.leaf].weight[at.slot] > threshold;
+    const std::optional<Slot> heavier = above ? remove(block, at) : std::nullopt;
+    if (!heavier)
+        block.path.pop_back();
+    else if (heavier->leaf < block.owned && !block.waits(*heavier))
+        block.path.push_back(*heavier);
+    else
+        hold(block);
 }
 
-// Removes the point, if it may go by now.
-void Rounds::remove(Block& block, const Queued& heaviest) {
-    const auto [l, s] = heaviest.at;
+// Nobody on the path can go before the end of the round.
+void Rounds::hold(Block& block) {
+    for (const Slot& at : block.path)
+        block.waiting[at.leaf] |= static_cast<std::uint16_t>(1u << at.slot);
+    block.path.clear();
+}
+
+// Removes the point, unless another has to go first: then returns the heaviest around.
+std::optional<Slot> Rounds::remove(Block& block, const Slot& at) {
+    const auto [l, s] = at;
     Leaf& leaf = block.leaves[l];
-    const Probe probe{vec3(leaf.x[s], leaf.y[s], leaf.z[s]), leaf.inverse_reach[s], heaviest.weight, heaviest.rank};
+    const Probe probe{vec3(leaf.x[s], leaf.y[s], leaf.z[s]), leaf.inverse_reach[s], leaf.weight[s], leaf.rank[s]};
     const std::span<const std::uint32_t> list = block.neighbours(l);
     leaf.clear(s);
-    if (!take_weights({block.leaves.data(), block.square_reach.data()}, list, probe, least_, block.taken)) {
+    const LeafView view{block.leaves.data(), block.square_reach.data()};
+    if (const std::optional<Slot> heavier = take_weights(view, list, probe, least_, block.taken)) {
         leaf.set(s, probe.position, probe.inverse_reach, probe.rank, probe.weight);
-        return;
+        return heavier;
     }
     for (std::size_t n = 0; n < list.size(); ++n) {
         if (!block.taken.touched[n])
@@ -206,7 +227,9 @@ void Rounds::remove(Block& block, const Queued& heaviest) {
         }
     }
     block.changed[l] = 1;
-    block.removed.push_back({probe.weight, probe.rank, static_cast<std::uint32_t>((block.first + l) * kLeafSize + s)});
+    const auto place = static_cast<std::uint32_t>((block.first + l) * kLeafSize + s);
+    block.removed.push_back({probe.weight, probe.rank, place});
+    return {};
 }
 
 void Rounds::receive(Block& block) {
@@ -220,18 +243,18 @@ void Rounds::receive(Block& block) {
 
 void Rounds::refresh(Block& block) {
     for (std::size_t c = 0; c < block.copied.size(); ++c) {
-        const Block& other = blocks_[block.copied[c] / kBlockLeaves];
+        const Block& other = blocks_[block.copied[c] / block_leaves_];
         if (other.changed[block.copied[c] - other.first])
             block.leaves[block.owned + c] = other.leaves[block.copied[c] - other.first];
     }
 }
 
 // In three steps, as nobody may look at what another block is changing.
-void Rounds::round(Weight threshold, Weight last_threshold) {
+void Rounds::round(Weight threshold) {
     for_each_block([&](Block& block) {
         block.outbox.clear();
         std::fill(block.changed.begin(), block.changed.end(), std::uint8_t(0));
-        remove_heaviest(block, threshold, last_threshold);
+        remove_heaviest(block, threshold);
     });
     for_each_block([&](Block& block) { receive(block); });
     for_each_block([&](Block& block) { refresh(block); });
@@ -242,7 +265,7 @@ Weight Rounds::quantile(double share) {
     sample_.clear();
     const std::size_t leaves = (alive_.size() + kLeafSize - 1) / kLeafSize;
     for (std::size_t l = 0; l < leaves; l += (leaves + kSampledLeaves - 1) / kSampledLeaves)
-        for (const Weight weight : blocks_[l / kBlockLeaves].leaves[l % kBlockLeaves].weight)
+        for (const Weight weight : blocks_[l / block_leaves_].leaves[l % block_leaves_].weight)
             if (weight >= 0)
                 sample_.push_back(weight);
     if (sample_.empty())
@@ -271,25 +294,23 @@ double Rounds::round_share(std::size_t left) const {
     return std::min(kOverlap * double(alive_.size()) / (neighbours_ * double(left)), 0.5);
 }
 
-void Rounds::run(std::size_t goal, std::vector<Removal>& removed) {
+void Rounds::run(std::size_t goal, Weight& threshold, std::vector<Removal>& removed) {
     const std::size_t before = removed.size();
-    Weight threshold = quantile(0.0);
-    bool idle = true;  // nobody above the threshold
+    bool idle = false;  // nobody above the threshold
     for (;;) {
         const std::size_t left = alive_.size() - (removed.size() - before);
         if (removed.size() >= goal ? idle : double(left) < kRepack * double(alive_.size()))
             return;
-        const Weight last_threshold = threshold;
         if (removed.size() < goal) {
             if (idle && threshold == 0)
                 return remove_weightless(goal - removed.size(), removed);
             const double share = std::min(round_share(left), double(goal - removed.size()) / double(left));
             threshold = std::max<Weight>(std::min(threshold - idle, quantile(share)), 0);
         }
-        round(threshold, last_threshold);
+        round(threshold);
         idle = true;
         for (Block& block : blocks_) {
-            idle = idle && block.queue.empty();
+            idle = idle && block.idle;
             removed.insert(removed.end(), block.removed.begin(), block.removed.end());
             block.removed.clear();
         }
@@ -305,10 +326,11 @@ std::vector<std::uint32_t> eliminate_greedily(const Candidates& candidates, std:
     const std::size_t goal = alive.size() - target;
     std::vector<bool> gone(candidates.size());
     std::vector<Removal> removed;
+    Weight threshold = std::numeric_limits<Weight>::max();
     std::vector<std::uint32_t> left = alive;
     while (removed.size() < goal) {
         const std::size_t before = removed.size();
-        Rounds(candidates, left, scale, least).run(goal, removed);
+        Rounds(candidates, left, scale, least).run(goal, threshold, removed);
         for (std::size_t r = before; r < removed.size(); ++r) {
             removed[r].place = left[removed[r].place];  // among all candidates from now on
             gone[removed[r].place] = true;

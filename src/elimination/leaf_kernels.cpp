@@ -81,19 +81,21 @@ std::size_t count_in_reach(const Leaf* leaves, std::span<const std::uint32_t> li
     return count;
 }
 
-HWY_INLINE bool outranks(const Leaf& leaf, std::size_t slot, const Probe& probe) {
-    return leaf.weight[slot] > probe.weight || (leaf.weight[slot] == probe.weight && leaf.rank[slot] > probe.rank);
-}
-
-// Whether a point of the leaf that would go before the probe is in reach of it, or reaches it.
-bool any_outranks(const Leaf& leaf, const Probe& probe) {
-    for (std::size_t s = 0; s < kLeafSize; ++s) {
+// Raises `heaviest` to the heaviest point of the leaf that is in reach of the probe, or reaches it.
+bool raise(const Leaf& leaf, const Probe& probe, Probe& heaviest, std::uint32_t& slot) {
+    bool raised = false;
+    for (std::uint32_t s = 0; s < kLeafSize; ++s) {
         const vec3 gap = vec3(leaf.x[s], leaf.y[s], leaf.z[s]) - probe.position;
         const float inverse = std::min(leaf.inverse_reach[s], probe.inverse_reach);
-        if (outranks(leaf, s, probe) && glm::dot(gap, gap) * inverse * inverse < 1.000001f)
-            return true;
+        if (glm::dot(gap, gap) >= square_reach(inverse) || leaf.weight[s] < heaviest.weight ||
+            (leaf.weight[s] == heaviest.weight && leaf.rank[s] <= heaviest.rank))
+            continue;
+        heaviest.weight = leaf.weight[s];
+        heaviest.rank = leaf.rank[s];
+        slot = s;
+        raised = true;
     }
-    return false;
+    return raised;
 }
 
 HWY_INLINE bool any_heavier(const Leaf& leaf, Weight weight) {
@@ -104,11 +106,13 @@ HWY_INLINE bool any_heavier(const Leaf& leaf, Weight weight) {
     return !hn::AllFalse(d, hn::Gt(heaviest, hn::Set(d, weight - 1)));
 }
 
-bool take_weights(const LeafView& view, std::span<const std::uint32_t> list, const Probe& probe, float least,
-                  Taken& taken) {
+std::optional<Slot> take_weights(const LeafView& view, std::span<const std::uint32_t> list, const Probe& probe,
+                                 float least, Taken& taken) {
     const D d;
     const hn::RebindToSigned<D> di;
     const float own_reach = square_reach(probe.inverse_reach);
+    Probe heaviest = probe;
+    std::optional<Slot> found;
     for (std::size_t n = 0; n < list.size(); ++n) {
         const Leaf& leaf = view.leaves[list[n]];
         V squares[kLeafSize / kLanes];
@@ -116,15 +120,18 @@ bool take_weights(const LeafView& view, std::span<const std::uint32_t> list, con
         taken.touched[n] = squares_in_reach(d, leaf, probe.position, reach, squares);
         if (!taken.touched[n])
             continue;
-        if (any_heavier(leaf, probe.weight) && any_outranks(leaf, probe))
-            return false;
+        std::uint32_t slot = 0;
+        if (any_heavier(leaf, heaviest.weight) && raise(leaf, probe, heaviest, slot))
+            found = Slot{list[n], slot};
+        if (found)
+            continue;
         for (std::size_t k = 0; k < kLeafSize; k += kLanes) {
             const V distance = hn::Sqrt(squares[k / kLanes]);
             hn::StoreU(weight(d, distance, hn::Load(d, leaf.inverse_reach + k), least), di,
                        taken.weight.data() + n * kLeafSize + k);
         }
     }
-    return true;
+    return found;
 }
 
 void subtract_sixteen(Leaf& leaf, const std::int32_t* taken) {
@@ -194,8 +201,8 @@ std::size_t count_in_reach(const Leaf* leaves, std::span<const std::uint32_t> li
     return HWY_DYNAMIC_DISPATCH(count_in_reach)(leaves, list, leaf);
 }
 
-bool take_weights(const LeafView& leaves, std::span<const std::uint32_t> list, const Probe& probe, float least,
-                  Taken& taken) {
+std::optional<Slot> take_weights(const LeafView& leaves, std::span<const std::uint32_t> list, const Probe& probe,
+                                 float least, Taken& taken) {
     taken.resize(list.size());
     return HWY_DYNAMIC_DISPATCH(take_weights)(leaves, list, probe, least, taken);
 }

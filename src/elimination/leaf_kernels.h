@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -44,10 +45,15 @@ void sum_weights(Leaf* leaves, std::uint32_t leaf, std::span<const std::uint32_t
 // How many points of the leaves listed are in reach of the first point of `leaf`, itself included.
 std::size_t count_in_reach(const Leaf* leaves, std::span<const std::uint32_t> list, const Leaf& leaf);
 
-// Fills `taken`, unless a point that reaches the probe or is reached by it would be removed before it: then false. The
-// probe itself must have been taken out of its leaf.
-bool take_weights(const LeafView& leaves, std::span<const std::uint32_t> list, const Probe& probe, float least,
-                  Taken& taken);
+// Where a point is.
+struct Slot {
+    std::uint32_t leaf, slot;
+};
+
+// The heaviest of the points that would go before the probe and are in reach of it or reach it. Only if there is none:
+// fills `taken`. The probe itself must have been taken out of its leaf.
+std::optional<Slot> take_weights(const LeafView& view, std::span<const std::uint32_t> list, const Probe& probe,
+                                 float least, Taken& taken);
 
 // Subtracts sixteen weights from a leaf's.
 void subtract(Leaf& leaf, const std::int32_t* taken);

@@ -144,10 +144,10 @@ double Emitters::far_probability() const {
     return tree_.empty() ? 1.0 : double(far_.size()) / double(far_.size() + 1);
 }
 
-std::optional<EmitterSample> Emitters::sample(const LitPoint& point, Rng& rng) const {
+std::optional<EmitterSample> Emitters::sample(const LitPoint& point, double choice, Rng& rng) const {
     const double far = far_probability();
-    if (far > 0.0 && rng.next_double() < far) {
-        const auto which = std::min(static_cast<std::size_t>(rng.next_double() * double(far_.size())), far_.size() - 1);
+    if (choice < far) {
+        const auto which = std::min(static_cast<std::size_t>(choice / far * double(far_.size())), far_.size() - 1);
         std::optional<EmitterSample> s = sample_far(far_[which], rng);
         if (!s)
             return s;
@@ -156,15 +156,16 @@ std::optional<EmitterSample> Emitters::sample(const LitPoint& point, Rng& rng) c
         s->weight /= float(probability);
         return s;
     }
-    return far < 1.0 ? sample_near(point, rng, 1.0 - far) : std::nullopt;
+    return far < 1.0 ? sample_near(point, (choice - far) / (1.0 - far), rng, 1.0 - far) : std::nullopt;
 }
 
-std::optional<EmitterSample> Emitters::sample_near(const LitPoint& point, Rng& rng, double probability) const {
-    const std::optional<LightTree::Choice> choice = tree_.choose(point, rng.next_double());
-    if (!choice)
+std::optional<EmitterSample> Emitters::sample_near(const LitPoint& point, double choice, Rng& rng,
+                                                   double probability) const {
+    const std::optional<LightTree::Choice> chosen = tree_.choose(point, std::min(choice, 1.0 - 0x1p-53));
+    if (!chosen)
         return std::nullopt;
-    const Near& near = near_[choice->light];
-    probability *= choice->probability;
+    const Near& near = near_[chosen->light];
+    probability *= chosen->probability;
     std::optional<EmitterSample> s;
     if (near.light) {
         const dvec3 way = near.position - point.position;

@@ -36,7 +36,11 @@ public:
     std::size_t near_count() const { return near_.size(); }
 
     // One light, chosen for the point, and a place on it. None where that brings nothing.
-    std::optional<EmitterSample> sample(const LitPoint& point, Rng& rng) const;
+    std::optional<EmitterSample> sample(const LitPoint& point, Rng& rng) const {
+        return sample(point, rng.next_double(), rng);
+    }
+    // The same with the number in [0, 1) that chooses the light: it may come from a stratified sequence.
+    std::optional<EmitterSample> sample(const LitPoint& point, double choice, Rng& rng) const;
 
     // What is seen, and with which density sample() would have drawn it [1/sr]: the radiance of a triangle that a ray
     // from the point hit, and of the background.
@@ -72,7 +76,7 @@ private:
     void add_triangles();
     void add_light(const LightSettings& light, const Texture* picture);
     double far_probability() const;
-    std::optional<EmitterSample> sample_near(const LitPoint& point, Rng& rng, double probability) const;
+    std::optional<EmitterSample> sample_near(const LitPoint& point, double choice, Rng& rng, double probability) const;
     std::optional<EmitterSample> sample_triangle(const Near& near, const LitPoint& point, Rng& rng) const;
     std::optional<EmitterSample> sample_far(const Far& far, Rng& rng) const;
     Rgb intensity(const Near& near, const dvec3& direction) const;

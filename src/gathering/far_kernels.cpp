@@ -194,7 +194,10 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Rece
         const V cosine =
             hn::MulAdd(wx, hn::LoadU(d, &r.out_x[at]),
                        hn::MulAdd(wy, hn::LoadU(d, &r.out_y[at]), hn::Mul(wz, hn::LoadU(d, &r.out_z[at]))));
-        phase = henyey_greenstein_lanes(d, out.mean_cosine, cosine);
+        if (out.kind == ReceiverKind::Surface)
+            phase = hn::Mul(hn::Max(hn::Neg(cosine), hn::Zero(d)), hn::Set(d, 1.0f / kPi));
+        else
+            phase = henyey_greenstein_lanes(d, out.mean_cosine, cosine);
     }
     for (int c = 0; c < 3; ++c) {
         V intensity = hn::Set(d, l.intensity[i][c]);

@@ -38,6 +38,7 @@ struct FarOutput {
     float* scattered;  // null: not asked for
     float* moments;    // null: not asked for
     float mean_cosine;
+    ReceiverKind kind = ReceiverKind::Medium;
 };
 
 // Adds the lights' contributions to the receivers of one block. Returns the number of light evaluations (lanes that the

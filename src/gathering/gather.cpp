@@ -92,8 +92,9 @@ void interaction_list(const LightField& field, const GridLevel& level, bool top,
 
 class FarGather {
 public:
-    FarGather(const LightField& field, const Receivers& receivers, float mean_cosine, Gathered& out, Progress& progress)
-        : field_(field), receivers_(receivers), mean_cosine_(mean_cosine), out_(out), progress_(progress) {
+    FarGather(const LightField& field, const Receivers& receivers, float mean_cosine, Gathered& out, Progress& progress,
+              ReceiverKind kind = ReceiverKind::Medium)
+        : field_(field), receivers_(receivers), mean_cosine_(mean_cosine), kind_(kind), out_(out), progress_(progress) {
         fine_ = field.pyramid->view(0);
     }
 
@@ -163,9 +164,12 @@ private:
             lights.extinction = &fine_;
             lights.index_from_local = field_.pyramid->medium().index_from_local;
             lights.step_nodes = 0.5f;
-            const FarOutput output{receivers_.size(), out_.fluence.data(),
+            const FarOutput output{receivers_.size(),
+                                   out_.fluence.data(),
                                    out_.scattered.empty() ? nullptr : out_.scattered.data(),
-                                   out_.moments.empty() ? nullptr : out_.moments.data(), mean_cosine_};
+                                   out_.moments.empty() ? nullptr : out_.moments.data(),
+                                   mean_cosine_,
+                                   kind_};
             evaluations[b] = gather_far(lights, receivers_, block, output);
         });
         std::uint64_t sum = 0;
@@ -177,6 +181,7 @@ private:
     const LightField& field_;
     const Receivers& receivers_;
     float mean_cosine_;
+    ReceiverKind kind_;
     Gathered& out_;
     Progress& progress_;
     PackedExtinction fine_;
@@ -212,6 +217,31 @@ void gather_upper_levels(const LightField& field, FarGather& far, std::vector<Le
     const auto& levels = field.grid->levels;
     for (std::size_t l = 0; l < levels.size(); ++l)
         costs.push_back(far.run(levels[l], l + 1 == levels.size()));
+}
+
+// Adds what all levels of the grid send to the nodes that ask.
+void gather_grid(const LightField& field, const LatticeRequest& request, Gathered& out, std::vector<LevelCost>& costs,
+                 Progress& progress) {
+    const std::size_t nodes = field.pyramid->medium().lattice.node_count();
+    std::vector<std::uint32_t> node_of;
+    const Receivers receivers = node_receivers(field.pyramid->medium(), request, node_of);
+    Gathered far;
+    far.resize(receivers.size(), request.toward_camera != nullptr, request.moments);
+    FarGather gather(field, receivers, request.mean_cosine, far, progress);
+    gather_upper_levels(field, gather, costs);
+    const auto add = [&](const std::vector<float>& from, std::vector<float>& to, int channels) {
+        parallel_for(from.empty() ? 0 : channels, [&](std::size_t c) {
+            std::uint32_t last = ~0u;
+            for (std::size_t i = 0; i < node_of.size(); ++i) {
+                if (node_of[i] != last)  // padding repeats a block's last node
+                    to[c * nodes + node_of[i]] += from[c * node_of.size() + i];
+                last = node_of[i];
+            }
+        });
+    };
+    add(far.fluence, out.fluence, 3);
+    add(far.scattered, out.scattered, 3);
+    add(far.moments, out.moments, 24);
 }
 
 }  // namespace
@@ -260,34 +290,23 @@ Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request,
     bottom.gather_seconds = watch.seconds();
     bottom.evaluations = near.separations() * nodes;
     costs.push_back(bottom);
+    gather_grid(field, request, out, costs, progress);
+    return out;
+}
 
-    std::vector<std::uint32_t> node_of;
-    const Receivers receivers = node_receivers(medium, request, node_of);
-    Gathered far;
-    far.resize(receivers.size(), request.toward_camera != nullptr, request.moments);
-    FarGather gather(field, receivers, request.mean_cosine, far, progress);
-    gather_upper_levels(field, gather, costs);
-    const auto add = [&](const std::vector<float>& from, std::vector<float>& to, int channels) {
-        parallel_for(from.empty() ? 0 : channels, [&](std::size_t c) {
-            std::uint32_t last = ~0u;
-            for (std::size_t i = 0; i < node_of.size(); ++i) {
-                if (node_of[i] != last)  // padding repeats a block's last node
-                    to[c * nodes + node_of[i]] += from[c * node_of.size() + i];
-                last = node_of[i];
-            }
-        });
-    };
-    add(far.fluence, out.fluence, 3);
-    add(far.scattered, out.scattered, 3);
-    add(far.moments, out.moments, 24);
+Gathered gather_from_outside(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
+                             Progress& progress) {
+    Gathered out;
+    out.resize(field.pyramid->medium().lattice.node_count(), request.toward_camera != nullptr, request.moments);
+    gather_grid(field, request, out, costs, progress);
     return out;
 }
 
 Gathered gather_at_points(const LightField& field, const GridLevel& bottom, const Receivers& receivers,
-                          float mean_cosine, std::vector<LevelCost>& costs, Progress& progress) {
+                          float mean_cosine, std::vector<LevelCost>& costs, Progress& progress, ReceiverKind kind) {
     Gathered out;
     out.resize(receivers.size(), !receivers.out_x.empty(), false);
-    FarGather gather(field, receivers, mean_cosine, out, progress);
+    FarGather gather(field, receivers, mean_cosine, out, progress, kind);
     costs.push_back(gather.run(bottom, false));
     gather_upper_levels(field, gather, costs);
     return out;

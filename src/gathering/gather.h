@@ -61,12 +61,18 @@ struct LatticeRequest {
 Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
                          Progress& progress);
 
+// At the nodes of the medium from lights outside of its lattice, all of whose levels `field.grid` holds from level 0 on
+// (point_grid.h); field.intensity and field.directional are not asked for.
+Gathered gather_from_outside(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
+                             Progress& progress);
+
 // The lit nodes as a level of lights for gather_at_points; its vertices are the nodes.
 GridLevel bottom_level(const LightField& field);
 
-// At any points (local [m]) given as receivers; level 0 (`bottom`, made once) by marched shadows and the ball kernel.
-// Planar over receivers.
+// At any points (local [m]) given as receivers, of the medium or on surfaces, which stop no light here; level 0
+// (`bottom`, made once) by marched shadows and the ball kernel. Planar over receivers.
 Gathered gather_at_points(const LightField& field, const GridLevel& bottom, const Receivers& receivers,
-                          float mean_cosine, std::vector<LevelCost>& costs, Progress& progress);
+                          float mean_cosine, std::vector<LevelCost>& costs, Progress& progress,
+                          ReceiverKind kind = ReceiverKind::Medium);
 
 }  // namespace brisance

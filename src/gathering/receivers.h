@@ -26,6 +26,12 @@ struct ReceiverBlock {
     Box bounds;  // local [m]
 };
 
+// What `scattered` weighs light by (Gathered, below), with the direction of each receiver.
+enum class ReceiverKind {
+    Medium,  // the phase function toward `toward_camera`
+    Surface  // cosine / pi to the normal, which stands in the place of `toward_camera`; 0 from below
+};
+
 class Receivers {
 public:
     static constexpr int kGroup = 16;
@@ -51,7 +57,7 @@ struct Gathered {
     // Fluence [W/m^2], channels R G B.
     std::vector<float> fluence;
     // Radiance scattered toward the camera per unit scattering coefficient: integral of p L [W/(m^2 sr)]; R G B; only
-    // where receivers have a direction.
+    // where receivers have a direction. Of surfaces: what a white Lambert surface reflects [W/(m^2 sr)].
     std::vector<float> scattered;
     // Moments of the incident radiance against the real spherical harmonics of degree 1 and 2 (sh.h), of the direction
     // of travel: channel 3 * m + c for m = 0..7 and colour c; only when asked for.

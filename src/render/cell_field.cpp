@@ -49,11 +49,12 @@ Record interpolated(const Record* records, const vec3& p) {
 
 }  // namespace
 
-CellField::CellField(const Medium& medium, const std::vector<Rgb>& single, const std::vector<Rgb>& multiple,
-                     const Medium* similar, float forward)
+CellField::CellField(const Medium& medium, const NodeSources& sources, const Medium* similar, float forward)
     : medium_(&medium), direct_(!medium.emission.empty()), bricks_(cell_lattice(medium)) {
     records_.resize(bricks_.brick_count() * kRecords, CellRecord{});
     similar_.resize(similar ? records_.size() : 0, SimilarRecord{});
+    const bool outside = !sources.from_surfaces.empty() || !sources.from_emitters.empty();
+    outside_.resize(outside ? records_.size() : 0, OutsideRecord{});
     minimum_.resize(bricks_.brick_count());
     majorant_.resize(bricks_.brick_count());
     parallel_for(bricks_.brick_count(), [&](std::size_t b) {
@@ -65,8 +66,12 @@ CellField::CellField(const Medium& medium, const std::vector<Rgb>& single, const
         minimum_[b] = least->value[CellRecord::Extinction];
         majorant_[b] = greatest->value[CellRecord::Extinction];
         put(medium, direct_ ? medium.emission : medium.source, low, CellRecord::V, records);
-        put(medium, single, low, CellRecord::MV, records);
-        put(medium, multiple, low, CellRecord::MM, records);
+        put(medium, sources.single, low, CellRecord::MV, records);
+        put(medium, sources.multiple, low, CellRecord::MM, records);
+        if (outside) {
+            put(medium, sources.from_surfaces, low, OutsideRecord::MS, &outside_[b * kRecords]);
+            put(medium, sources.from_emitters, low, OutsideRecord::MA, &outside_[b * kRecords]);
+        }
         if (similar) {
             put_extinction(*similar, low, &similar_[b * kRecords]);
             put(*similar, direct_ ? similar->emission : similar->source, low, SimilarRecord::V,
@@ -85,6 +90,10 @@ CellField::CellField(const Medium& medium, const std::vector<Rgb>& single, const
 
 CellRecord CellField::sample(std::size_t brick, const vec3& p) const {
     return interpolated(&records_[brick * kRecords], p);
+}
+
+OutsideRecord CellField::sample_outside(std::size_t brick, const vec3& p) const {
+    return interpolated(&outside_[brick * kRecords], p);
 }
 
 SimilarRecord CellField::sample_similar(std::size_t brick, const vec3& p) const {

@@ -25,12 +25,26 @@ struct SimilarRecord {
     float value[Size];
 };
 
+// Light of the surroundings: source functions of MS and MA.
+struct OutsideRecord {
+    enum Slot { MS = 0, MA = 3, Size = 6 };
+    float value[Size];
+};
+
+// Source functions per node of the medium's lattice [W/(m^2 sr)]; an empty one is left out.
+struct NodeSources {
+    std::vector<Rgb> single;         // MV
+    std::vector<Rgb> multiple;       // MM
+    std::vector<Rgb> from_surfaces;  // MS
+    std::vector<Rgb> from_emitters;  // MA
+};
+
 class CellField {
 public:
-    // Source functions per node of the medium's lattice; an empty one is left out. `similar`: what they belong to, if
-    // it is not the medium itself; `forward`: share of all scattering in the peak that it leaves out.
-    CellField(const Medium& medium, const std::vector<Rgb>& single, const std::vector<Rgb>& multiple,
-              const Medium* similar = nullptr, float forward = 0.0f);
+    // `similar`: what the sources belong to, if it is not the medium itself; `forward`: share of all scattering in the
+    // peak that it leaves out.
+    explicit CellField(const Medium& medium, const NodeSources& sources = {}, const Medium* similar = nullptr,
+                       float forward = 0.0f);
 
     const Medium& medium() const { return *medium_; }
     const BrickLattice& bricks() const { return bricks_; }  // of cells
@@ -38,13 +52,16 @@ public:
     float minimum(std::size_t brick) const { return minimum_[brick]; }  // of extinction over the brick's cells
     float majorant(std::size_t brick) const { return majorant_[brick]; }
     bool has_similar() const { return !similar_.empty(); }
+    bool has_outside() const { return !outside_.empty(); }
     std::uint64_t bytes() const {
-        return records_.size() * sizeof(CellRecord) + similar_.size() * sizeof(SimilarRecord) + bricks_.bytes();
+        return records_.size() * sizeof(CellRecord) + similar_.size() * sizeof(SimilarRecord) +
+               outside_.size() * sizeof(OutsideRecord) + bricks_.bytes();
     }
 
     // Trilinear samples at p, in nodes from the brick's first node, each coordinate in [0, 8].
     CellRecord sample(std::size_t brick, const vec3& p) const;
     SimilarRecord sample_similar(std::size_t brick, const vec3& p) const;
+    OutsideRecord sample_outside(std::size_t brick, const vec3& p) const;
 
 private:
     const Medium* medium_;
@@ -52,6 +69,7 @@ private:
     BrickLattice bricks_;
     std::vector<CellRecord> records_;
     std::vector<SimilarRecord> similar_;  // empty: the medium itself
+    std::vector<OutsideRecord> outside_;  // empty: the surroundings send no light
     std::vector<float> minimum_, majorant_;
 };
 

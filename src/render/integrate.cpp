@@ -1,7 +1,7 @@
 #include "render/integrate.h"
 
 #include <algorithm>
-#include <atomic>
+#include <array>
 #include <cmath>
 
 #include "core/parallel.h"
@@ -34,6 +34,7 @@ vec3 sample_position(const CellSegment& s, double t) {
 struct Part {
     CellRecord record;
     SimilarRecord similar;  // where the field has one
+    OutsideRecord outside;  // the same
     float length, distance;
 };
 
@@ -60,16 +61,21 @@ void add_part(RaySum& sum, const CellField& field, const Part& p) {
         // Fire seen by one scattering that did not turn it: by all smoke before it.
         const Rgb forward = slot(s, SimilarRecord::Forward);
         const float tau = r[CellRecord::Extinction] * p.length;
-        sum.mv += v * (sum.forward + forward * mean_depth(tau));
+        sum.cells.at(Cell::MV) += v * (sum.forward + forward * mean_depth(tau));
         sum.forward += forward * tau;
         // The similar medium shows more of the fire by what counts as not scattered there.
-        sum.mv += slot(s, SimilarRecord::V) * (field.direct_emission() ? scattering.path : scattering.opacity) - v;
+        sum.cells.at(Cell::MV) +=
+            slot(s, SimilarRecord::V) * (field.direct_emission() ? scattering.path : scattering.opacity) - v;
     } else {
         sum.similar_depth = sum.depth;
     }
-    sum.v += v;
-    sum.mv += slot(r, CellRecord::MV) * scattering.opacity;
-    sum.mm += slot(r, CellRecord::MM) * scattering.opacity;
+    sum.cells.at(Cell::V) += v;
+    sum.cells.at(Cell::MV) += slot(r, CellRecord::MV) * scattering.opacity;
+    sum.cells.at(Cell::MM) += slot(r, CellRecord::MM) * scattering.opacity;
+    if (field.has_outside()) {
+        sum.cells.at(Cell::MS) += slot(p.outside.value, OutsideRecord::MS) * scattering.opacity;
+        sum.cells.at(Cell::MA) += slot(p.outside.value, OutsideRecord::MA) * scattering.opacity;
+    }
     sum.albedo_sum += Rgb(own.opacity * r[CellRecord::Albedo]);
     sum.distance_weight += own.opacity;
     sum.distance_sum += own.opacity * p.distance;
@@ -85,7 +91,9 @@ void walk_parts(const CellField& field, const Ray& ray, int parts, double end, c
         for (int k = 0; k < n; ++k) {
             const double t = s.begin + length * sample_place(k, n);
             const vec3 p = sample_position(s, t);
-            Part part{field.sample(s.brick, p), {}, static_cast<float>(length / n), static_cast<float>(t)};
+            Part part{field.sample(s.brick, p), {}, {}, static_cast<float>(length / n), static_cast<float>(t)};
+            if (field.has_outside())
+                part.outside = field.sample_outside(s.brick, p);
             if (field.has_similar())
                 part.similar = field.sample_similar(s.brick, p);
             if (!visit(part))
@@ -134,25 +142,23 @@ public:
             return static_cast<int>(image_.layers.size()) - 1;
         };
         beauty_ = add("", {"R", "G", "B", "A"}, false);
-        if (settings.cells) {
-            v_ = add("V", {"R", "G", "B"}, false);
-            if (settings.has_single)
-                mv_ = add("MV", {"R", "G", "B"}, false);
-            if (settings.has_multiple)
-                mm_ = add("MM", {"R", "G", "B"}, false);
-        }
+        cells_.fill(-1);
+        for (int cell = 0; cell < kCells; ++cell)
+            if (settings.cells && settings.layers[cell])
+                cells_[cell] = add(kCellNames[cell], {"R", "G", "B"}, false);
         z_ = add("Z", {"Z"}, true);
         albedo_ = add("albedo", {"R", "G", "B"}, false);
     }
 
     void pixel(int x, int y, const RaySum& s) {
         const std::size_t i = std::size_t(y) * image_.width + x;
-        const Rgb beauty = s.v + s.mv + s.mm;
+        Rgb beauty(0.0f);
+        for (const Rgb& cell : s.cells)
+            beauty += cell;
         float* b = &image_.layers[beauty_].pixels[4 * i];
         b[0] = beauty.x, b[1] = beauty.y, b[2] = beauty.z, b[3] = s.alpha;
-        put(v_, i, s.v);
-        put(mv_, i, s.mv);
-        put(mm_, i, s.mm);
+        for (int cell = 0; cell < kCells; ++cell)
+            put(cells_[cell], i, s.cells[cell]);
         put(albedo_, i, s.albedo_sum);
         // Distances are along the ray; Z is along the view axis.
         const double cosine = glm::dot(camera_.ray(x + 0.5, y + 0.5).direction, camera_.forward());
@@ -172,13 +178,12 @@ private:
 
     const Camera& camera_;
     Image image_;
-    int beauty_ = -1, v_ = -1, mv_ = -1, mm_ = -1, z_ = -1, albedo_ = -1;
+    int beauty_ = -1, z_ = -1, albedo_ = -1;
+    std::array<int, kCells> cells_;  // -1: no such layer
 };
 
 void add_weighted(RaySum& sum, const RaySum& s, float w) {
-    sum.v += w * s.v;
-    sum.mv += w * s.mv;
-    sum.mm += w * s.mm;
+    sum.cells.add(s.cells, Rgb(w));
     sum.alpha += w * s.alpha;
     sum.distance_weight += w * s.distance_weight;
     sum.distance_sum += w * s.distance_sum;
@@ -224,22 +229,96 @@ void marched_row(const CellField& field, const Camera& camera, int y, const std:
         writer.pixel(x, y, row[x]);
 }
 
-// What a ray sees up to the first surface, and that.
-RaySum look(const CellField& field, const Ray& ray, const PictureSettings& settings) {
+// What a ray sees up to the first surface, and what that emits; a surface that may scatter light is added to `found`,
+// with how much of its light arrives.
+struct FoundSurface {
+    SurfaceSample sample;
+    float weight;
+};
+
+RaySum look(const CellField& field, const Ray& ray, const PictureSettings& settings, SurfaceSample sample, float weight,
+            std::vector<FoundSurface>& found) {
     if (!settings.surroundings)
         return integrate(field, ray, settings.parts);
-    const std::optional<SurfaceHit> hit = settings.surroundings->intersector().first_hit(ray);
-    if (!hit)
-        return integrate(field, ray, settings.parts);
+    const Surroundings& set = *settings.surroundings;
+    const std::optional<SurfaceHit> hit = set.intersector().first_hit(ray);
+    if (!hit) {
+        RaySum sum = integrate(field, ray, settings.parts);
+        sum.cells.at(Cell::A) += std::exp(-sum.depth) * set.emitters().background(ray.direction);
+        return sum;
+    }
     RaySum sum = integrate(field, ray, settings.parts, hit->distance);
     const float through = std::exp(-sum.depth);
+    const SurfacePoint point = surface_point(set.scene(), *hit, -ray.direction);
+    sum.cells.at(Cell::A) += through * point.emission;
     sum.alpha = 1.0f;
     sum.distance_weight += through;
     sum.distance_sum += through * static_cast<float>(hit->distance);
-    const SurfacePoint point = surface_point(settings.surroundings->scene(), *hit, -ray.direction);
     sum.albedo_sum += through * point.material.base_colour;
+    if (sum.depth < kOpaqueDepth) {
+        sample.ray = ray;
+        sample.hit = *hit;
+        found.push_back({sample, weight * through});
+    }
     return sum;
 }
+
+// Rows of a picture together: their surfaces are lit in one call.
+class Band {
+public:
+    Band(const CellField& field, const Camera& camera, const PictureSettings& settings,
+         const std::vector<PixelSample>& samples, const LightSurfaces& light_surfaces)
+        : field_(field), camera_(camera), settings_(settings), samples_(samples), light_surfaces_(light_surfaces) {}
+
+    void draw(int begin, int end, PictureWriter& writer) {
+        const int width = camera_.settings().width;
+        sums_.assign(std::size_t(end - begin) * width, RaySum{});
+        std::vector<std::vector<FoundSurface>> rows(end - begin);
+        parallel_for(end - begin, [&](std::size_t row) { draw_row(begin, static_cast<int>(row), rows[row]); });
+        if (light_surfaces_)
+            light(rows, begin);
+        for (int y = begin; y < end; ++y)
+            for (int x = 0; x < width; ++x)
+                writer.pixel(x, y, sums_[std::size_t(y - begin) * width + x]);
+    }
+
+private:
+    void draw_row(int begin, int row, std::vector<FoundSurface>& found) {
+        const int width = camera_.settings().width, y = begin + row;
+        for (int x = 0; x < width; ++x)
+            for (std::uint32_t k = 0; k < samples_.size(); ++k) {
+                const PixelSample& s = samples_[k];
+                const Ray ray = camera_.ray(x + 0.5 + s.x, y + 0.5 + s.y);
+                const SurfaceSample sample{static_cast<std::uint32_t>(y * width + x), k, {}, {}};
+                add_weighted(sums_[std::size_t(row) * width + x], look(field_, ray, settings_, sample, s.weight, found),
+                             s.weight);
+            }
+    }
+
+    void light(const std::vector<std::vector<FoundSurface>>& rows, int begin) {
+        std::vector<SurfaceSample> all;
+        for (const auto& row : rows)
+            for (const FoundSurface& f : row)
+                all.push_back(f.sample);
+        std::vector<CellSum> lit(all.size());
+        light_surfaces_(all, lit);
+        std::size_t next = 0;
+        const std::size_t first = std::size_t(begin) * camera_.settings().width;
+        for (const auto& row : rows)
+            for (const FoundSurface& f : row)
+                sums_[f.sample.pixel - first].cells.add(lit[next++], Rgb(f.weight));
+    }
+
+    const CellField& field_;
+    const Camera& camera_;
+    const PictureSettings& settings_;
+    const std::vector<PixelSample>& samples_;
+    const LightSurfaces& light_surfaces_;
+    std::vector<RaySum> sums_;
+};
+
+// Rays whose surfaces are lit together: enough for gathers to be efficient, few enough to hold.
+constexpr std::size_t kRaysAtOnce = 1 << 18;
 
 }  // namespace
 
@@ -265,7 +344,7 @@ int automatic_samples(const Camera& camera, const CellField& field) {
 }
 
 Image render_picture(const CellField& field, const Camera& camera, const PictureSettings& settings,
-                     const LightPoints& light_points, Progress& progress) {
+                     const LightPoints& light_points, Progress& progress, const LightSurfaces& light_surfaces) {
     PictureWriter writer(camera, settings);
     const std::vector<PixelSample> samples = pixel_samples(camera.settings(), settings.samples_per_axis);
     const int width = camera.settings().width, height = camera.settings().height;
@@ -276,16 +355,13 @@ Image render_picture(const CellField& field, const Camera& camera, const Picture
         }
         return writer.take();
     }
-    std::atomic<int> done = 0;
-    parallel_for(height, [&](std::size_t y) {
-        for (int x = 0; x < width; ++x) {
-            RaySum sum;
-            for (const PixelSample& s : samples)
-                add_weighted(sum, look(field, camera.ray(x + 0.5 + s.x, y + 0.5 + s.y), settings), s.weight);
-            writer.pixel(x, static_cast<int>(y), sum);
-        }
-        progress.fraction(double(++done) / height);
-    });
+    const std::size_t per_row = std::max<std::size_t>(1, std::size_t(width) * samples.size());
+    const int rows = static_cast<int>(std::clamp<std::size_t>(kRaysAtOnce / per_row, 1, height));
+    Band band(field, camera, settings, samples, light_surfaces);
+    for (int y = 0; y < height; y += rows) {
+        band.draw(y, std::min(y + rows, height), writer);
+        progress.fraction(double(std::min(y + rows, height)) / height);
+    }
     return writer.take();
 }
 

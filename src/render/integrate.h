@@ -1,7 +1,9 @@
 // Camera rays to pixels.
 #pragma once
 
+#include <array>
 #include <functional>
+#include <initializer_list>
 #include <limits>
 #include <vector>
 
@@ -32,20 +34,39 @@ struct PointLighting {
 using LightPoints = std::function<void(const std::vector<MarchPoint>& points, std::vector<PointLighting>& lighting)>;
 
 struct PictureSettings {
-    int samples_per_axis = 1;  // anti-aliasing, along a pixel's side
-    int parts = 2;             // of a cell's segment
-    bool cells = true;         // layers per ledger cell
-    bool has_single = false;
-    bool has_multiple = false;
-    const Surroundings* surroundings = nullptr;  // rays end at its surfaces
+    int samples_per_axis = 1;                                // anti-aliasing, along a pixel's side
+    int parts = 2;                                           // of a cell's segment
+    bool cells = true;                                       // layers per ledger cell, ...
+    std::array<bool, kCells> layers = layers_of({Cell::V});  // ... of these cells
+    const Surroundings* surroundings = nullptr;              // rays end at its surfaces
+
+    static constexpr std::array<bool, kCells> layers_of(std::initializer_list<Cell> cells) {
+        std::array<bool, kCells> layers{};
+        for (const Cell cell : cells)
+            layers[static_cast<int>(cell)] = true;
+        return layers;
+    }
 };
+
+// A surface that the camera sees, on one of a pixel's rays.
+struct SurfaceSample {
+    std::uint32_t pixel;
+    std::uint32_t number;  // of the ray in its pixel
+    Ray ray;
+    SurfaceHit hit;
+};
+
+// Light that surfaces scatter toward the camera: fills the row S of `light`, one entry per sample. The same for any
+// split of a picture's samples into calls.
+using LightSurfaces = std::function<void(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light)>;
 
 // The samples along a pixel's side that keep neighbouring rays within a fifth of a voxel where the medium is nearest.
 int automatic_samples(const Camera& camera, const CellField& field);
 
 // Beauty (R, G, B, A), cell layers, Z (opacity-weighted mean distance along the view axis, 1e10 where nothing is) and
 // albedo (premultiplied by alpha). `light_points` empty: the field holds the lighting.
+// `light_surfaces` empty: surfaces are black, but for what they emit.
 Image render_picture(const CellField& field, const Camera& camera, const PictureSettings& settings,
-                     const LightPoints& light_points, Progress& progress);
+                     const LightPoints& light_points, Progress& progress, const LightSurfaces& light_surfaces = {});
 
 }  // namespace brisance

@@ -1,15 +1,20 @@
 #include "render/lighting.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "lights/voxel_lights.h"
 #include "medium/phase.h"
+#include "render/emitter_gather.h"
 
 namespace brisance {
 
 namespace {
+
+// Of the pyramid that rays toward extended lights march: which part of a light is hidden by smoke needs no more.
+constexpr int kAimLevel = 2;
 
 nlohmann::ordered_json level_table(const std::vector<LevelCost>& costs) {
     auto table = nlohmann::ordered_json::array();
@@ -76,29 +81,52 @@ std::vector<vec3> directions_to(const Medium& medium, const vec3& eye) {
     return directions;
 }
 
-// March points as receivers, sorted into blocks by brick; `order` says which point each padded receiver is.
+// Sorts points into cubes of four nodes inside the medium, of ever more with their distance from it: only coarse lights
+// matter there.
+class PointCells {
+public:
+    explicit PointCells(const Medium& medium) : medium_(medium) {
+        const ivec3 first = (medium.lattice.min_brick() * BrickLattice::kSize) - medium.reference_node;
+        low_ = vec3(first);
+        high_ = vec3(first + medium.lattice.brick_extent() * BrickLattice::kSize);
+    }
+
+    std::uint64_t key(const vec3& local) const {
+        const vec3 p = medium_.index_from_local * local;
+        const vec3 outside = glm::max(glm::max(low_ - p, p - high_), vec3(0.0f));
+        const float distance = glm::length(outside) / 8.0f;
+        const int shift = 2 + std::clamp(distance > 1.0f ? std::ilogb(distance) + 1 : 0, 0, 24);
+        const vec3 scaled = p / std::ldexp(1.0f, shift);
+        const ivec3 cell = ivec3(glm::clamp(glm::floor(scaled), vec3(-(1 << 18)), vec3((1 << 18) - 1))) + (1 << 18);
+        return std::uint64_t(shift) << 57 | std::uint64_t(cell.x) << 38 | std::uint64_t(cell.y) << 19 |
+               std::uint64_t(cell.z);
+    }
+
+private:
+    const Medium& medium_;
+    vec3 low_, high_;  // of the medium, in nodes from the reference node
+};
+
+// March points as receivers, sorted into blocks by cell; `order` says which point each padded receiver is.
 Receivers point_receivers(const Medium& medium, const std::vector<MarchPoint>& points, bool directional,
                           std::vector<std::uint32_t>& order) {
     struct Keyed {
-        std::uint64_t brick;
+        std::uint64_t cell;
         std::uint32_t point;
     };
     std::vector<Keyed> keyed(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const ivec3 node = ivec3(glm::floor(medium.index_from_local * points[i].local)) + (1 << 20);
-        const ivec3 b = node >> 2;
-        keyed[i] = {std::uint64_t(b.x) << 42 | std::uint64_t(b.y) << 21 | std::uint64_t(b.z), std::uint32_t(i)};
-    }
-    std::sort(keyed.begin(), keyed.end(), [](const Keyed& a, const Keyed& b) {
-        return a.brick != b.brick ? a.brick < b.brick : a.point < b.point;
-    });
+    const PointCells cells(medium);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        keyed[i] = {cells.key(points[i].local), std::uint32_t(i)};
+    std::sort(keyed.begin(), keyed.end(),
+              [](const Keyed& a, const Keyed& b) { return a.cell != b.cell ? a.cell < b.cell : a.point < b.point; });
     Receivers receivers;
     std::vector<vec3> positions, directions;
     for (std::size_t i = 0; i < keyed.size();) {
         positions.clear();
         directions.clear();
         std::size_t end = i;
-        for (; end < keyed.size() && keyed[end].brick == keyed[i].brick; ++end) {
+        for (; end < keyed.size() && keyed[end].cell == keyed[i].cell; ++end) {
             positions.push_back(points[keyed[end].point].local);
             if (directional)
                 directions.push_back(points[keyed[end].point].toward_camera);
@@ -115,17 +143,67 @@ Receivers point_receivers(const Medium& medium, const std::vector<MarchPoint>& p
 }  // namespace
 
 Lighting::Lighting(const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera,
-                   Statistics& statistics, Progress& progress)
+                   Statistics& statistics, Progress& progress, const Surroundings* surroundings,
+                   const PointLights* reflecting)
     : shot_(shot),
       plan_(plan),
       medium_(medium),
       statistics_(statistics),
       progress_(progress),
       pyramid_(medium, ExtinctionPyramid::kMaxLevels),
-      needed_(nodes_beside_extinction(medium)) {
+      needed_(nodes_beside_extinction(medium)),
+      depths_(pyramid_, kAimLevel) {
     if (plan.directional)
         toward_camera_ = directions_to(medium, vec3(camera.eye_local()));
-    light_from_fire();
+    Gathered first;
+    if (plan.emission)
+        first = light_from_fire();
+    else
+        first.resize(needed_.size(), plan.directional, plan.multiple && plan.directional);
+    if (reflecting && plan.needs(Cell::MS)) {
+        const Gathered more = light_from_surfaces(*reflecting);
+        nodes_.from_surfaces = source_function(more);
+        first.add(more);
+    }
+    if (surroundings && plan.needs(Cell::MA)) {
+        const Gathered more = light_from_emitters(*surroundings);
+        nodes_.from_emitters = source_function(more);
+        first.add(more);
+    }
+    if (plan.multiple)
+        light_from_smoke(first);
+}
+
+LatticeRequest Lighting::request() const {
+    const bool moments = plan_.multiple && plan_.directional;
+    return {&needed_, plan_.directional ? &toward_camera_ : nullptr, moments, medium_.mean_cosine};
+}
+
+Gathered Lighting::light_from_surfaces(const PointLights& reflecting) {
+    progress_.stage("light from surfaces (MS)");
+    const Stopwatch watch;
+    const LightingGrid grid = build_point_grid(medium_, reflecting, shot_.lighting.alpha);
+    // Lights outside stand for themselves: no voxel has a share in them.
+    const std::vector<float> no_weight(needed_.size(), 0.0f);
+    const LightField field{&pyramid_, nullptr, nullptr, &grid, &no_weight, shot_.lighting.alpha, shot_.lighting};
+    std::vector<LevelCost> costs;
+    Gathered g = gather_from_outside(field, request(), costs, progress_);
+    prepare_interpolation(medium_.lattice, needed_, g);
+    statistics_.stages.push_back({"light from surfaces (MS)",
+                                  watch.seconds(),
+                                  grid.bytes() + most_held(costs),
+                                  {{"lights", reflecting.size()}, {"levels", level_table(costs)}}});
+    return g;
+}
+
+Gathered Lighting::light_from_emitters(const Surroundings& surroundings) {
+    progress_.stage("light from emitters (MA)");
+    const Stopwatch watch;
+    const LatticeRequest ask = request();
+    Gathered g = gather_from_emitters(surroundings, pyramid_, ask);
+    prepare_interpolation(medium_.lattice, needed_, g);
+    statistics_.stages.push_back({"light from emitters (MA)", watch.seconds(), 0, {}});
+    return g;
 }
 
 std::vector<Rgb> Lighting::source_function(const Gathered& g) const {
@@ -144,7 +222,7 @@ std::vector<Rgb> Lighting::source_function(const Gathered& g) const {
     return source;
 }
 
-void Lighting::light_from_fire() {
+Gathered Lighting::light_from_fire() {
     progress_.stage("fire to lights");
     Stopwatch watch;
     HierarchyLights lights = build_hierarchy(medium_, {voxel_lights(medium_), {}}, shot_.lighting.levels);
@@ -156,16 +234,14 @@ void Lighting::light_from_fire() {
 
     progress_.stage("light from the fire (MV)");
     watch = Stopwatch();
-    const bool nodes = !marching() || plan_.multiple || shot_.lighting.energy_balance;
+    const bool nodes = plan_.single && (!marching() || plan_.multiple || shot_.lighting.energy_balance);
     StageCost stage{"light from the fire (MV)", 0.0, 0, {}};
     Rgb scale(1.0f);
+    Gathered first;
     if (nodes) {
         std::vector<LevelCost> costs;
         const LightField field = lights.field(pyramid_, shot_.lighting.alpha, shot_.lighting, nullptr);
-        const bool moments = plan_.multiple && plan_.directional;
-        Gathered first = gather_at_nodes(
-            field, {&needed_, plan_.directional ? &toward_camera_ : nullptr, moments, medium_.mean_cosine}, costs,
-            progress_);
+        first = gather_at_nodes(field, request(), costs, progress_);
         prepare_interpolation(medium_.lattice, needed_, first);
         if (shot_.lighting.energy_balance) {
             BounceBalance balance;
@@ -180,16 +256,24 @@ void Lighting::light_from_fire() {
         statistics_.stages.push_back(stage);
         if (!marching())
             nodes_.single = source_function(first);
-        if (plan_.multiple)
-            light_from_smoke(first);
     }
-    if (marching()) {
-        fire_ = std::make_unique<PointLights>();
+    if (marching() || lights_surfaces()) {
+        fire_ = std::make_unique<KeptLights>();
         fire_->lights = std::move(lights);
-        fire_->field = fire_->lights.field(pyramid_, shot_.lighting.alpha, shot_.lighting, &fire_->maps);
-        fire_->bottom = bottom_level(fire_->field);
         fire_->scale = scale;
+        keep(*fire_, shot_.lighting.alpha);
     }
+    if (first.fluence.empty())
+        first.resize(needed_.size(), plan_.directional, plan_.multiple && plan_.directional);
+    return first;
+}
+
+// Makes what gathering at points asks for, from lights that have found their place.
+void Lighting::keep(KeptLights& lights, float alpha) {
+    lights.field = lights.lights.field(pyramid_, alpha, shot_.lighting, &lights.maps);
+    lights.bottom = bottom_level(lights.field);
+    if (lights_surfaces())
+        lights.aim = std::make_unique<ExtendedLight>(medium_, depths_, lights.lights.light.intensity);
 }
 
 Gathered Lighting::gather_last_flight(const HierarchyLights& lights, int order, nlohmann::ordered_json& balances,
@@ -246,8 +330,9 @@ void Lighting::light_from_smoke(const Gathered& first) {
     std::vector<LevelCost> levels;
     Gathered sum;
     sum.resize(needed_.size(), plan_.directional, false);
-    if (marching())
-        smoke_ = std::make_unique<PointLights>();
+    const bool kept = marching() || lights_surfaces();
+    if (kept)
+        smoke_ = std::make_unique<KeptLights>();
     for (std::size_t k = 0; k < orders.size(); ++k) {
         orders[k].sharpen(medium_.lattice);
         HierarchyLights lights = build_hierarchy(medium_, std::move(orders[k]), shot_.lighting.levels);
@@ -261,15 +346,13 @@ void Lighting::light_from_smoke(const Gathered& first) {
                 nodes_.orders.push_back(source_function(g));
             sum.add(g);
         }
-        if (marching())
+        if (kept)
             smoke_->lights = std::move(lights);
     }
-    if (marching()) {
-        smoke_->field = smoke_->lights.field(pyramid_, shot_.scattering.alpha, shot_.lighting, &smoke_->maps);
-        smoke_->bottom = bottom_level(smoke_->field);
-    } else {
+    if (kept)
+        keep(*smoke_, shot_.scattering.alpha);
+    if (!marching())
         nodes_.multiple = source_function(sum);
-    }
     last.seconds = watch.seconds();
     last.bytes = most_held(levels) + (sum.fluence.size() + sum.scattered.size()) * 4;
     last.detail["levels"] = level_table(levels);
@@ -278,13 +361,37 @@ void Lighting::light_from_smoke(const Gathered& first) {
     statistics_.stages.push_back(last);
 }
 
+void Lighting::at_surfaces(std::vector<SurfaceReceiver>& points) {
+    if (points.empty())
+        return;
+    std::vector<MarchPoint> places;
+    for (const SurfaceReceiver& p : points)
+        places.push_back({p.local, p.normal});
+    std::vector<std::uint32_t> order;
+    const Receivers receivers = point_receivers(medium_, places, true, order);
+    const std::size_t n = order.size();
+    const auto gather = [&](const std::unique_ptr<KeptLights>& lights, Rgb SurfaceReceiver::*slot) {
+        if (!lights)
+            return;
+        std::vector<LevelCost> costs;
+        Progress silent;
+        const Gathered g =
+            gather_at_points(lights->field, lights->bottom, receivers, 0.0f, costs, silent, ReceiverKind::Surface);
+        for (std::size_t i = 0; i < n; ++i)
+            for (int c = 0; c < 3; ++c)
+                (points[order[i]].*slot)[c] = lights->scale[c] * g.scattered[c * n + i];
+    };
+    gather(fire_, &SurfaceReceiver::fire);
+    gather(smoke_, &SurfaceReceiver::smoke);
+}
+
 void Lighting::at_points(const std::vector<MarchPoint>& points, std::vector<PointLighting>& lighting) {
     if (points.empty())
         return;
     std::vector<std::uint32_t> order;
     const Receivers receivers = point_receivers(medium_, points, plan_.directional, order);
     const std::size_t n = order.size();
-    const auto gather = [&](const std::unique_ptr<PointLights>& lights, Rgb PointLighting::*slot) {
+    const auto gather = [&](const std::unique_ptr<KeptLights>& lights, Rgb PointLighting::*slot) {
         if (!lights)
             return;
         std::vector<LevelCost> costs;

@@ -5,7 +5,10 @@
 #include <vector>
 
 #include "gathering/gather.h"
+#include "lights/point_grid.h"
 #include "render/camera.h"
+#include "render/cell_field.h"
+#include "render/extended_light.h"
 #include "render/integrate.h"
 #include "render/plan.h"
 #include "render/statistics.h"
@@ -14,33 +17,49 @@
 
 namespace brisance {
 
-// Source functions (albedo times radiance scattered toward the camera, [W/(m^2 sr)]) at the medium's nodes.
-struct NodeLighting {
-    std::vector<Rgb> single;
-    std::vector<Rgb> multiple;
+// Source functions (albedo times radiance scattered toward the camera) at the medium's nodes.
+struct NodeLighting : NodeSources {
     std::vector<std::vector<Rgb>> orders;  // of `multiple`, where orders are kept apart; the last is the tail
+};
+
+// A point of a surface, and the light that a white Lambert surface there would reflect if no surface stood in its way.
+struct SurfaceReceiver {
+    vec3 local;                   // [m]
+    vec3 normal;                  // unit
+    Rgb fire{0.0f}, smoke{0.0f};  // [W/(m^2 sr)]
 };
 
 class Lighting {
 public:
-    // Keeps references: the medium must outlive it.
+    // Keeps references: the medium must outlive it. `surroundings`: null where there are none; `reflecting`: what
+    // surfaces send into the medium, as lights.
     Lighting(const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera, Statistics& statistics,
-             Progress& progress);
+             Progress& progress, const Surroundings* surroundings = nullptr, const PointLights* reflecting = nullptr);
 
     // For GatherMethod::Cache.
     const NodeLighting& at_nodes() const { return nodes_; }
     // For GatherMethod::RayMarch: gathers at the points themselves.
     void at_points(const std::vector<MarchPoint>& points, std::vector<PointLighting>& lighting);
 
+    // For surfaces, where the plan needs SV or SM: fills `fire` and `smoke`.
+    void at_surfaces(std::vector<SurfaceReceiver>& points);
+    // What surfaces aim at to see whether it is hidden from them; empty where the plan has no such cell.
+    const ExtendedLight* fire_to_aim_at() const { return fire_ ? fire_->aim.get() : nullptr; }
+    const ExtendedLight* smoke_to_aim_at() const { return smoke_ ? smoke_->aim.get() : nullptr; }
+
 private:
-    void light_from_fire();
+    Gathered light_from_fire();
+    Gathered light_from_surfaces(const PointLights& reflecting);
+    Gathered light_from_emitters(const Surroundings& surroundings);
+    LatticeRequest request() const;
     std::vector<ScatteredLight> orders_of_scattering(const Gathered& first);
     void light_from_smoke(const Gathered& first);
     Gathered gather_last_flight(const HierarchyLights& lights, int order, nlohmann::ordered_json& balances,
                                 std::vector<LevelCost>& costs);
     std::vector<Rgb> source_function(const Gathered& gathered) const;
-    bool orders_apart() const { return shot_.output.bounce_layers && !marching(); }
+    bool orders_apart() const { return shot_.output.bounce_layers && !marching() && !lights_surfaces(); }
     bool marching() const { return shot_.lighting.gather == GatherMethod::RayMarch; }
+    bool lights_surfaces() const { return plan_.needs(Cell::SV) || plan_.needs(Cell::SM); }
 
     const Shot& shot_;
     const Plan& plan_;
@@ -50,17 +69,20 @@ private:
     ExtinctionPyramid pyramid_;
     std::vector<std::uint8_t> needed_;
     std::vector<vec3> toward_camera_;
+    PointDepths depths_;
     NodeLighting nodes_;
 
-    // Of the fire and of the smoke, kept for at_points only.
-    struct PointLights {
+    // Of the fire and of the smoke, kept for at_points and at_surfaces only.
+    struct KeptLights {
         HierarchyLights lights;
         LightField field;
         GridLevel bottom;
         ShadowMapCache maps;
         Rgb scale{1.0f};
+        std::unique_ptr<ExtendedLight> aim;  // for surfaces
     };
-    std::unique_ptr<PointLights> fire_, smoke_;
+    void keep(KeptLights& lights, float alpha);
+    std::unique_ptr<KeptLights> fire_, smoke_;
 };
 
 }  // namespace brisance

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/cell.h"
 #include "medium/cell_walk.h"
 #include "render/cell_field.h"
 
@@ -30,9 +31,9 @@ void walk_cells(const CellField& field, const Ray& ray, const Visit& visit,
                 [&](const CellSegment& brick) { return walk_cubes<1>(brick, visit); });
 }
 
-// What one ray sees. Radiance per ledger cell [W/(m^2 sr)].
+// What one ray sees.
 struct RaySum {
-    Rgb v{0.0f}, mv{0.0f}, mm{0.0f};
+    CellSum cells;
     float depth = 0.0f;            // optical depth of the ray so far, ...
     float similar_depth = 0.0f;    // ... in the medium that scattered light was followed through
     Rgb forward{0.0f};             // optical depth of scattering straight on, where that is followed by itself

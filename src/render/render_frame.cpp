@@ -13,6 +13,8 @@
 #include "render/integrate.h"
 #include "render/lighting.h"
 #include "render/plan.h"
+#include "render/reflected_lights.h"
+#include "render/surface_shader.h"
 #include "render/trace_picture.h"
 #include "shot/write_shot.h"
 
@@ -50,13 +52,13 @@ void add_order_layers(Image& image, const CellField& field, const NodeLighting& 
     };
     PictureSettings one = settings;
     one.cells = true;
-    if (settings.has_single) {
+    if (settings.layers[static_cast<int>(Cell::MV)]) {
         const Image picture = settings.cells ? Image{} : render_picture(field, camera, one, {}, progress);
         add("bounce1", settings.cells ? Layer(image.layer("MV")) : picture.layer("MV"));
     }
     for (std::size_t k = 0; k < lighting.orders.size(); ++k) {
-        const CellField order(medium, {}, lighting.orders[k], similar);
-        one.has_single = false;
+        const CellField order(medium, {{}, lighting.orders[k], {}, {}}, similar);
+        one.layers[static_cast<int>(Cell::MV)] = false;
         const Image picture = render_picture(order, camera, one, {}, progress);
         const bool tail = k + 1 == lighting.orders.size() && k > 0;
         add(tail ? "bounces_beyond" + std::to_string(k + 1) : "bounce" + std::to_string(k + 2), picture.layer("MM"));
@@ -69,13 +71,52 @@ std::uint64_t peak_resident_bytes() {
     return std::uint64_t(usage.ru_maxrss) * 1024;
 }
 
-Image draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera, Statistics& statistics,
-                ImageMetadata& metadata, Progress& progress) {
+std::unique_ptr<VirtualLights> place_virtual_lights(const Shot& shot, const DirectLight& scene, const Camera& camera,
+                                                    Statistics& statistics, Progress& progress) {
+    progress.stage("virtual lights");
+    const Stopwatch watch;
+    const PixelCamera pixels{camera.settings().width, camera.settings().height,
+                             [&](double x, double y) { return camera.ray(x, y); }};
+    auto lights = std::make_unique<VirtualLights>(scene, pixels, shot.virtual_lights);
+    const VirtualLightReport& r = lights->report();
+    statistics.stages.push_back({"virtual lights",
+                                 watch.seconds(),
+                                 r.bytes + r.photon_bytes,
+                                 {{"candidates", r.candidates},
+                                  {"lights", r.lights},
+                                  {"with_profiles", r.profiles},
+                                  {"photons", r.photons.photons},
+                                  {"photons_from_fire", r.photons.from_fire},
+                                  {"photons_not_finite", r.photons.not_finite},
+                                  {"unshared_fraction", r.photons.unshared_fraction()},
+                                  {"candidate_seconds", r.candidate_seconds},
+                                  {"elimination_seconds", r.elimination_seconds},
+                                  {"area_seconds", r.area_seconds},
+                                  {"photon_seconds", r.photon_seconds},
+                                  {"profile_seconds", r.profile_seconds}}});
+    return lights;
+}
+
+// Anti-aliasing samples along a pixel's side where there are surfaces: their edges are sharp.
+constexpr int kSurfaceSamples = 4;
+
+Image draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const Surroundings* surroundings,
+                const Camera& camera, Statistics& statistics, ImageMetadata& metadata, Progress& progress) {
+    std::optional<PathTracer> paths;
+    if (plan.surfaces)
+        paths.emplace(medium, shot.tracing, shot.scattering.bounces, surroundings);
+    std::unique_ptr<VirtualLights> virtual_lights;
+    if (shot.virtual_lights.count > 0 && (plan.needs(Cell::SS) || plan.needs(Cell::MS)))
+        virtual_lights = place_virtual_lights(shot, paths->direct(), camera, statistics, progress);
     std::unique_ptr<Lighting> lighting;
     std::optional<Medium> similar;
-    if (plan.single) {
+    if (plan.single || plan.needs(Cell::SV) || plan.needs(Cell::MA)) {
         similar = similar_medium(medium, shot.scattering.bounces);
-        lighting = std::make_unique<Lighting>(shot, plan, similar ? *similar : medium, camera, statistics, progress);
+        std::optional<PointLights> reflecting;
+        if (virtual_lights)
+            reflecting = reflected_lights(*virtual_lights);
+        lighting = std::make_unique<Lighting>(shot, plan, similar ? *similar : medium, camera, statistics, progress,
+                                              surroundings, reflecting ? &*reflecting : nullptr);
     }
     progress.stage("camera");
     const Stopwatch watch;
@@ -83,17 +124,26 @@ Image draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     const NodeLighting none;
     const NodeLighting& nodes = lighting && !marching ? lighting->at_nodes() : none;
     const float forward = forward_left_out(medium.mean_cosine, shot.scattering.bounces);
-    const CellField field(medium, nodes.single, nodes.multiple, similar ? &*similar : nullptr, forward);
+    const CellField field(medium, nodes, similar ? &*similar : nullptr, forward);
     PictureSettings settings;
     settings.samples_per_axis =
         camera.settings().samples_per_axis > 0 ? camera.settings().samples_per_axis : automatic_samples(camera, field);
     settings.cells = shot.output.cell_layers;
-    settings.has_single = plan.single;
-    settings.has_multiple = plan.multiple;
+    settings.layers = plan.needed;
+    settings.layers[static_cast<int>(Cell::V)] |= !medium.lattice.empty();
+    settings.surroundings = surroundings;
+    if (plan.surfaces && camera.settings().samples_per_axis == 0)
+        settings.samples_per_axis = std::max(settings.samples_per_axis, kSurfaceSamples);
+    std::optional<SurfaceShader> shader;
+    LightSurfaces light_surfaces;
+    if (plan.surfaces) {
+        shader.emplace(plan, field, lighting.get(), virtual_lights.get(), *paths, settings.parts);
+        light_surfaces = [&](const auto& samples, auto& light) { shader->shade(samples, light); };
+    }
     LightPoints light_points;
     if (lighting && marching)
         light_points = [&](const auto& points, auto& out) { lighting->at_points(points, out); };
-    Image image = render_picture(field, camera, settings, light_points, progress);
+    Image image = render_picture(field, camera, settings, light_points, progress, light_surfaces);
     if (shot.output.bounce_layers && marching)
         progress.warning("bounce-layers", "output.layers.bounces needs lighting.gather = cache; left out");
     else if (shot.output.bounce_layers && lighting)
@@ -116,9 +166,9 @@ void file_single_scattering(Image& image, const Image& single) {
     }
 }
 
-Image draw(const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera, Statistics& statistics,
-           ImageMetadata& metadata, Progress& progress) {
-    Image image = draw_once(shot, plan, medium, camera, statistics, metadata, progress);
+Image draw(const Shot& shot, const Plan& plan, const Medium& medium, const Surroundings* surroundings,
+           const Camera& camera, Statistics& statistics, ImageMetadata& metadata, Progress& progress) {
+    Image image = draw_once(shot, plan, medium, surroundings, camera, statistics, metadata, progress);
     const bool mixed = plan.multiple && shot.scattering.bounces < 0 && forward_share(medium.mean_cosine) > 0.0f;
     if (!mixed || !shot.output.cell_layers)
         return image;
@@ -129,7 +179,7 @@ Image draw(const Shot& shot, const Plan& plan, const Medium& medium, const Camer
     single.multiple = false;
     Statistics costs;
     ImageMetadata ignored;
-    file_single_scattering(image, draw_once(alone, single, medium, camera, costs, ignored, progress));
+    file_single_scattering(image, draw_once(alone, single, medium, surroundings, camera, costs, ignored, progress));
     for (StageCost& stage : costs.stages) {
         stage.name += ", for its own layer";
         statistics.stages.push_back(std::move(stage));
@@ -190,7 +240,7 @@ void render_into(RenderedFrame& out, const Shot& shot, const Medium& medium, con
         out.halves = {std::move(traced.halves[0]), std::move(traced.halves[1])};
         out.metadata.samples_per_pixel = traced.samples_per_pixel;
     } else {
-        out.image = draw(shot, plan, medium, camera, out.statistics, out.metadata, progress);
+        out.image = draw(shot, plan, medium, surroundings, camera, out.statistics, out.metadata, progress);
     }
     if (shot.certify.enabled)
         add_certificate(out, shot, plan, medium, camera, progress);

@@ -310,7 +310,7 @@ private:
 // Alpha, depth and albedo have nothing random about them: a few of the camera's marches give them.
 Image sampled_layers(const Medium& medium, const Surroundings* surroundings, const Camera& camera) {
     constexpr int kEnough = 2;  // rays along a pixel's side
-    const CellField field(medium, {}, {});
+    const CellField field(medium);
     PictureSettings settings;
     const int asked = camera.settings().samples_per_axis;
     settings.samples_per_axis = asked > 0 ? asked : std::min(automatic_samples(camera, field), kEnough);

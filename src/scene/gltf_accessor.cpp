@@ -172,7 +172,10 @@ std::size_t element_count(const GltfFile& file, int accessor, const std::string&
 std::vector<float> read_floats(const GltfFile& file, int accessor, int components, const std::string& what) {
     const Elements from = elements(file, accessor, components, what);
     const auto n = static_cast<std::size_t>(components);
-    std::vector<float> numbers(from.count * n);
+    std::vector<float> numbers;
+    if (from.count > numbers.max_size() / n)
+        file.reject(fmt::format("{}: {} elements are more than any memory holds", what, from.count));
+    numbers.resize(from.count * n);
     if (from.first != nullptr)
         for (std::size_t i = 0; i < from.count; ++i)
             convert_any(from, i, n, &numbers[i * n]);

@@ -23,6 +23,7 @@ constexpr std::array kKnownExtensions = {
     "KHR_materials_unlit",  "KHR_materials_transmission",      "KHR_materials_volume", "KHR_mesh_quantization",
     "KHR_texture_transform"};
 constexpr std::size_t kDeepestJson = 256;
+constexpr std::size_t kBeyond = 8;  // bytes that tinygltf may read after the end: a chunk's header
 
 using Bytes = std::vector<unsigned char>;
 
@@ -44,7 +45,9 @@ Bytes read_bytes(const std::filesystem::path& path, const std::string& whose, Me
     if (error)
         throw Error(ExitCode::BadData, fmt::format("{}: it is no file that can be read", path.string()));
     budget.claim(path.string(), static_cast<double>(size));
-    Bytes bytes(size);
+    Bytes bytes;
+    bytes.reserve(size + kBeyond);
+    bytes.resize(size);
     std::ifstream in(path, std::ios::binary);
     in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
     if (!in)
@@ -65,17 +68,17 @@ bool is_binary(const Bytes& bytes) {
 // The lengths that a .glb claims, and its JSON.
 std::span<const unsigned char> json_of_binary(const GltfFile& file, const Bytes& bytes) {
     if (bytes.size() >= 8 && u32_at(bytes, 4) != 2)
-        file.reject(fmt::format("it is glTF {}, only glTF 2 can be read", u32_at(bytes, 4)));
+        file.reject(fmt::format("it is glTF {}, only glTF 2 can be read", u32_at(bytes, 4)), "convert it to glTF 2");
     constexpr std::uint64_t kJson = 20, kChunkHeader = 8;
     if (bytes.size() < kJson || u32_at(bytes, 8) > bytes.size())
         file.reject(fmt::format("truncated: it ends after {} of {} bytes", bytes.size(),
                                 bytes.size() < 12 ? kJson : u32_at(bytes, 8)));
     const std::uint64_t length = u32_at(bytes, 8), json = u32_at(bytes, 12);
     if (length < kJson || json > length - kJson)
-        file.reject("damaged: its JSON is longer than itself");
+        file.reject("damaged: its JSON claims more bytes than it has");
     const std::uint64_t after_json = length - kJson - json;
     if (after_json >= kChunkHeader && u32_at(bytes, kJson + json) > after_json - kChunkHeader)
-        file.reject("damaged: its binary chunk is longer than itself");
+        file.reject("damaged: its binary chunk claims more bytes than it has");
     return {bytes.data() + kJson, json};
 }
 
@@ -139,37 +142,18 @@ bool keep_image(tinygltf::Image* image, int, std::string*, std::string*, int, in
     return true;
 }
 
-// Runs tinygltf. `bytes` are followed by 8 zeros, since it may read a chunk's header beyond the end.
-void parse(GltfFile& file, Bytes& bytes, MemoryBudget& budget, Progress& progress) {
-    const auto size = static_cast<unsigned int>(bytes.size());
-    const bool binary = is_binary(bytes);
-    Reading reading{file, budget};
-    tinygltf::TinyGLTF reader;
-    reader.SetImageLoader(keep_image, nullptr);
-    reader.SetFsCallbacks({[](const std::string& name, void*) { return !name.empty(); },
-                           [](const std::string& name, void*) { return name; }, read_buffer, nullptr, &reading});
-    bytes.resize(bytes.size() + 8);
-    std::string error, warning;
-    const bool read = binary ? reader.LoadBinaryFromMemory(&file.model, &error, &warning, bytes.data(), size, "")
-                             : reader.LoadASCIIFromString(&file.model, &error, &warning,
-                                                          reinterpret_cast<const char*>(bytes.data()), size, "");
-    if (!read)
-        file.reject("not glTF, or damaged: " + printable(error, 160));
-    if (!error.empty())
-        progress.warning("gltf-part",
-                         fmt::format("{}: left out what is not glTF: {}", file.path.string(), printable(error, 160)));
-}
-
 void check_version_and_extensions(const GltfFile& file, Progress& progress) {
     const tinygltf::Model& model = file.model;
     if (!model.asset.version.starts_with("2."))
-        file.reject(fmt::format("it is glTF {}, only glTF 2 can be read", printable(model.asset.version, 16)));
+        file.reject(fmt::format("it is glTF {}, only glTF 2 can be read", printable(model.asset.version, 16)),
+                    "convert it to glTF 2");
     const auto known = [](const std::string& name) {
         return std::find(kKnownExtensions.begin(), kKnownExtensions.end(), name) != kKnownExtensions.end();
     };
     for (const std::string& name : model.extensionsRequired)
         if (!known(name))
-            file.reject(fmt::format("it requires {}, which is not supported; export it without", printable(name, 60)));
+            file.reject(fmt::format("it requires {}, which is not supported", printable(name, 60)),
+                        "export it without");
     std::set<std::string> unknown;
     for (const std::string& name : model.extensionsUsed)
         if (!known(name))
@@ -178,10 +162,32 @@ void check_version_and_extensions(const GltfFile& file, Progress& progress) {
         progress.notice(fmt::format("{}: extensions left out: {}", file.path.string(), fmt::join(unknown, ", ")));
 }
 
+// Runs tinygltf.
+void parse(GltfFile& file, Bytes& bytes, MemoryBudget& budget, Progress& progress) {
+    const auto size = static_cast<unsigned int>(bytes.size());
+    const bool binary = is_binary(bytes);
+    Reading reading{file, budget};
+    tinygltf::TinyGLTF reader;
+    reader.SetImageLoader(keep_image, nullptr);
+    reader.SetFsCallbacks({[](const std::string& name, void*) { return !name.empty(); },
+                           [](const std::string& name, void*) { return name; }, read_buffer, nullptr, &reading});
+    bytes.resize(bytes.size() + kBeyond);
+    std::string error, warning;
+    const bool read = binary ? reader.LoadBinaryFromMemory(&file.model, &error, &warning, bytes.data(), size, "")
+                             : reader.LoadASCIIFromString(&file.model, &error, &warning,
+                                                          reinterpret_cast<const char*>(bytes.data()), size, "");
+    check_version_and_extensions(file, progress);  // first: they may be why tinygltf could not go on
+    if (!read)
+        file.reject("not glTF, or damaged: " + printable(error, 160));
+    if (!error.empty())
+        progress.warning("gltf-part",
+                         fmt::format("{}: left out what is not glTF: {}", file.path.string(), printable(error, 160)));
+}
+
 }  // namespace
 
-void GltfFile::reject(const std::string& why) const {
-    throw Error(ExitCode::BadData, fmt::format("{}: {}; export or copy the file again", path.string(), why));
+void GltfFile::reject(const std::string& why, const std::string& remedy) const {
+    throw Error(ExitCode::BadData, fmt::format("{}: {}; {}", path.string(), why, remedy));
 }
 
 std::filesystem::path GltfFile::resolved(const std::string& uri) const {
@@ -203,7 +209,7 @@ GltfFile read_gltf(const std::filesystem::path& path, MemoryBudget& budget, Prog
     try {
         Bytes bytes = read_bytes(path, "no such file", budget);
         if (bytes.size() > 0xfffffff0u)
-            file.reject("4 GiB or more in one file are not supported; keep buffers in files of their own");
+            file.reject("it is larger than 4 GiB", "keep its buffers in files of their own");
         check_depth(file, is_binary(bytes) ? json_of_binary(file, bytes) : std::span<const unsigned char>(bytes));
         parse(file, bytes, budget, progress);
     } catch (const Error&) {
@@ -213,7 +219,6 @@ GltfFile read_gltf(const std::filesystem::path& path, MemoryBudget& budget, Prog
     } catch (const std::exception& error) {
         file.reject("damaged: " + printable(error.what(), 160));
     }
-    check_version_and_extensions(file, progress);
     return file;
 }
 

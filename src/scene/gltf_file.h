@@ -1,5 +1,5 @@
-// A glTF file in memory. The only door to tinygltf, which checks little: no index and no length in `model` may be
-// trusted, except that bufferViews' and images' JSON had the right types.
+// A glTF file in memory. The only door to tinygltf, which checks little: no index, no length and no count in `model`
+// may be trusted. gltf_accessor.h reads buffers with all bounds checked.
 #pragma once
 
 #include <filesystem>
@@ -22,7 +22,7 @@ struct GltfFile {
     tinygltf::Model model;  // images hold the encoded bytes of data: URIs
 
     // Throws Error BadData: the path, `why`, and what would help.
-    [[noreturn]] void reject(const std::string& why) const;
+    [[noreturn]] void reject(const std::string& why, const std::string& remedy = "export or copy the file again") const;
     // `path` of a URI of this file, percent signs decoded.
     std::filesystem::path resolved(const std::string& uri) const;
 };

@@ -25,7 +25,13 @@ double number(const Value& object, const char* key, double fallback) {
     return object.Has(key) && object.Get(key).IsNumber() ? object.Get(key).GetNumberAsDouble() : fallback;
 }
 
-// numbers[i] of an array of numbers.
+// -2 where the number is none that an index can be: no list has such an element.
+int index(const Value& object, const char* key, int fallback) {
+    const double value = number(object, key, fallback);
+    return value >= 0.0 && value < 0x1p31 ? static_cast<int>(value) : value == fallback ? fallback : -2;
+}
+
+// object[key][i] of an array of numbers.
 double number(const Value& object, const char* key, int i, double fallback) {
     if (!object.Has(key) || !object.Get(key).IsArray() || !object.Get(key).Get(i).IsNumber())
         return fallback;
@@ -83,6 +89,7 @@ SceneMaterial GltfMaterials::convert(const tinygltf::Material& material) {
         progress_.notice(file_.path.string() + ": occlusion textures are left out, light finds its own shadows");
     if (extension(material, "KHR_materials_unlit") != nullptr) {
         result.surface.metallic = result.surface.specular = result.surface.transmission = 0.0f;
+        result.surface.thin = false;
         result.surface.roughness = 1.0f;
         result.metal_rough = {};
         progress_.notice(
@@ -108,7 +115,8 @@ void GltfMaterials::read_extensions(const tinygltf::Material& material, SceneMat
     if (const Value* const ior = extension(material, "KHR_materials_ior")) {
         const double value = number(*ior, "ior", 1.5);
         if (value == 0.0)
-            reject("an ior of 0 (a reflection that no material has) is not supported, give 1 to 10");
+            file_.reject(label_ + ": its ior is 0, by which other renderers ask for a reflection that no index gives",
+                         "give it an ior of 1 to 10");
         surface.ior = clamped(value, 1.0, 10.0, "ior");
     }
     if (const Value* const specular = extension(material, "KHR_materials_specular")) {
@@ -163,7 +171,7 @@ GltfMaterials::Reference GltfMaterials::reference(int texture, int uv_set,
     result.uv_set = uv_set;
     if (const auto found = extensions.find("KHR_texture_transform");
         found != extensions.end() && found->second.IsObject()) {
-        result.uv_set = static_cast<int>(number(found->second, "texCoord", uv_set));
+        result.uv_set = index(found->second, "texCoord", uv_set);
         result.texture_from_uv = transform(found->second);
         for (int i = 0; i < 6; ++i)
             if (!std::isfinite(result.texture_from_uv[i / 2][i % 2]))
@@ -178,13 +186,14 @@ GltfMaterials::Reference GltfMaterials::reference(const Value& info) const {
     tinygltf::ExtensionMap extensions;
     if (info.Get("extensions").IsObject())
         extensions = info.Get("extensions").Get<Value::Object>();
-    return reference(static_cast<int>(number(info, "index", -1.0)), static_cast<int>(number(info, "texCoord", 0.0)),
-                     extensions);
+    return reference(index(info, "index", -1), index(info, "texCoord", 0), extensions);
 }
 
 TextureUse GltfMaterials::use(const Reference& reference, bool srgb) {
-    if (reference.texture < 0)
+    if (reference.texture == -1)
         return {};
+    if (reference.uv_set < 0)
+        reject("a texture uses a set of texture coordinates that cannot be");
     if (uv_set_ >= 0 && reference.uv_set != uv_set_) {
         progress_.warning("uv-sets",
                           fmt::format("{}: {} uses texture coordinates {} and {}; textures with the latter are left "
@@ -192,7 +201,7 @@ TextureUse GltfMaterials::use(const Reference& reference, bool srgb) {
                                       file_.path.string(), label_, uv_set_, reference.uv_set));
         return {};
     }
-    uv_set_ = std::max(reference.uv_set, 0);
+    uv_set_ = reference.uv_set;
     const tinygltf::Texture& texture =
         checked(file_, file_.model.textures, reference.texture, (label_ + ": texture").c_str());
     return {load(texture, reference.texture, srgb), reference.texture_from_uv};

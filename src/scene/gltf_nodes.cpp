@@ -86,6 +86,9 @@ Keys read_keys(const GltfFile& file, const tinygltf::AnimationSampler& sampler, 
     Keys keys;
     keys.components = static_cast<std::size_t>(components);
     keys.values_per_key = sampler.interpolation == "CUBICSPLINE" ? 3 : 1;
+    for (const int accessor : {sampler.input, sampler.output})  // which bounds how many there can be
+        if (checked(file, file.model.accessors, accessor, "animation accessor").bufferView < 0)
+            file.reject(what + " has no data");
     keys.times = read_floats(file, sampler.input, 1, what + ": times");
     keys.values = read_floats(file, sampler.output, components, what + ": values");
     if (keys.times.empty() || keys.values.size() != keys.times.size() * keys.values_per_key * keys.components)
@@ -144,8 +147,12 @@ public:
         checked(file_, file_.model.nodes, channel_.target_node, "animated node");
         const std::string what = label("animation of node", channel_.target_node, channel_.target_path);
         const std::string& path = channel_.target_path;
-        if (path != "translation" && path != "rotation" && path != "scale")
-            return;  // weights: told with the meshes, which keep their base shape
+        if (path == "weights")
+            return;  // told with the meshes, which keep their base shape
+        if (path != "translation" && path != "rotation" && path != "scale") {
+            progress.notice(fmt::format("{}: {} is left out", file_.path.string(), what));
+            return;
+        }
         if (poses[node].matrix) {
             progress.warning("animated-matrix",
                              fmt::format("{}: {} has a matrix, its animation is left out", file_.path.string(),

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <new>
 #include <set>
+#include <stdexcept>
 #include <utility>
 
 #include "core/error.h"
@@ -60,6 +62,26 @@ void append(std::vector<T>& to, std::vector<T>&& from) {
     std::move(from.begin(), from.end(), std::back_inserter(to));
 }
 
+[[noreturn]] void out_of_memory(const std::filesystem::path& file) {
+    throw Error(ExitCode::Temporary, fmt::format("{}: there is not enough memory for it; use a simpler file, or a "
+                                                 "machine with more memory",
+                                                 file.string()));
+}
+
+// Adds what is in one file.
+void add_file(const SceneFile& file, const std::filesystem::path& folder, double seconds, Scene& scene,
+              MemoryBudget& budget, Progress& progress) {
+    const Opened opened = open(file, folder, seconds, budget, progress);
+    const std::size_t meshes = scene.meshes.size();
+    read_meshes(opened.gltf, opened.nodes, scene, budget, progress);
+    std::vector<SceneCamera> cameras = read_cameras(opened.gltf, opened.nodes, progress);
+    std::vector<LightSettings> lights = read_lights(opened.gltf, opened.nodes, progress);
+    if (scene.meshes.size() == meshes && cameras.empty() && lights.empty())
+        progress.warning("empty-file", opened.gltf.path.string() + ": no surface, camera or light of it can be used");
+    append(scene.cameras, std::move(cameras));
+    append(scene.lights, std::move(lights));
+}
+
 }  // namespace
 
 Scene load_scene(const SceneSettings& settings, const std::filesystem::path& folder, double seconds,
@@ -68,12 +90,14 @@ Scene load_scene(const SceneSettings& settings, const std::filesystem::path& fol
     scene.origin = origin;
     MemoryBudget budget(memory_limit);
     Once once(progress);
-    for (const SceneFile& file : settings.files) {
-        const Opened opened = open(file, folder, seconds, budget, once);
-        read_meshes(opened.gltf, opened.nodes, scene, budget, once);
-        append(scene.cameras, read_cameras(opened.gltf, opened.nodes, once));
-        append(scene.lights, read_lights(opened.gltf, opened.nodes, once));
-    }
+    for (const SceneFile& file : settings.files)
+        try {
+            add_file(file, folder, seconds, scene, budget, once);
+        } catch (const std::bad_alloc&) {
+            out_of_memory(folder / file.file);
+        } catch (const std::length_error&) {  // more than any memory holds
+            out_of_memory(folder / file.file);
+        }
     for (std::size_t i = 0; i < settings.quads.size(); ++i)
         add_quad(settings.quads[i], fmt::format("quad {}", i), scene, once);
     for (std::size_t i = 0; i < settings.spheres.size(); ++i)

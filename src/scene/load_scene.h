@@ -9,12 +9,15 @@
 
 namespace brisance {
 
-// Everything of the settings but the lights that are not surfaces: files at `seconds` of their animations, quads,
-// spheres, and lights of kind Quad, relative to `origin`. Relative files are relative to `folder`.
+// Everything of the settings but the lights that are not surfaces: files at `seconds` of their animations with their
+// meshes, cameras and lights, then quads, spheres, and lights of kind Quad, relative to `origin`. Relative files are
+// relative to `folder`. All animations of a file play together; what of glTF 2.0 is read, and what of it is left out
+// with a notice or a warning, stands in gltf_nodes.h, gltf_meshes.h, gltf_materials.h and gltf_cameras.h.
 //
 // Throws Error MissingInput (no such file, buffer or texture) or BadData (what the file says cannot be used), Temporary
-// (more memory than `memory_limit` bytes would be needed, told before it is taken). Triangles without area, or with
-// positions that are not finite, are left out with a warning that counts them.
+// (more memory than `memory_limit` bytes would be needed, told before it is taken; that counts the files' bytes,
+// triangles with the tree over them, and textures). Triangles without area, or with positions that are not finite, are
+// left out with a warning that counts them.
 Scene load_scene(const SceneSettings& settings, const std::filesystem::path& folder, double seconds,
                  const dvec3& origin, std::uint64_t memory_limit, Progress& progress);
 

@@ -6,8 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <memory>
+#include <fstream>
+#include <iterator>
+#include <string_view>
 
 #include "core/error.h"
 #include "scene/srgb.h"
@@ -20,12 +21,13 @@ namespace {
 }
 
 // A library's message as the rest of one line.
-std::string one_line(std::string text) {
+std::string one_line(const std::string& message) {
+    std::string text = message.substr(0, 160);
     while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())))
         text.pop_back();
     std::replace_if(
         text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c); }, ' ');
-    return text.substr(0, 160);
+    return text;
 }
 
 // glTF's colours are not multiplied by alpha, and PNG's are not either: OpenImageIO would multiply them.
@@ -92,20 +94,57 @@ Texture read_opened(OIIO::ImageInput& input, const std::string& where, bool srgb
     return texture;
 }
 
-// OpenImageIO's name of the format; nullptr for those that glTF does not have.
-const char* format_of(std::span<const unsigned char> bytes) {
-    static constexpr unsigned char kPng[] = {0x89, 'P', 'N', 'G'}, kJpeg[] = {0xff, 0xd8, 0xff};
-    const auto starts_with = [&](std::span<const unsigned char> magic) {
-        return bytes.size() >= magic.size() && std::equal(magic.begin(), magic.end(), bytes.begin());
-    };
-    return starts_with(kPng) ? "png" : starts_with(kJpeg) ? "jpeg" : nullptr;
+// The two formats of glTF: how they begin, and what stands at their end. Their libraries fill up with grey what is
+// missing of a JPEG, and print lines of their own about a PNG: a picture that is cut off is found before they see it.
+struct Format {
+    const char* name;  // OpenImageIO's
+    std::string_view begin, end;
+};
+constexpr Format kFormats[] = {{"png", "\x89PNG", "IEND"}, {"jpeg", "\xff\xd8\xff", "\xff\xd9"}};
+
+const Format* format_of(std::string_view bytes) {
+    const auto* const found = std::find_if(std::begin(kFormats), std::end(kFormats),
+                                           [&](const Format& format) { return bytes.starts_with(format.begin); });
+    return found != std::end(kFormats) ? found : nullptr;
 }
 
-// libjpeg fills what is missing with grey and goes on: a JPEG that does not end is found by its end marker.
-bool jpeg_ends(std::span<const unsigned char> bytes) {
-    static constexpr unsigned char kEnd[] = {0xff, 0xd9};
-    const auto half = bytes.subspan(bytes.size() / 2);  // a preview within it may end, but it comes first
-    return std::search(half.begin(), half.end(), std::begin(kEnd), std::end(kEnd)) != half.end();
+Texture read_memory(std::string_view bytes, const std::string& where, bool srgb, std::uint64_t memory_limit) {
+    const Format* const format = format_of(bytes);
+    if (format == nullptr)
+        reject(where, "neither a PNG nor a JPEG");
+    // In the second half: a preview within a JPEG ends too, but it comes first.
+    if (bytes.substr(bytes.size() / 2).find(format->end) == std::string_view::npos)
+        reject(where, fmt::format("the {} is truncated", format->name));
+    OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
+    const auto input = OIIO::ImageInput::create(format->name);
+    OIIO::ImageSpec spec;
+    if (!input || !input->set_ioproxy(&memory))
+        reject(where, std::string("OpenImageIO was built without ") + format->name);
+    // The proxy is set twice: JPEG's reader forgets one that its configuration does not name.
+    OIIO::ImageSpec config = as_stored();
+    void* const proxy = &memory;
+    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    if (!input->open("", spec, config))
+        reject(where, "damaged: " + one_line(input->geterror()));
+    return read_opened(*input, where, srgb, memory_limit);
+}
+
+Texture read_file(const std::filesystem::path& file, bool srgb, std::uint64_t memory_limit) {
+    const OIIO::ImageSpec config = as_stored();
+    const auto input = OIIO::ImageInput::open(file.string(), &config);
+    if (!input)
+        reject(file.string(), "not a picture that can be read: " + one_line(OIIO::geterror()));
+    return read_opened(*input, file.string(), srgb, memory_limit);
+}
+
+// The bytes of a PNG or JPEG; empty where the file is something else.
+std::string bytes_of_format(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::string bytes(4, '\0');
+    in.read(bytes.data(), 4);
+    if (!in || format_of(bytes) == nullptr)
+        return {};
+    return bytes + std::string(std::istreambuf_iterator<char>(in), {});
 }
 
 }  // namespace
@@ -114,34 +153,16 @@ Texture read_texture(const std::filesystem::path& file, bool srgb, std::uint64_t
     std::error_code error;
     if (!std::filesystem::exists(file, error))
         throw Error(ExitCode::MissingInput, fmt::format("{}: no such file", file.string()));
-    const OIIO::ImageSpec config = as_stored();
-    const auto input = OIIO::ImageInput::open(file.string(), &config);
-    if (!input)
-        reject(file.string(), "not a picture that can be read: " + one_line(OIIO::geterror()));
-    Texture texture = read_opened(*input, file.string(), srgb, memory_limit);
+    const std::string bytes = bytes_of_format(file);
+    Texture texture =
+        bytes.empty() ? read_file(file, srgb, memory_limit) : read_memory(bytes, file.string(), srgb, memory_limit);
     texture.name = file.filename().string();
     return texture;
 }
 
 Texture read_texture(std::span<const unsigned char> bytes, const std::string& where, bool srgb,
                      std::uint64_t memory_limit) {
-    const char* const format = format_of(bytes);
-    if (format == nullptr)
-        reject(where, "neither a PNG nor a JPEG");
-    if (std::strcmp(format, "jpeg") == 0 && !jpeg_ends(bytes))
-        reject(where, "the JPEG is truncated");
-    OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
-    const auto input = OIIO::ImageInput::create(format);
-    OIIO::ImageSpec spec;
-    if (!input || !input->set_ioproxy(&memory))
-        reject(where, std::string("OpenImageIO was built without ") + format);
-    // The proxy is set twice: JPEG's reader forgets one that its configuration does not name.
-    OIIO::ImageSpec config = as_stored();
-    void* const proxy = &memory;
-    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    if (!input->open("", spec, config))
-        reject(where, "damaged: " + one_line(input->geterror()));
-    return read_opened(*input, where, srgb, memory_limit);
+    return read_memory({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, where, srgb, memory_limit);
 }
 
 }  // namespace brisance

@@ -29,7 +29,8 @@ enum class AlphaMode {
     Blend  // lets through 1 - alpha
 };
 
-// Each texture multiplies the factor beside it, in the channels that glTF gives it.
+// Each texture multiplies the factor beside it, in the channels that glTF gives it. They are left out where a mesh has
+// no texture coordinates.
 struct SceneMaterial {
     std::string name;
     SurfaceMaterial surface;  // factors

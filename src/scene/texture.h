@@ -22,7 +22,7 @@ public:
     std::vector<std::uint8_t> bytes;  // RGBA
     std::vector<float> floats;        // RGBA, in place of bytes
 
-    // Linear RGBA at uv, interpolated in linear light.
+    // Linear RGBA at uv, interpolated in linear light. Coordinates that are not finite count as 0.
     vec4 at(vec2 uv) const;
 };
 

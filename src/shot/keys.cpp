@@ -22,6 +22,7 @@ std::vector<Key> all_keys() {
     add_scene_keys(keys);
     add_camera_keys(keys);
     add_lighting_keys(keys);
+    add_virtual_light_keys(keys);
     add_tracing_keys(keys);
     add_certify_keys(keys);
     add_output_keys(keys);
@@ -36,7 +37,7 @@ Affects affected_by(const std::string& path) {
     // Leaving out orders of scattering changes what is true.
     if (path == "scattering.bounces")
         return Affects::Picture;
-    for (const char* section : {"lighting.", "scattering.", "tracing.", "certify.", "output."})
+    for (const char* section : {"lighting.", "scattering.", "virtual_lights.", "tracing.", "certify.", "output."})
         if (path.starts_with(section))
             return Affects::Method;
     for (const char* key : {"$schema", "name", "method", "camera.samples_per_axis"})
@@ -60,6 +61,7 @@ const std::vector<std::pair<std::string, std::string>>& shot_sections() {
         {"camera", "the pinhole camera; without eye and target, or world_from_camera, it is framed on the volume"},
         {"lighting", "how the fire's light reaches the smoke"},
         {"scattering", "light scattered more than once"},
+        {"virtual_lights", "light that surfaces reflect onto surfaces and smoke"},
         {"tracing", "the reference path tracer (method path)"},
         {"certify", "how far the finished frame is from the truth"},
         {"output", "what is written"},

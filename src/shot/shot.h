@@ -11,6 +11,7 @@
 #include "render/certify_settings.h"
 #include "scene/settings.h"
 #include "tracing/settings.h"
+#include "virtual_lights/settings.h"
 #include "volume/settings.h"
 
 namespace brisance {
@@ -32,6 +33,7 @@ struct Shot {
     RenderMethod method = RenderMethod::LightingGrid;
     LightingSettings lighting;
     ScatteringSettings scattering;
+    VirtualLightSettings virtual_lights;
     TracingSettings tracing;
     CertifySettings certify;
     OutputSettings output;

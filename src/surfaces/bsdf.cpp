@@ -78,16 +78,18 @@ double refraction_jacobian(double cos_o, double cos_i, double eta) {
 
 }  // namespace
 
-Bsdf::Bsdf(const SurfaceMaterial& material, const ShadingFrame& frame)
-    : Bsdf(material, frame, needs_energy_tables(material) ? &energy_tables(material.ior) : nullptr) {}
+Bsdf::Bsdf(const SurfaceMaterial& material, const ShadingFrame& frame, Lobes lobes)
+    : Bsdf(material, frame, needs_energy_tables(material) ? &energy_tables(material.ior) : nullptr, lobes) {}
 
-Bsdf::Bsdf(const SurfaceMaterial& m, const ShadingFrame& frame, const EnergyTables* tables)
+Bsdf::Bsdf(const SurfaceMaterial& m, const ShadingFrame& frame, const EnergyTables* tables, Lobes lobes)
     : frame_(frame),
       tables_(tables),
       ggx_{std::max(double(m.roughness) * m.roughness, kSmoothAlpha)},
       ior_(m.ior),
       smooth_(double(m.roughness) * m.roughness < kSmoothAlpha),
       matched_(m.ior < kMatchedIor),
+      has_base_(lobes != Lobes::Specular),
+      has_specular_(lobes != Lobes::Base),
       base_(m.base_colour),
       metal_(m.metallic),
       coated_((1.0f - m.metallic) * (1.0f - m.transmission)),
@@ -210,14 +212,17 @@ void Bsdf::choose_lobes(View& view) const {
     const double cosine = std::min(view.wo.z, 1.0);
     double facets = mean(facet_reflectance(view, cosine) + facet_transmittance(view, cosine));
     const bool any = outside ? metal_ > 0.0f || specular_ > 0.0f : glass_ > 0.0f && !matched_;
-    const double others = base + mean(up) + down + straight;
+    const double specular = mean(up) + down + straight;
+    const double others = base + specular;
     if (any)
         facets = others > 0.0 ? std::max(facets, 0.1 * others) : 1.0;
-    const double sum = facets + others;
+    const double sum = (has_specular_ ? facets + specular : 0.0) + (has_base_ ? base : 0.0);
     if (!(sum > 0.0))
         return;
+    view.base = has_base_ ? base / sum : 0.0;
+    if (!has_specular_)
+        return;
     view.facets = facets / sum;
-    view.base = base / sum;
     view.up = mean(up) / sum;
     view.down = down / sum;
     view.straight = straight / sum;
@@ -227,7 +232,7 @@ void Bsdf::choose_lobes(View& view) const {
 Rgb Bsdf::reflected(const View& view, const dvec3& wi) const {
     Rgb sum(0.0f);
     const Albedos there = smooth_ ? Albedos{} : albedos(std::min(wi.z, 1.0));
-    if (!smooth_) {
+    if (!smooth_ && has_specular_) {
         const dvec3 h = glm::normalize(view.wo + wi);
         const double facets = ggx_.density(h) * ggx_.correlated_masking_per_cosines(view.wo.z, wi.z) * wi.z / 4.0;
         sum += facet_reflectance(view, std::clamp(glm::dot(view.wo, h), 0.0, 1.0)) * static_cast<float>(facets);
@@ -239,11 +244,11 @@ Rgb Bsdf::reflected(const View& view, const dvec3& wi) const {
     if (view.side == 1)
         return sum;
     const float lambert = static_cast<float>(cosine_density(wi.z));
-    if (!smooth_ && lost_mean_ > 0.0) {
+    if (!smooth_ && has_specular_ && lost_mean_ > 0.0) {
         const float again = static_cast<float>(view.lost * (1.0 - there.reflect) / lost_mean_) * lambert;
         sum += (metal_ * metal_again_ + (coated_ + sheet_) * coat_again_) * again;
     }
-    if (coated_ > 0.0f && base_share_mean_ > 0.0f) {
+    if (has_base_ && coated_ > 0.0f && base_share_mean_ > 0.0f) {
         const float there_share = std::max(0.0f, 1.0f - coat_albedo(there, std::min(wi.z, 1.0)));
         sum += coated_ * base_ * (view.base_share * there_share / base_share_mean_) * lambert;
     }
@@ -252,7 +257,7 @@ Rgb Bsdf::reflected(const View& view, const dvec3& wi) const {
 
 // Rough refraction, for power, times |cosine| [1/sr]. Walter et al., equation 21.
 Rgb Bsdf::refracted(const View& view, const dvec3& wi) const {
-    if (smooth_ || matched_ || glass_ == 0.0f)
+    if (smooth_ || matched_ || glass_ == 0.0f || !has_specular_)
         return Rgb(0.0f);
     Rgb sum(0.0f);
     const dvec3 h = refracting_normal(view.wo, wi, view.eta);
@@ -351,7 +356,8 @@ std::optional<BsdfSample> Bsdf::draw_delta(const View& view, double choice) cons
 
 // Turned back to world space, and weighted for what flows.
 BsdfSample Bsdf::finished(const View& view, BsdfSample s, Transport transport) const {
-    if (s.transmitted && !matched_ && transport == Transport::Radiance)
+    const bool bent = s.transmitted && !matched_ && sheet_ == 0.0f;
+    if (bent && transport == Transport::Radiance)
         s.weight /= static_cast<float>(view.eta * view.eta);
     if (view.side == 1)
         s.wi.z = -s.wi.z;

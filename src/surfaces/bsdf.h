@@ -40,13 +40,17 @@ struct BsdfSample {
     bool transmitted = false;
 };
 
+// Which part of the scattering: the Lambert base, everything else, or both.
+enum class Lobes { All, Base, Specular };
+
 class Bsdf {
 public:
     // Tables of the material's ior are looked up; the first such call makes them (energy_tables.h). Every number of the
     // material must lie in the range that its comment gives.
-    Bsdf(const SurfaceMaterial& material, const ShadingFrame& frame);
+    Bsdf(const SurfaceMaterial& material, const ShadingFrame& frame, Lobes lobes = Lobes::All);
     // With the tables of the material's ior at hand; none for a material that needs none.
-    Bsdf(const SurfaceMaterial& material, const ShadingFrame& frame, const EnergyTables* tables);
+    Bsdf(const SurfaceMaterial& material, const ShadingFrame& frame, const EnergyTables* tables,
+         Lobes lobes = Lobes::All);
 
     // BSDF times |cosine of wi to the normal| [1/sr], without delta lobes.
     Rgb evaluate(const dvec3& wo, const dvec3& wi, Transport transport = Transport::Radiance) const;
@@ -99,6 +103,7 @@ private:
     Ggx ggx_;
     double ior_;
     bool smooth_, matched_;
+    bool has_base_, has_specular_;
     Rgb base_;
     float metal_, coated_, glass_, sheet_;  // shares of the surface; their sum is 1
     float specular_, f0_most_;              // the dielectric's F90, and its largest F0 / F90

@@ -29,18 +29,18 @@ void note(PathStatistics& statistics, const TracedVertex& vertex) {
         statistics.vertices->push_back(vertex);
 }
 
-// Paths between surfaces that lose nothing must end, too.
+// Paths between surfaces that lose nothing must end, too; smoke lets them out.
 constexpr int kManyScatterings = 64;
-constexpr float kGoesOn = 0.99f;
+constexpr float kGoesOn = 0.95f;
 
 // Surface paths that begin at the end of one ray of the camera that comes through smoke: what the ray itself costs is
 // shared by them. Where there is none a ray costs little.
 constexpr int kFirstReflections = 4;
 
-// Ends the path, or makes up for those that ended. False: ended.
-bool survives(Rgb& throughput, float begin, int order, Rng& rng) {
+// Ends the path, or makes up for those that ended. False: ended. `endless`: nothing else may end it.
+bool survives(Rgb& throughput, float begin, bool endless, Rng& rng) {
     float part = largest(throughput) / begin;
-    if (order > kManyScatterings)
+    if (endless)
         part = std::min(part, kGoesOn);
     else if (part >= kRouletteBelow)
         return true;
@@ -90,7 +90,7 @@ void PathTracer::add(PathSum& sum, const Vertex* vertex, Sender source, const Rg
         cell = cell_of(vertex->row_surface, source);
     else if (order > 1)
         cell = cell_of(vertex->row_surface, vertex->column);
-    sum.cells[static_cast<int>(cell)] += radiance;
+    sum.cells.at(cell) += radiance;
 }
 
 void PathTracer::trace_lines(const Ray& camera_ray, double place, Rng& rng, PathSum& sum,
@@ -108,28 +108,33 @@ void PathTracer::trace_lines(const Ray& camera_ray, double place, Rng& rng, Path
     note(statistics, {0, camera_ray.origin, Rgb(1.0f), seen.radiance + at_end, Rgb(0.0f)});
     if (bounces_ == 0)
         return;
-    // What the line holds is gone when paths begin: they use the same memory.
     const double opacity = seen.opacity();
-    std::array<Collision, kFirstCollisions> first;
-    for (int i = 0; i < kFirstCollisions && opacity > 0.0; ++i)
-        first[i] = direct_.lines().choose(seen, (i + place) / kFirstCollisions);
     const Rgb arriving(static_cast<float>(opacity / kFirstCollisions));
     for (int i = 0; i < kFirstCollisions && opacity > 0.0; ++i) {
         ++statistics.paths;
-        trace_from(in_smoke(camera_ray, first[i], arriving, nullptr), rng, sum, statistics);
+        const Collision first = direct_.lines().choose(seen, (i + place) / kFirstCollisions);
+        trace_from(in_smoke(camera_ray, first, arriving, nullptr), rng, sum, statistics);
     }
     if (!segment.point || !(through > 0.0f))
         return;
     const int reflections = opacity > 0.0 ? static_cast<int>(std::ceil(through * kFirstReflections)) : 1;
     for (int i = 0; i < reflections; ++i) {
         ++statistics.paths;
-        trace_from(on_surface(segment, Rgb(through / float(reflections)), nullptr), rng, sum, statistics);
+        trace_from(on_surface(*segment.point, camera_ray.direction, Rgb(through / float(reflections)), nullptr), rng,
+                   sum, statistics);
     }
+}
+
+void PathTracer::trace_from_surface(const SurfacePoint& point, const dvec3& arriving, Rng& rng, PathSum& sum) const {
+    PathStatistics ignored;
+    if (bounces_ != 0)
+        trace_from(on_surface(point, arriving, Rgb(1.0f), nullptr), rng, sum, ignored);
 }
 
 void PathTracer::trace_from(Vertex vertex, Rng& rng, PathSum& sum, PathStatistics& statistics) const {
     const float begin = largest(vertex.throughput);
-    while (survives(vertex.throughput, begin, vertex.order, rng)) {
+    const auto endless = [&] { return vertex.place.on_surface() && vertex.order > kManyScatterings; };
+    while (survives(vertex.throughput, begin, endless(), rng)) {
         ++statistics.scatterings;
         const Scatterer& place = vertex.place;
         TracedVertex seen{vertex.order, place.position(), vertex.throughput, Rgb(0.0f),
@@ -170,7 +175,7 @@ void PathTracer::trace_from(Vertex vertex, Rng& rng, PathSum& sum, PathStatistic
         if (!goes_on || !(line.collision || segment.hit))
             return;
         vertex = line.collision ? in_smoke(segment.ray, *line.collision, leaving, &vertex)
-                                : on_surface(segment, leaving, &vertex);
+                                : on_surface(*segment.point, segment.ray.direction, leaving, &vertex);
     }
 }
 
@@ -182,13 +187,10 @@ PathTracer::Vertex PathTracer::in_smoke(const Ray& ray, const Collision& c, cons
             from ? from->row_surface : false, order > 2 ? from->column : Sender::M};
 }
 
-PathTracer::Vertex PathTracer::on_surface(const RaySegment& segment, const Rgb& arriving, const Vertex* from) const {
+PathTracer::Vertex PathTracer::on_surface(const SurfacePoint& point, const dvec3& direction, const Rgb& arriving,
+                                          const Vertex* from) const {
     const int order = from ? from->order + 1 : 1;
-    Vertex v{Scatterer(*segment.point, segment.ray.direction),
-             arriving,
-             0.0f,
-             order,
-             from ? from->row_surface : true,
+    Vertex v{Scatterer(point, direction),         arriving, 0.0f, order, from ? from->row_surface : true,
              order > 2 ? from->column : Sender::S};
     v.light_lines = direct_.lines_on_surface(v.place);
     return v;

@@ -21,7 +21,7 @@ namespace brisance {
 // Where there are surroundings, the same by cell: either adds up to the whole.
 constexpr int kPathOrders = 10;
 struct PathSum : std::array<Rgb, kPathOrders> {
-    std::array<Rgb, kCells> cells{};
+    CellSum cells;
 };
 
 // A scattering of a path, and what is gathered there; number 0 is the camera, from which all paths of its ray begin.
@@ -54,6 +54,11 @@ public:
     // stratified sequence.
     void trace(const Ray& ray, double place, Rng& rng, PathSum& sum, PathStatistics& statistics) const;
 
+    // Adds one path that begins on a surface, where a ray along `arriving` (unit) has met it: the row S of the ledger.
+    // Needs surroundings.
+    void trace_from_surface(const SurfacePoint& point, const dvec3& arriving, Rng& rng, PathSum& sum) const;
+
+    const DirectLight& direct() const { return direct_; }
     const TrackingField& field() const { return direct_.field(); }
     const TracingSettings& settings() const { return direct_.settings(); }
     std::uint64_t bytes() const { return direct_.bytes(); }
@@ -66,7 +71,7 @@ private:
 
     void add(PathSum& sum, const Vertex* vertex, Sender source, const Rgb& radiance) const;
     Vertex in_smoke(const Ray& ray, const Collision& collision, const Rgb& arriving, const Vertex* from) const;
-    Vertex on_surface(const RaySegment& segment, const Rgb& arriving, const Vertex* from) const;
+    Vertex on_surface(const SurfacePoint& point, const dvec3& direction, const Rgb& arriving, const Vertex* from) const;
 
     int bounces_;
     DirectLight direct_;

@@ -29,12 +29,12 @@ Recipe slab(double voxel_depth) {
 }
 
 RaySum look(const Medium& medium, const dvec3& world_origin, const dvec3& direction, int parts = 2) {
-    const CellField field(medium, {}, {});
+    const CellField field(medium);
     return integrate(field, {dvec3(medium.local_of_world(world_origin)), glm::normalize(direction)}, parts);
 }
 
 void expect_one_minus_transmittance(const RaySum& sum, double depth, double tolerance) {
-    EXPECT_NEAR(sum.v.x / -std::expm1(-depth), 1.0, tolerance) << "optical depth " << depth;
+    EXPECT_NEAR(sum.cells.at(Cell::V).x / -std::expm1(-depth), 1.0, tolerance) << "optical depth " << depth;
     // Rays end at opacity 1 - 1e-5.
     EXPECT_NEAR(sum.alpha / -std::expm1(-depth), 1.0, 1e-5 + tolerance);
 }
@@ -92,7 +92,7 @@ TEST(EmissionAbsorption, BallsRadiateAsTheirChordsSay) {
         for (const double b : {0.0, 0.3, 0.6, 0.9}) {
             const double chord = 2.0 * radius_depth * std::sqrt(1.0 - b * b);
             const RaySum sum = look(medium, {b, 0.011, -3.0}, {0, 0, 1});
-            EXPECT_NEAR(sum.v.x / -std::expm1(-chord), 1.0, b > 0.8 ? 0.03 : 0.01) << radius_depth << ", b = " << b;
+            EXPECT_NEAR(sum.cells.at(Cell::V).x / -std::expm1(-chord), 1.0, b > 0.8 ? 0.03 : 0.01) << radius_depth << ", b = " << b;
         }
     }
 }
@@ -103,7 +103,7 @@ TEST(EmissionAbsorption, ATransparentFlameShinesByItsDepth) {
     r.density = nullptr;
     r.settings.fire.convention = EmissionConvention::Direct;
     const RaySum sum = look(make_medium(r), {0.013, 0.027, -5.0}, {0, 0, 1});
-    EXPECT_NEAR(sum.v.x, 3.2, 1e-4);
+    EXPECT_NEAR(sum.cells.at(Cell::V).x, 3.2, 1e-4);
     EXPECT_EQ(sum.alpha, 0.0f);
 }
 
@@ -115,19 +115,19 @@ TEST(EmissionAbsorption, AFlameInSmokeIsDimmedByIt) {
         r.settings.fire.convention = EmissionConvention::Direct;
         const RaySum sum = look(make_medium(r), {0.013, 0.027, -5.0}, {0, 0, 1});
         const double sigma = voxel / 0.1;
-        EXPECT_NEAR(sum.v.x / (-std::expm1(-32.0 * voxel) / sigma), 1.0, 2e-4) << voxel;
+        EXPECT_NEAR(sum.cells.at(Cell::V).x / (-std::expm1(-32.0 * voxel) / sigma), 1.0, 2e-4) << voxel;
     }
 }
 
 TEST(EmissionAbsorption, ScatteredSourcesAreSeenAsEmittedOnesAre) {
     const Medium medium = make_medium(slab(0.05));
     const std::vector<Rgb> single(medium.lattice.node_count(), Rgb(2.0f)), multiple(single.size(), Rgb(5.0f));
-    const CellField field(medium, single, multiple);
+    const CellField field(medium, {single, multiple, {}, {}});
     const RaySum sum = integrate(field, {dvec3(medium.local_of_world({0.0, 0.0, -5.0})), {0, 0, 1}}, 2);
     const double opacity = -std::expm1(-32.0 * 0.05);
-    EXPECT_NEAR(sum.v.x / opacity, 1.0, 1e-4);
-    EXPECT_NEAR(sum.mv.x / opacity, 2.0, 2e-4);
-    EXPECT_NEAR(sum.mm.x / opacity, 5.0, 5e-4);
+    EXPECT_NEAR(sum.cells.at(Cell::V).x / opacity, 1.0, 1e-4);
+    EXPECT_NEAR(sum.cells.at(Cell::MV).x / opacity, 2.0, 2e-4);
+    EXPECT_NEAR(sum.cells.at(Cell::MM).x / opacity, 5.0, 5e-4);
 }
 
 TEST(EmissionAbsorption, FinerStepsThroughNoiseConverge) {

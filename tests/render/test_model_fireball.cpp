@@ -40,9 +40,9 @@ Lit light_ball(float optical_radius, float albedo, float g = 0.0f, int nodes = 1
     Progress silent;
     Lighting lighting(lit.shot, lit.plan, lit.medium, camera, lit.statistics, silent);
     lit.nodes = lighting.at_nodes();
-    const CellField field(lit.medium, lit.nodes.single, lit.nodes.multiple);
+    const CellField field(lit.medium, lit.nodes);
     const RaySum sum = integrate(field, camera.ray(0.5 * eye.width, 0.5 * eye.height), 2);
-    lit.centre = sum.v.x + sum.mv.x + sum.mm.x;
+    lit.centre = sum.cells.at(Cell::V).x + sum.cells.at(Cell::MV).x + sum.cells.at(Cell::MM).x;
     return lit;
 }
 
@@ -119,9 +119,9 @@ TEST(ModelFireball, AskingForNScatteringsLeavesOutTheRest) {
         NodeLighting nodes;
         if (plan.single)
             nodes = Lighting(shot, plan, medium, camera, statistics, silent).at_nodes();
-        const CellField field(medium, nodes.single, nodes.multiple);
+        const CellField field(medium, nodes);
         const RaySum sum = integrate(field, camera.ray(0.5 * eye.width, 0.5 * eye.height), 2);
-        const double now = sum.v.x + sum.mv.x + sum.mm.x;
+        const double now = sum.cells.at(Cell::V).x + sum.cells.at(Cell::MV).x + sum.cells.at(Cell::MM).x;
         EXPECT_GT(now, previous);
         EXPECT_LT(now, all);
         previous = now;

@@ -40,7 +40,7 @@ CameraSettings front(double scale = 1.0, const dvec3& origin = dvec3(0.0)) {
 }
 
 Image picture(const Medium& medium, const CameraSettings& camera, int samples = 1) {
-    const CellField field(medium, {}, {});
+    const CellField field(medium);
     PictureSettings settings;
     settings.samples_per_axis = samples;
     Progress silent;
@@ -111,9 +111,9 @@ TEST(Picture, BeautyIsTheSumOfItsCells) {
         single[i] = Rgb(float(i % 7), 1.0f, 0.5f);
         multiple[i] = Rgb(1.0f, float(i % 5), 0.0f);
     }
-    const CellField field(medium, single, multiple);
+    const CellField field(medium, {single, multiple, {}, {}});
     PictureSettings settings;
-    settings.has_single = settings.has_multiple = true;
+    settings.layers = PictureSettings::layers_of({Cell::V, Cell::MV, Cell::MM});
     Progress silent;
     const Image image = render_picture(field, Camera(front(), medium), settings, {}, silent);
     double largest = 0.0;
@@ -209,7 +209,7 @@ TEST(Picture, LightAskedForAlongTheRayIsLightFromTheField) {
     const Medium medium = make_medium(cloud());
     const std::vector<Rgb> constant(medium.lattice.node_count(), Rgb(0.5f, 0.25f, 0.125f));
     PictureSettings settings;
-    settings.has_single = true;
+    settings.layers = PictureSettings::layers_of({Cell::V, Cell::MV});
     Progress silent;
     const Camera camera(front(), medium);
     const CellField lit(medium, constant, {}), dark(medium, {}, {});
@@ -231,7 +231,7 @@ TEST(Picture, LightAskedForAlongTheRayIsLightFromTheField) {
 
 TEST(Picture, FinerPixelsNeedFewerSamples) {
     const Medium medium = make_medium(cloud());
-    const CellField field(medium, {}, {});
+    const CellField field(medium);
     CameraSettings camera = front();
     camera.height = camera.width = 1000;
     EXPECT_EQ(automatic_samples(Camera(camera, medium), field), 1);

@@ -99,7 +99,7 @@ TEST(WalkCells, RandomRaysAreTiledBySegments) {
     for (const dmat4& transform :
          {testing::cubic(1.0), testing::cubic(0.03), testing::transform(testing::some_linear_map(), dvec3(0.0))}) {
         const Medium medium = solid(transform);
-        const CellField field(medium, {}, {});
+        const CellField field(medium);
         const double size = 40.0 * medium.spacing;
         Rng rng(Stream::EscapeRay, 1);
         int hits = 0;
@@ -116,7 +116,7 @@ TEST(WalkCells, RandomRaysAreTiledBySegments) {
 
 TEST(WalkCells, RaysAlongAxesAndOnFacesAreTiledToo) {
     const Medium medium = solid(testing::cubic(1.0));
-    const CellField field(medium, {}, {});
+    const CellField field(medium);
     for (int axis = 0; axis < 3; ++axis)
         for (const double sign : {-1.0, 1.0})
             for (const double y : {-24.0, -8.0, -3.0, 0.0, 0.5, 5.0, 8.0, 23.999})
@@ -135,7 +135,7 @@ TEST(WalkCells, RaysAlongAxesAndOnFacesAreTiledToo) {
 
 TEST(WalkCells, RaysThroughEdgesAndCornersAreTiledToo) {
     const Medium medium = solid(testing::cubic(1.0));
-    const CellField field(medium, {}, {});
+    const CellField field(medium);
     for (int k = 0; k < 27; ++k) {
         const dvec3 direction(k / 9 - 1, k / 3 % 3 - 1, k % 3 - 1);
         if (direction == dvec3(0.0))
@@ -152,7 +152,7 @@ TEST(WalkCells, RaysThroughEdgesAndCornersAreTiledToo) {
 // Optical depth is the same whether empty bricks are stepped over or not.
 TEST(WalkCells, EmptySpaceIsSkippedWithoutLoss) {
     const Medium medium = scattered();
-    const CellField field(medium, {}, {});
+    const CellField field(medium);
     const ExtinctionPyramid pyramid(medium, 1);
     ASSERT_LT(field.bricks().brick_count(), 1200u) << "most of the box is empty";
     Rng rng(Stream::EscapeRay, 2);
@@ -173,7 +173,7 @@ TEST(WalkCells, EmptySpaceIsSkippedWithoutLoss) {
 
 TEST(WalkCells, StopsWhenAskedTo) {
     const Medium medium = solid(testing::cubic(1.0));
-    const CellField field(medium, {}, {});
+    const CellField field(medium);
     int visited = 0;
     walk_cells(field, {dvec3(-50.0, 0.1, 0.2), dvec3(1.0, 0.0, 0.0)},
                [&](const CellSegment&) { return ++visited < 5; });
@@ -182,7 +182,7 @@ TEST(WalkCells, StopsWhenAskedTo) {
 
 TEST(WalkCells, TheFieldIsTheMediumsOwn) {
     const Medium medium = scattered();
-    const CellField field(medium, {}, {});
+    const CellField field(medium);
     const ExtinctionPyramid pyramid(medium, 1);
     Rng rng(Stream::EscapeRay, 3);
     for (int i = 0; i < 2000; ++i) {

@@ -34,6 +34,8 @@ public:
     std::string buffer;
 };
 
+std::string glb_of(const std::string& json, const std::string& binary);
+
 TestGltf one_triangle();  // (0 0 0) (1 0 0) (0 1 0), facing +z
 
 // Remembers what it is told.
@@ -64,6 +66,7 @@ Failure failure_of_loading(const TestGltf& gltf);
 // A picture of 8 or 16 bits as a PNG's bytes, or with ".jpg" a JPEG's.
 std::string encoded(const std::string& extension, int width, int height, int channels,
                     const std::vector<std::uint8_t>& pixels);
+void write_float_picture(const std::filesystem::path& file, int width, int height, const std::vector<float>& rgb);
 std::string encoded_png16(int width, int height, int channels, const std::vector<std::uint16_t>& pixels);
 
 dvec3 cross_of(const SceneMesh& mesh, std::size_t triangle);  // twice the area, along the normal

@@ -166,8 +166,19 @@ TEST(ReadTexture, FilesMayBeMissingOrTooLarge) {
     write_bytes(folder / "a.png", encoded(".png", 64, 64, 3, std::vector<std::uint8_t>(64 * 64 * 3, 99)));
     EXPECT_EQ(failure_of([&] { read_texture(folder / "a.png", true, 64 * 64 * 4 - 1); }).code, ExitCode::Temporary);
     EXPECT_EQ(read_texture(folder / "a.png", true, 64 * 64 * 4).name, "a.png");
-    write_bytes(folder / "b.png", "hello");
-    EXPECT_EQ(failure_of([&] { read_texture(folder / "b.png", true, kPlenty); }).code, ExitCode::BadData);
+    const std::string jpeg = encoded(".jpg", 64, 64, 3, std::vector<std::uint8_t>(64 * 64 * 3, 99));
+    for (const std::string& damaged : {std::string("hello"), std::string(), jpeg.substr(0, jpeg.size() / 2)}) {
+        write_bytes(folder / "b.png", damaged);
+        EXPECT_EQ(failure_of([&] { read_texture(folder / "b.png", true, kPlenty); }).code, ExitCode::BadData);
+    }
+}
+
+TEST(ReadTexture, OtherFormatsFromFiles) {
+    const TempFolder folder;
+    write_float_picture(folder / "sky.exr", 2, 1, {0.5f, 100.0f, std::numeric_limits<float>::infinity(), 1, 2, 3});
+    const Texture texture = read_texture(folder / "sky.exr", false, kPlenty);
+    EXPECT_EQ(texture.name, "sky.exr");
+    EXPECT_EQ(texture.floats, (std::vector<float>{0.5f, 100.0f, 0.0f, 1.0f, 1.0f, 2.0f, 3.0f, 1.0f}));
 }
 
 }  // namespace

@@ -142,9 +142,8 @@ std::vector<std::uint32_t> eliminate_one_by_one(const Candidates& candidates, st
     std::vector<Weight> weight(alive.size());
     for (const Neighbour& neighbour : lists.neighbours)
         weight[neighbour.point] += neighbour.weight;
-    std::vector<std::uint32_t> rank;
-    for (const std::uint32_t i : alive)
-        rank.push_back(candidates.rank[i]);
+    std::vector<std::uint32_t> rank(alive.size());
+    std::transform(alive.begin(), alive.end(), rank.begin(), [&](std::uint32_t i) { return candidates.rank[i]; });
     Heap heap(std::move(weight), std::move(rank));
     std::vector<bool> gone(candidates.size());
     for (std::size_t left = alive.size(); left > target; --left) {

@@ -1,0 +1,26 @@
+// Optical depths from one point to sixteen others, together.
+#pragma once
+
+#include "medium/extinction_pyramid.h"
+
+namespace brisance {
+
+class PointDepths {
+public:
+    static constexpr int kRays = 16;
+
+    // Samples level `level` of the pyramid (the last one where it has fewer) at steps of about one of its nodes. Keeps
+    // a reference.
+    PointDepths(const ExtinctionPyramid& pyramid, int level);
+
+    // From `from` to to[0 ... 15], local [m]; what lies outside of the medium costs nothing.
+    void between(const vec3& from, const vec3* to, float* depth) const;
+
+private:
+    PackedExtinction extinction_;
+    mat3 nodes_from_local_;
+    vec3 low_, high_;  // of the medium, in nodes of the level
+    float metres_per_node_;
+};
+
+}  // namespace brisance

@@ -1,0 +1,93 @@
+#include "lights/point_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+namespace brisance {
+
+namespace {
+
+constexpr int kMostLevels = 24;
+
+struct Earlier {
+    bool operator()(const ivec3& a, const ivec3& b) const { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
+};
+
+struct Sum {
+    dvec3 place{0.0};
+    double weight = 0.0;
+    Rgb intensity{0.0f};
+    std::vector<float> directional;
+};
+
+// The box of the medium's nodes, local [m].
+struct Box {
+    vec3 low{1e30f}, high{-1e30f};
+    explicit Box(const Medium& medium) {
+        const ivec3 first = medium.lattice.min_brick() * BrickLattice::kSize;
+        const ivec3 size = medium.lattice.brick_extent() * BrickLattice::kSize;
+        for (int k = 0; k < 8; ++k) {
+            const vec3 p = medium.local_of_node(first + size * ivec3(k & 1, k >> 1 & 1, k >> 2 & 1));
+            low = glm::min(low, p);
+            high = glm::max(high, p);
+        }
+    }
+    float distance(const vec3& p) const { return glm::length(glm::max(glm::max(low - p, p - high), vec3(0.0f))); }
+};
+
+GridLevel make_level(const Medium& medium, const PointLights& lights, int number, float range, const Box& box) {
+    std::map<ivec3, Sum, Earlier> sums;
+    const float scale = 1.0f / float(1 << number);
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        const float y = luminance(lights.intensity[i]);
+        if (!(y > 0.0f) || box.distance(lights.position[i]) > range)
+            continue;
+        const vec3 nodes = medium.index_from_local * lights.position[i] + vec3(medium.reference_node);
+        Sum& sum = sums[ivec3(glm::round(nodes * scale))];
+        sum.place += double(y) * dvec3(lights.position[i]);
+        sum.weight += y;
+        sum.intensity += lights.intensity[i];
+        if (lights.directional.empty())
+            continue;
+        sum.directional.resize(24, 0.0f);
+        for (int k = 0; k < 24; ++k)
+            sum.directional[k] += lights.directional[24 * i + k];
+    }
+    GridLevel level;
+    level.level = number;
+    level.spacing = medium.spacing * float(1 << number);
+    for (const auto& [vertex, sum] : sums) {
+        level.vertex.push_back(vertex);
+        level.position.emplace_back(sum.place / sum.weight);
+        level.intensity.push_back(sum.intensity);
+        level.directional.insert(level.directional.end(), sum.directional.begin(), sum.directional.end());
+    }
+    level.index_rows();
+    return level;
+}
+
+}  // namespace
+
+LightingGrid build_point_grid(const Medium& medium, const PointLights& lights, float alpha) {
+    LightingGrid grid;
+    if (lights.size() == 0 || medium.lattice.empty())
+        return grid;
+    vec3 low = lights.position.front(), high = low;
+    for (const vec3& p : lights.position) {
+        low = glm::min(low, p);
+        high = glm::max(high, p);
+    }
+    const vec3 size = (high - low) / medium.spacing;
+    const float longest = std::max({size.x, size.y, size.z, 1.0f});
+    const int top = std::clamp(static_cast<int>(std::ceil(std::log2(longest / 5.0f))), 1, kMostLevels);
+    const Box box(medium);
+    for (int l = 0; l <= top; ++l) {
+        const float range = l == top ? 3e38f : 2.0f * alpha * medium.spacing * float(1 << l);
+        grid.levels.push_back(make_level(medium, lights, l, range, box));
+    }
+    return grid;
+}
+
+}  // namespace brisance

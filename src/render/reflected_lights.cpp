@@ -1,0 +1,33 @@
+#include "render/reflected_lights.h"
+
+#include <numbers>
+
+#include "gathering/sh.h"
+
+namespace brisance {
+
+namespace {
+
+// Lambert's cosine lobe of flux 1 has the intensity cos / pi: per coefficient of degrees 1 and 2, times the harmonic of
+// the normal (Ramamoorthi and Hanrahan, An Efficient Representation for Irradiance Environment Maps, 2001).
+constexpr float kDegree1 = 2.0f / 3.0f, kDegree2 = 0.25f;
+
+}  // namespace
+
+PointLights reflected_lights(const VirtualLights& lights) {
+    PointLights out;
+    for (const VirtualLight& light : lights.lights()) {
+        const Rgb flux = lights.flux(light);
+        if (!(luminance(flux) > 0.0f))
+            continue;
+        out.position.emplace_back(light.position);
+        out.intensity.push_back(flux / (4.0f * std::numbers::pi_v<float>));
+        const auto basis = sh_basis(vec3(light.frame.normal));
+        for (int m = 0; m < kShMoments; ++m)
+            for (int c = 0; c < 3; ++c)
+                out.directional.push_back(flux[c] * (m < 3 ? kDegree1 : kDegree2) * basis[m]);
+    }
+    return out;
+}
+
+}  // namespace brisance

@@ -1,0 +1,46 @@
+// Light that the surfaces in front of the camera scatter toward it: the row S of the ledger.
+//
+// SV and SM: the Lambert base asks the lighting grids, which sum all lights of fire and smoke without noise, times the
+// part that other surfaces do not hide (extended_light.h). All other lobes are sampled: what a ray in such a direction
+// sees of the medium is what they reflect.
+// SA: a place on one of the emitters, and a ray by the BSDF. SS: the virtual lights; without them, paths.
+#pragma once
+
+#include <span>
+
+#include "emitters/surroundings.h"
+#include "render/cell_field.h"
+#include "render/integrate.h"
+#include "render/lighting.h"
+#include "render/plan.h"
+#include "tracing/path_tracer.h"
+#include "virtual_lights/virtual_lights.h"
+
+namespace brisance {
+
+class SurfaceShader {
+public:
+    // Keeps references. `lighting`: null where neither fire nor smoke shines; `lights`: null where the shot wants none.
+    // `parts`: as of PictureSettings.
+    SurfaceShader(const Plan& plan, const CellField& field, Lighting* lighting, const VirtualLights* lights,
+                  const PathTracer& paths, int parts);
+
+    void shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) const;
+
+private:
+    void light_bases(const std::vector<SurfaceSample>& samples, std::vector<SurfacePoint>& points,
+                     std::vector<SurfaceReceiver>& receivers) const;
+    Rgb seen_part(const ExtendedLight* light, const SurfacePoint& point, const dvec3& toward_viewer, Rng& rng) const;
+    Rgb from_emitters(const Scatterer& place, Rng& rng) const;
+    void reflect_medium(const SurfacePoint& point, const dvec3& toward_viewer, Rng& rng, CellSum& light) const;
+
+    const Plan& plan_;
+    const CellField& field_;
+    Lighting* lighting_;
+    const VirtualLights* lights_;
+    const PathTracer& paths_;
+    const Surroundings& surroundings_;
+    int parts_;
+};
+
+}  // namespace brisance
