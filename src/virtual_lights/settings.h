@@ -24,7 +24,7 @@ enum class LightRadius {
 };
 
 enum class LightSampling {
-    Power,        // a light in proportion to its power, a direction toward it
+    Power,        // a light in proportion to its power per area, a direction toward it: the camera sees all about alike
     LightTree,    // a light by what it may send to the place, a direction toward it
     Bsdf,         // a ray by BSDF or phase function, and all lights where it arrives
     Combined,     // Power and Bsdf by the balance heuristic

@@ -47,8 +47,8 @@ public:
     const std::vector<VirtualLight>& lights() const { return lights_; }
     // What a light reflects in all directions [W].
     Rgb flux(const VirtualLight& light) const {
-        return float(light.area) * (light.profile >= 0 ? profiles_.exitance(light)
-                                                       : light.irradiance * light.material.base_colour);
+        return float(light.area) *
+               (light.profile >= 0 ? profiles_.exitance(light) : light.irradiance * light.material.base_colour);
     }
     const VirtualLightReport& report() const { return report_; }
 
