@@ -42,7 +42,8 @@ Pixels sampled(const View& view, int samples, std::uint64_t seed,
     parallel_for(out.size(), [&](std::size_t p) {
         for (int s = 0; s < samples; ++s) {
             Rng rng(Stream::Path, p, seed << 32 | static_cast<std::uint64_t>(s));
-            const double x = double(p % view.width) + rng.next_double(), y = double(p / view.width) + rng.next_double();
+            const std::size_t column = p % view.width, row = p / view.width;
+            const double x = double(column) + rng.next_double(), y = double(row) + rng.next_double();
             const double place = rng.next_double();
             out[p] += dvec3(look(view.ray(x, y), place, rng)) / double(samples);
         }
@@ -123,6 +124,22 @@ LightSampling sampling_of(const std::string& name) {
         if (name == known)
             return sampling;
     throw Error(ExitCode::Usage, "no such sampling: " + name);
+}
+
+void compare_with_paths(const std::filesystem::path& folder, const View& view, int samples, int reference_samples,
+                        const PathTracer& tracer, const Pixels& ours) {
+    const Pixels a = reference(folder / "reference_SS_a", view, reference_samples, 3, tracer);
+    const Pixels b = reference(folder / "reference_SS_b", view, reference_samples, 4, tracer);
+    compare(a, b, ours);
+    const Stopwatch watch;
+    const Pixels paths = sampled(view, samples, 5, [&](const Ray& ray, double place, Rng& rng) {
+        PathSum sum{};
+        PathStatistics statistics;
+        tracer.trace(ray, place, rng, sum, statistics);
+        return sum.cells[static_cast<int>(Cell::SS)];
+    });
+    std::printf("path tracer, %d samples in %.2f s. ", samples, watch.seconds());
+    compare(a, b, paths);
 }
 
 // "name=value".
@@ -206,20 +223,8 @@ int run(int argc, char** argv) {
         whole[p] += between[p];
     write(folder / "lights", view, whole);
     write(folder / "lights_SS", view, between);
-    if (reference_samples > 0) {
-        const PathTracer tracer(nothing, {}, -1, &surroundings);
-        const Pixels a = reference(folder / "reference_SS_a", view, reference_samples, 3, tracer);
-        compare(a, reference(folder / "reference_SS_b", view, reference_samples, 4, tracer), between);
-        watch = {};
-        const Pixels paths = sampled(view, samples, 5, [&](const Ray& ray, double place, Rng& rng) {
-            PathSum sum{};
-            PathStatistics statistics;
-            tracer.trace(ray, place, rng, sum, statistics);
-            return sum.cells[static_cast<int>(Cell::SS)];
-        });
-        std::printf("path tracer, %d samples in %.2f s. ", samples, watch.seconds());
-        compare(a, reference(folder / "reference_SS_b", view, reference_samples, 4, tracer), paths);
-    }
+    if (reference_samples > 0)
+        compare_with_paths(folder, view, samples, reference_samples, {nothing, {}, -1, &surroundings}, between);
     return 0;
 }
 

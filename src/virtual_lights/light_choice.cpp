@@ -12,6 +12,7 @@ constexpr double kPi = std::numbers::pi;
 
 std::vector<LightBounds> bounds_of(const std::vector<VirtualLight>& lights) {
     std::vector<LightBounds> out;
+    out.reserve(lights.size());
     for (const VirtualLight& l : lights)
         out.push_back(
             {l.position - l.radius, l.position + l.radius, l.frame.normal, l.spread, kPi / 2.0, l.intensity, false});
