@@ -16,6 +16,13 @@ namespace {
 // Of the pyramid that rays toward extended lights march: which part of a light is hidden by smoke needs no more.
 constexpr int kAimLevel = 2;
 
+// Of the coarsest level that surfaces ask.
+constexpr std::size_t kLeastTopLights = 1000;
+
+// Of the balance of what escapes.
+constexpr int kSpherePoints = 1024;
+constexpr std::size_t kEscapeRays = std::size_t{1} << 17;
+
 nlohmann::ordered_json level_table(const std::vector<LevelCost>& costs) {
     auto table = nlohmann::ordered_json::array();
     for (const LevelCost& c : costs)
@@ -138,6 +145,14 @@ Receivers point_receivers(const Medium& medium, const std::vector<MarchPoint>& p
         i = end;
     }
     return receivers;
+}
+
+// Surfaces stand outside of the smoke: light of a coarse vertex comes to them through all the smoke around it, which
+// differs from voxel to voxel more than its map, made for the smoke nearby, can tell. On real smoke two levels fewer
+// bring the error from 8 to 2 % of what escapes, for one more microsecond per point and light.
+void drop_coarse_levels(LightingGrid& grid) {
+    while (grid.levels.size() > 1 && grid.levels.back().size() < kLeastTopLights)
+        grid.levels.pop_back();
 }
 
 }  // namespace
@@ -270,10 +285,59 @@ Gathered Lighting::light_from_fire() {
 
 // Makes what gathering at points asks for, from lights that have found their place.
 void Lighting::keep(KeptLights& lights, float alpha) {
+    if (!marching())
+        drop_coarse_levels(lights.lights.grid);
     lights.field = lights.lights.field(pyramid_, alpha, shot_.lighting, &lights.maps);
     lights.bottom = bottom_level(lights.field);
-    if (lights_surfaces())
-        lights.aim = std::make_unique<ExtendedLight>(medium_, depths_, lights.lights.light.intensity);
+    if (!lights_surfaces())
+        return;
+    lights.aim = std::make_unique<ExtendedLight>(medium_, depths_, lights.lights.light.intensity);
+    if (shot_.lighting.energy_balance)
+        balance_escape(lights);
+}
+
+// What passes through the sphere around the medium must be what rays say escapes.
+void Lighting::balance_escape(KeptLights& lights) {
+    const ScatteredLight& light = lights.lights.light;
+    const dvec3 emitted = total(light.intensity);
+    const CollisionEstimate inside = estimate_collisions(pyramid_, light.intensity, light.directional, kEscapeRays);
+    const ivec3 first = medium_.lattice.min_brick() * BrickLattice::kSize;
+    const ivec3 size = medium_.lattice.brick_extent() * BrickLattice::kSize;
+    const vec3 low = medium_.local_of_node(first), high = medium_.local_of_node(first + size);
+    const vec3 middle = 0.5f * (low + high);
+    const float radius = 0.5f * glm::distance(low, high);
+    std::vector<MarchPoint> sphere;
+    for (int i = 0; i < kSpherePoints; ++i) {
+        const float z = 1.0f - (2.0f * float(i) + 1.0f) / kSpherePoints, r = std::sqrt(1.0f - z * z);
+        const float azimuth = 2.3999632297f * float(i);  // the golden angle
+        const vec3 d(r * std::cos(azimuth), r * std::sin(azimuth), z);
+        sphere.push_back({middle + radius * d, -d});
+    }
+    std::vector<std::uint32_t> order;
+    const Receivers receivers = point_receivers(medium_, sphere, true, order);
+    std::vector<LevelCost> costs;
+    Progress silent;
+    const Gathered g =
+        gather_at_points(lights.field, lights.bottom, receivers, 0.0f, costs, silent, ReceiverKind::Surface);
+    dvec3 through(0.0);
+    std::vector<bool> counted(sphere.size(), false);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        if (counted[order[i]])
+            continue;  // padding
+        counted[order[i]] = true;
+        for (int c = 0; c < 3; ++c)
+            through[c] += g.scattered[c * order.size() + i];
+    }
+    through *= double(kPi) * radius * radius / kSpherePoints;  // over 4 pi, as the intensities are
+    for (int c = 0; c < 3; ++c)
+        if (through[c] > 0.0)
+            lights.escape_scale[c] = float((1.0 - inside.fraction[c]) * emitted[c] / through[c]);
+    statistics_.stages.push_back({"balance of what escapes",
+                                  0.0,
+                                  0,
+                                  {{"escaped", 1.0 - luminance(Rgb(inside.fraction))},
+                                   {"standard_error", inside.standard_error},
+                                   {"scale", luminance(lights.escape_scale)}}});
 }
 
 Gathered Lighting::gather_last_flight(const HierarchyLights& lights, int order, nlohmann::ordered_json& balances,
@@ -349,6 +413,14 @@ void Lighting::light_from_smoke(const Gathered& first) {
         if (kept)
             smoke_->lights = std::move(lights);
     }
+    if (kept && lights_surfaces() && !plan_.directional && shot_.scattering.bounces < 0) {
+        // What the camera sees is what lights the surfaces: all light that arrives at the nodes, scattered once more.
+        Gathered all = first;
+        all.add(sum);
+        ScatteredLight leaving = scattered_light(medium_, all, needed_);
+        leaving.sharpen(medium_.lattice);
+        smoke_->lights = build_hierarchy(medium_, std::move(leaving), shot_.lighting.levels);
+    }
     if (kept)
         keep(*smoke_, shot_.scattering.alpha);
     if (!marching())
@@ -377,9 +449,10 @@ void Lighting::at_surfaces(std::vector<SurfaceReceiver>& points) {
         Progress silent;
         const Gathered g =
             gather_at_points(lights->field, lights->bottom, receivers, 0.0f, costs, silent, ReceiverKind::Surface);
+        // Scaled by the balance of what escapes, not of what collides.
         for (std::size_t i = 0; i < n; ++i)
             for (int c = 0; c < 3; ++c)
-                (points[order[i]].*slot)[c] = lights->scale[c] * g.scattered[c * n + i];
+                (points[order[i]].*slot)[c] = lights->escape_scale[c] * g.scattered[c * n + i];
     };
     gather(fire_, &SurfaceReceiver::fire);
     gather(smoke_, &SurfaceReceiver::smoke);

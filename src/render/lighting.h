@@ -80,8 +80,10 @@ private:
         ShadowMapCache maps;
         Rgb scale{1.0f};
         std::unique_ptr<ExtendedLight> aim;  // for surfaces
+        Rgb escape_scale{1.0f};              // the same
     };
     void keep(KeptLights& lights, float alpha);
+    void balance_escape(KeptLights& lights);
     std::unique_ptr<KeptLights> fire_, smoke_;
 };
 
