@@ -1,6 +1,6 @@
 // Pictures of a glTF file by direct light and virtual lights, beside the path tracer's, with times and errors.
 //
-//   brisance_light_pictures SCENE.glb FOLDER WIDTH SAMPLES REFERENCE_SAMPLES [lights [sampling [photons]]]
+//   brisance_light_pictures SCENE.glb FOLDER WIDTH SAMPLES REFERENCE_SAMPLES [name=value ...]
 //
 // FOLDER gets lights.exr and .png, and (kept for the next run) two halves of the reference; REFERENCE_SAMPLES of 0:
 // none. The error is that of the cell SS alone, relative, without the references' own noise: the product of the
@@ -42,7 +42,8 @@ Pixels sampled(const View& view, int samples, std::uint64_t seed,
     parallel_for(out.size(), [&](std::size_t p) {
         for (int s = 0; s < samples; ++s) {
             Rng rng(Stream::Path, p, seed << 32 | static_cast<std::uint64_t>(s));
-            const double x = double(p % view.width) + rng.next_double(), y = double(p / view.width) + rng.next_double();
+            const std::size_t column = p % view.width, row = p / view.width;
+            const double x = double(column) + rng.next_double(), y = double(row) + rng.next_double();
             const double place = rng.next_double();
             out[p] += dvec3(look(view.ray(x, y), place, rng)) / double(samples);
         }
@@ -125,18 +126,70 @@ LightSampling sampling_of(const std::string& name) {
     throw Error(ExitCode::Usage, "no such sampling: " + name);
 }
 
+void compare_with_paths(const std::filesystem::path& folder, const View& view, int samples, int reference_samples,
+                        const PathTracer& tracer, const Pixels& ours) {
+    const Pixels a = reference(folder / "reference_SS_a", view, reference_samples, 3, tracer);
+    const Pixels b = reference(folder / "reference_SS_b", view, reference_samples, 4, tracer);
+    compare(a, b, ours);
+    const Stopwatch watch;
+    const Pixels paths = sampled(view, samples, 5, [&](const Ray& ray, double place, Rng& rng) {
+        PathSum sum{};
+        PathStatistics statistics;
+        tracer.trace(ray, place, rng, sum, statistics);
+        return sum.cells[static_cast<int>(Cell::SS)];
+    });
+    std::printf("path tracer, %d samples in %.2f s. ", samples, watch.seconds());
+    compare(a, b, paths);
+}
+
+// "name=value".
+void apply(VirtualLightSettings& s, const std::string& text) {
+    const std::size_t equals = text.find('=');
+    const std::string name = text.substr(0, equals), value = equals < text.size() ? text.substr(equals + 1) : "";
+    const double number = std::atof(value.c_str());
+    if (name == "count")
+        s.count = static_cast<int>(number);
+    else if (name == "photons")
+        s.photons = static_cast<int>(number);
+    else if (name == "resolution")
+        s.profile_resolution = static_cast<int>(number);
+    else if (name == "per_pixel")
+        s.candidates_per_pixel = number;
+    else if (name == "neighbours")
+        s.neighbours = static_cast<int>(number);
+    else if (name == "n_min")
+        s.n_min = number;
+    else if (name == "n_max")
+        s.n_max = number;
+    else if (name == "radius_factor")
+        s.radius_factor = number;
+    else if (name == "extension")
+        s.extension = number != 0.0;
+    else if (name == "uniform")
+        s.radius = number != 0.0 ? LightRadius::Uniform : LightRadius::Adaptive;
+    else if (name == "random")
+        s.placement = number != 0.0 ? LightPlacement::Random : LightPlacement::BlueNoise;
+    else if (name == "light_paths")
+        s.placement = number != 0.0 ? LightPlacement::LightPaths : LightPlacement::BlueNoise;
+    else if (name == "kind")
+        s.kind = value == "point"    ? VirtualLightKind::Point
+                 : value == "sphere" ? VirtualLightKind::Sphere
+                                     : VirtualLightKind::Patch;
+    else if (name == "seed")
+        s.seed = static_cast<std::uint32_t>(number);
+    else if (name == "sampling")
+        s.sampling = sampling_of(value);
+    else
+        throw Error(ExitCode::Usage, "no such setting: " + text);
+}
+
 int run(int argc, char** argv) {
     const std::filesystem::path file = std::filesystem::absolute(argv[1]), folder = argv[2];
     std::filesystem::create_directories(folder);
     const int width = std::atoi(argv[3]), samples = std::atoi(argv[4]), reference_samples = std::atoi(argv[5]);
     VirtualLightSettings settings;
-    if (argc > 6)
-        settings.count = std::atoi(argv[6]);
-    if (argc > 7)
-        settings.sampling = sampling_of(argv[7]);
-    if (argc > 8)
-        settings.photons = std::atoi(argv[8]);
-    settings.extension = std::getenv("NO_EXTENSION") == nullptr;
+    for (int i = 6; i < argc; ++i)
+        apply(settings, argv[i]);
     Progress silent;
     SceneSettings scene_settings;
     scene_settings.files.push_back({file.string(), 'y', dmat4(1.0)});
@@ -170,20 +223,8 @@ int run(int argc, char** argv) {
         whole[p] += between[p];
     write(folder / "lights", view, whole);
     write(folder / "lights_SS", view, between);
-    if (reference_samples > 0) {
-        const PathTracer tracer(nothing, {}, -1, &surroundings);
-        const Pixels a = reference(folder / "reference_SS_a", view, reference_samples, 3, tracer);
-        compare(a, reference(folder / "reference_SS_b", view, reference_samples, 4, tracer), between);
-        watch = {};
-        const Pixels paths = sampled(view, samples, 5, [&](const Ray& ray, double place, Rng& rng) {
-            PathSum sum{};
-            PathStatistics statistics;
-            tracer.trace(ray, place, rng, sum, statistics);
-            return sum.cells[static_cast<int>(Cell::SS)];
-        });
-        std::printf("path tracer, %d samples in %.2f s. ", samples, watch.seconds());
-        compare(a, reference(folder / "reference_SS_b", view, reference_samples, 4, tracer), paths);
-    }
+    if (reference_samples > 0)
+        compare_with_paths(folder, view, samples, reference_samples, {nothing, {}, -1, &surroundings}, between);
     return 0;
 }
 
@@ -192,7 +233,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     if (argc < 6) {
-        std::fprintf(stderr, "SCENE.glb FOLDER WIDTH SAMPLES REFERENCE_SAMPLES [lights [sampling [photons]]]\n");
+        std::fprintf(stderr, "SCENE.glb FOLDER WIDTH SAMPLES REFERENCE_SAMPLES [name=value ...]\n");
         return 2;
     }
     try {

@@ -62,8 +62,8 @@ std::vector<LightCandidate> light_candidates(const DirectLight& scene, const Pix
             Rng rng(Stream::LightCandidate, i, seed);
             const double place = std::min((double(i) + rng.next_double()) / double(paths) * pixels, pixels - 1.0);
             const auto pixel = static_cast<std::uint64_t>(place);
-            const double x = double(pixel % camera.width) + rng.next_double();
-            const double y = double(pixel / camera.width) + rng.next_double();
+            const std::uint64_t column = pixel % camera.width, row = pixel / camera.width;
+            const double x = double(column) + rng.next_double(), y = double(row) + rng.next_double();
             follow(scene, camera.ray(x, y), rng, found[i]);
         }
     });

@@ -10,6 +10,9 @@ constexpr std::size_t kLeaf = 4;
 // Least cosine between normals of a place and of a light that speaks for it (Li et al., as they released it).
 constexpr float kSameWay = 0.7f;
 
+// Height above the surface from which lights see their places, of the light's radius.
+constexpr float kAbove = 0.05f;
+
 // Keeps the heaviest; of equal ones those of lower number, whatever the order of calls.
 void insert(LightShares& shares, std::uint32_t light, float weight) {
     const auto before = [&](int i) {
@@ -33,11 +36,10 @@ bool inside(const vec3& p, const vec3& low, const vec3& high) {
 
 }  // namespace
 
-LightCover::LightCover(std::span<const VirtualLight> lights) {
+LightCover::LightCover(const Intersector& surfaces, std::span<const VirtualLight> lights) : surfaces_(&surfaces) {
     for (std::uint32_t i = 0; i < lights.size(); ++i) {
         const VirtualLight& l = lights[i];
-        spheres_.push_back(
-            {vec3(l.position), float(1.0 / (l.radius * l.radius)), vec3(l.frame.normal), l.scene_material, i});
+        spheres_.push_back({vec3(l.position), float(l.radius), vec3(l.frame.normal), l.scene_material, i});
     }
     if (!spheres_.empty())
         build(lights, spheres_, 0);
@@ -69,6 +71,14 @@ void LightCover::build(std::span<const VirtualLight> lights, std::span<Sphere> s
     build(lights, spheres.subspan(half), first + half);
 }
 
+// Between places a little above the surface, so that it does not hide itself where it is curved.
+bool LightCover::hidden(const Sphere& sphere, const vec3& position, const vec3& normal) const {
+    const float above = kAbove * sphere.radius;
+    const dvec3 from(position + above * normal), way = dvec3(sphere.centre + above * sphere.normal) - from;
+    const double length = glm::length(way);
+    return length > 0.0 && surfaces_->occluded({from, way / length}, length);
+}
+
 LightShares LightCover::shares(const dvec3& position, const dvec3& normal, int scene_material) const {
     LightShares out;
     if (nodes_.empty())
@@ -90,8 +100,9 @@ LightShares LightCover::shares(const dvec3& position, const dvec3& normal, int s
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
             const Sphere& s = spheres_[i];
             const vec3 away = p - s.centre;
-            const float weight = 1.0f - glm::dot(away, away) * s.inverse_square_radius;
-            if (weight > 0.0f && s.scene_material == scene_material && glm::dot(n, s.normal) > kSameWay)
+            const float weight = 1.0f - glm::dot(away, away) / (s.radius * s.radius);
+            if (weight > 0.0f && s.scene_material == scene_material && glm::dot(n, s.normal) > kSameWay &&
+                !hidden(s, p, n))
                 insert(out, s.light, weight);
         }
     }

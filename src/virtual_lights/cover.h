@@ -24,9 +24,11 @@ struct LightShares {
 class LightCover {
 public:
     LightCover() = default;
-    explicit LightCover(std::span<const VirtualLight> lights);
+    // Keeps a reference to the surfaces.
+    LightCover(const Intersector& surfaces, std::span<const VirtualLight> lights);
 
-    // `normal`: unit, on the lit side. Of lights on the same material that face about the same way.
+    // `normal`: unit, on the lit side. Of lights on the same material that face about the same way, with nothing in
+    // between: what stands on a surface hides the surface below, which no photon reaches, from the lights around.
     LightShares shares(const dvec3& position, const dvec3& normal, int scene_material) const;
 
     std::uint64_t bytes() const { return nodes_.size() * sizeof(Node) + spheres_.size() * sizeof(Sphere); }
@@ -34,7 +36,7 @@ public:
 private:
     struct Sphere {
         vec3 centre;
-        float inverse_square_radius;
+        float radius;
         vec3 normal;
         std::int32_t scene_material;
         std::uint32_t light;
@@ -46,6 +48,9 @@ private:
     };
     void build(std::span<const VirtualLight> lights, std::span<Sphere> spheres, std::size_t first);
 
+    bool hidden(const Sphere& sphere, const vec3& position, const vec3& normal) const;
+
+    const Intersector* surfaces_ = nullptr;
     std::vector<Sphere> spheres_;
     std::vector<Node> nodes_;
 };

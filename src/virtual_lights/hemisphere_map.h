@@ -17,7 +17,7 @@ namespace brisance {
 // Unit, z >= 0, of u, v in [0, 1].
 inline dvec3 hemisphere_of_square(double u, double v) {
     const double a = 2.0 * u - 1.0, b = 2.0 * v - 1.0;
-    double r, angle;
+    double r = 0.0, angle = 0.0;
     if (std::abs(a) > std::abs(b)) {
         r = a;
         angle = std::numbers::pi / 4.0 * (b / a);
@@ -36,7 +36,7 @@ inline glm::dvec2 square_of_hemisphere(const dvec3& d) {
     double angle = std::atan2(d.y, d.x);
     if (angle < -quarter)
         angle += 2.0 * std::numbers::pi;
-    double a, b;
+    double a = 0.0, b = 0.0;
     if (angle < quarter) {
         a = r;
         b = angle * a / quarter;

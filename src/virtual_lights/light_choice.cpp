@@ -12,6 +12,7 @@ constexpr double kPi = std::numbers::pi;
 
 std::vector<LightBounds> bounds_of(const std::vector<VirtualLight>& lights) {
     std::vector<LightBounds> out;
+    out.reserve(lights.size());
     for (const VirtualLight& l : lights)
         out.push_back(
             {l.position - l.radius, l.position + l.radius, l.frame.normal, l.spread, kPi / 2.0, l.intensity, false});
@@ -36,9 +37,11 @@ LightChoice::LightChoice(const std::vector<VirtualLight>& lights, LightSampling 
       tree_(by_tree_ ? bounds_of(lights) : std::vector<LightBounds>{}) {
     if (sampling != LightSampling::Power && sampling != LightSampling::Combined)
         return;
+    // Where lights lie close together the camera sees much of what each sends: all of them bring about the same to the
+    // picture for each power per area, and by power alone the large ones far off would be asked in vain.
     double sum = 0.0;
     for (const VirtualLight& light : lights)
-        cumulative_.push_back(sum += light.power);
+        cumulative_.push_back(sum += light.power / light.area);
     if (!(sum > 0.0))
         cumulative_.clear();
     for (double& c : cumulative_)

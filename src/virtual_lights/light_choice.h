@@ -25,7 +25,7 @@ public:
 
 private:
     bool by_tree_;
-    std::vector<double> cumulative_;  // power, inclusive; ends at 1
+    std::vector<double> cumulative_;  // power per area, inclusive; ends at 1
     LightTree tree_;
 };
 

@@ -10,7 +10,12 @@ namespace brisance {
 
 namespace {
 
+// Rays come in rounds, until this many of them found surface that the light speaks for, or too many did not.
 constexpr int kRays = 64;
+constexpr int kRounds = 8;
+constexpr int kEnough = 24;
+constexpr int kTooFew = 8;
+
 constexpr int kLayers = 8;  // surfaces one behind the other within one sphere
 
 // What one ray through the sphere meets: the light's weight there over the cosine by which surface is seen.
@@ -37,30 +42,48 @@ double weight_along(const Intersector& surfaces, const LightCover& cover, Ray ra
     return sum;
 }
 
+// A round of rays, even over the disc by Vogel's spiral: the sum of their weights.
+double round_of_rays(const Intersector& surfaces, const LightCover& cover, std::uint32_t index, Rng& rng,
+                     VirtualLight& light, int& found) {
+    const double shift = rng.next_double(), turn = rng.next_double();
+    double sum = 0.0;
+    for (int k = 0; k < kRays; ++k) {
+        const double square = (k + shift) / kRays;
+        const double angle = 2.0 * std::numbers::pi * (turn + k * 0.6180339887498949);
+        const double across = light.radius * std::sqrt(square), height = light.radius * std::sqrt(1.0 - square);
+        const dvec3 start =
+            light.position + light.frame.world_from_local({across * std::cos(angle), across * std::sin(angle), height});
+        const double weight = weight_along(surfaces, cover, {start, -light.frame.normal}, 2.0 * height, index, light);
+        sum += weight;
+        found += weight > 0.0;
+    }
+    return sum;
+}
+
+// False: hardly anything was found.
+bool measure(const Intersector& surfaces, const LightCover& cover, std::uint32_t index, std::uint32_t seed,
+             VirtualLight& light) {
+    Rng rng(Stream::LightArea, index, seed);
+    double sum = 0.0;
+    int found = 0, rays = 0;
+    light.spread = 0.0;
+    for (int round = 0; round < kRounds && found < kEnough; ++round, rays += kRays)
+        sum += round_of_rays(surfaces, cover, index, rng, light, found);
+    const double disc = std::numbers::pi * light.radius * light.radius;
+    light.area = disc * std::max(sum, 1.0) / rays;
+    return found >= kTooFew;
+}
+
 }  // namespace
 
-void measure_areas(const Intersector& surfaces, const LightCover& cover, std::span<VirtualLight> lights,
-                   std::uint32_t seed) {
+std::vector<std::uint8_t> measure_areas(const Intersector& surfaces, const LightCover& cover,
+                                        std::span<VirtualLight> lights, std::uint32_t seed) {
+    std::vector<std::uint8_t> known(lights.size());
     parallel_for(
         lights.size(),
-        [&](std::size_t i) {
-            VirtualLight& light = lights[i];
-            Rng rng(Stream::LightArea, i, seed);
-            const double shift = rng.next_double(), turn = rng.next_double();
-            double sum = 0.0;
-            for (int k = 0; k < kRays; ++k) {
-                // Vogel's spiral: even over the disc.
-                const double square = (k + shift) / kRays;
-                const double angle = 2.0 * std::numbers::pi * (turn + k * 0.6180339887498949);
-                const double across = light.radius * std::sqrt(square), height = light.radius * std::sqrt(1.0 - square);
-                const dvec3 start = light.position + light.frame.world_from_local(
-                                                         {across * std::cos(angle), across * std::sin(angle), height});
-                sum += weight_along(surfaces, cover, {start, -light.frame.normal}, 2.0 * height,
-                                    static_cast<std::uint32_t>(i), light);
-            }
-            light.area = std::numbers::pi * light.radius * light.radius * sum / kRays;
-        },
+        [&](std::size_t i) { known[i] = measure(surfaces, cover, static_cast<std::uint32_t>(i), seed, lights[i]); },
         16);
+    return known;
 }
 
 }  // namespace brisance

@@ -8,8 +8,9 @@
 namespace brisance {
 
 // Sets `area` and `spread` of every light: the integral of its weight over the surfaces in its sphere, by rays along
-// its normal. Relative standard error 2 % or so per light.
-void measure_areas(const Intersector& surfaces, const LightCover& cover, std::span<VirtualLight> lights,
-                   std::uint32_t seed);
+// its normal. Relative standard error a few per cent per light. Returns 1 for lights whose area is known so; for
+// others, of which hardly anything was found (a leaf in a wide sphere), `area` is at least what one ray stands for.
+std::vector<std::uint8_t> measure_areas(const Intersector& surfaces, const LightCover& cover,
+                                        std::span<VirtualLight> lights, std::uint32_t seed);
 
 }  // namespace brisance

@@ -28,24 +28,23 @@ bool finite(const Rgb& c) {
     return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);
 }
 
+// Particles by number. Those of the fire come first.
 class PhotonPaths {
 public:
-    PhotonPaths(const DirectLight& scene, const BoundingBall& ball, const LightCover& cover,
-                const VirtualLightSettings& settings, LightAccounts& accounts)
-        : scene_(scene), ball_(ball), cover_(cover), seed_(settings.seed), accounts_(accounts) {
-        const double fire = scene.fire().empty() ? 0.0 : scene.fire().power();
-        const double all = emitted_power(scene, ball);
-        total_ = static_cast<std::uint64_t>(std::max(settings.photons, 0));
-        if (fire > 0.0 && total_ > 1)
-            from_fire_ = fire == all
-                             ? total_
-                             : std::clamp<std::uint64_t>(std::llround(fire / all * double(total_)), 1, total_ - 1);
+    PhotonPaths(const DirectLight& scene, const BoundingBall& ball, std::size_t total, Stream stream,
+                std::uint32_t seed)
+        : scene_(scene), ball_(ball), stream_(stream), seed_(seed), total_(total) {
+        const double fire = scene.fire().empty() ? 0.0 : scene.fire().power(), all = emitted_power(scene, ball);
+        if (fire > 0.0 && fire == all)
+            from_fire_ = total_;
+        else if (fire > 0.0 && total_ > 1)
+            from_fire_ = std::clamp<std::uint64_t>(std::llround(fire / all * double(total_)), 1, total_ - 1);
     }
 
-    std::uint64_t total() const { return total_; }
-
-    void trace(std::uint64_t index, PhotonReport& report) const {
-        Rng rng(Stream::Photon, index, seed_);
+    // Calls meet(segment, power) wherever the particle meets a surface.
+    template <class Meet>
+    void trace(std::uint64_t index, PhotonReport& report, const Meet& meet) const {
+        Rng rng(stream_, index, seed_);
         const bool fire = index < from_fire_;
         report.from_fire += fire;
         ++report.photons;
@@ -59,11 +58,13 @@ public:
             return;
         }
         report.emitted += luminance(power);
-        follow(particle->ray, power, rng, report);
+        follow(particle->ray, power, rng, report, meet);
     }
 
 private:
-    void follow(Ray ray, Rgb power, Rng& rng, PhotonReport& report) const {
+    // What is absorbed ends the path by roulette: powers stay about equal.
+    template <class Meet>
+    void follow(Ray ray, Rgb power, Rng& rng, PhotonReport& report, const Meet& meet) const {
         for (int turn = 1;; ++turn) {
             const RaySegment segment = scene_.segment_along(ray);
             const std::optional<Collision> collision = null_collision_flight(scene_.field(), ray, segment.end, rng);
@@ -72,7 +73,7 @@ private:
                 return;
             }
             if (!collision)
-                deposit(segment, power, report);
+                meet(segment, power);
             const Scatterer place =
                 collision ? scene_.in_smoke(ray, *collision) : Scatterer(*segment.point, ray.direction);
             const std::optional<Scatterer::Sample> next = place.sample_particle(rng);
@@ -81,35 +82,38 @@ private:
             const Rgb left =
                 power * (collision ? scene_.field().albedo(collision->brick, collision->position) : next->weight);
             const float part = std::min(largest(left) / largest(power), turn > kManyScatterings ? kGoesOn : 1.0f);
-            if (!(rng.next() < part))  // not so for what is not finite
+            if (!(rng.next() < part))  // so for what is not finite
                 return;
             power = left / part;
             ray = place.leaving(next->wi);
         }
     }
 
-    void deposit(const RaySegment& segment, const Rgb& power, PhotonReport& report) const {
-        const SurfacePoint& point = *segment.point;
-        if (!holds_light(point.material))
-            return;
-        const int material = scene_.surroundings()->scene().meshes[segment.hit->mesh].material;
-        const LightShares shares = cover_.shares(point.position, lit_normal(point), material);
-        (shares.count > 0 ? report.shared : report.unshared) += luminance(power);
-        const dvec3 toward_source = -segment.ray.direction;
-        const double shading = std::abs(glm::dot(point.frame.normal, toward_source));
-        const double geometric = std::abs(glm::dot(point.geometric_normal, toward_source));
-        const auto brighter = static_cast<float>(std::min(shading / std::max(geometric, 1e-9), kMostBrighter));
-        for (int i = 0; i < shares.count; ++i)
-            accounts_.add(shares.light[i], toward_source, power * (shares.weight[i] * brighter));
-    }
-
     const DirectLight& scene_;
     BoundingBall ball_;
-    const LightCover& cover_;
+    Stream stream_;
     std::uint32_t seed_;
-    LightAccounts& accounts_;
-    std::uint64_t total_ = 0, from_fire_ = 0;
+    std::uint64_t total_, from_fire_ = 0;
 };
+
+int material_of(const DirectLight& scene, const RaySegment& segment) {
+    return scene.surroundings()->scene().meshes[segment.hit->mesh].material;
+}
+
+void share_out(const DirectLight& scene, const RaySegment& segment, const Rgb& power, const LightCover& cover,
+               LightAccounts& accounts, PhotonReport& report) {
+    const SurfacePoint& point = *segment.point;
+    if (!holds_light(point.material))
+        return;
+    const LightShares shares = cover.shares(point.position, lit_normal(point), material_of(scene, segment));
+    (shares.count > 0 ? report.shared : report.unshared) += luminance(power);
+    const dvec3 toward_source = -segment.ray.direction;
+    const double shading = std::abs(glm::dot(point.frame.normal, toward_source));
+    const double geometric = std::abs(glm::dot(point.geometric_normal, toward_source));
+    const auto brighter = static_cast<float>(std::min(shading / std::max(geometric, 1e-9), kMostBrighter));
+    for (int i = 0; i < shares.count; ++i)
+        accounts.add(shares.light[i], toward_source, power * (shares.weight[i] * brighter));
+}
 
 void add(PhotonReport& to, const PhotonReport& r) {
     to.photons += r.photons;
@@ -175,13 +179,35 @@ double emitted_power(const DirectLight& scene, const BoundingBall& ball) {
            (scene.has_emitters() ? scene.surroundings()->emitters().power(ball.radius) : 0.0);
 }
 
+std::vector<LightCandidate> light_path_candidates(const DirectLight& scene, std::size_t paths, std::uint32_t seed) {
+    const PhotonPaths all(scene, ball_around(scene), paths, Stream::LightCandidate, seed);
+    std::vector<std::vector<LightCandidate>> found(paths);
+    parallel_blocks(paths, kBlock, [&](std::size_t begin, std::size_t end) {
+        PhotonReport unread;
+        for (std::size_t i = begin; i < end; ++i)
+            all.trace(i, unread, [&](const RaySegment& segment, const Rgb&) {
+                if (holds_light(segment.point->material))
+                    found[i].push_back({*segment.hit, vec3(segment.point->position), vec3(-segment.ray.direction),
+                                        material_of(scene, segment)});
+            });
+    });
+    std::vector<LightCandidate> out;
+    for (const std::vector<LightCandidate>& f : found)
+        out.insert(out.end(), f.begin(), f.end());
+    return out;
+}
+
 PhotonReport trace_photons(const DirectLight& scene, const BoundingBall& ball, const LightCover& cover,
                            const VirtualLightSettings& settings, LightAccounts& accounts) {
-    const PhotonPaths paths(scene, ball, cover, settings, accounts);
-    std::vector<PhotonReport> parts((paths.total() + kBlock - 1) / kBlock);
-    parallel_blocks(paths.total(), kBlock, [&](std::size_t begin, std::size_t end) {
+    const auto total = static_cast<std::size_t>(settings.photons);
+    const PhotonPaths paths(scene, ball, total, Stream::Photon, settings.seed);
+    std::vector<PhotonReport> parts((total + kBlock - 1) / kBlock);
+    parallel_blocks(total, kBlock, [&](std::size_t begin, std::size_t end) {
+        PhotonReport& report = parts[begin / kBlock];
         for (std::size_t i = begin; i < end; ++i)
-            paths.trace(i, parts[begin / kBlock]);
+            paths.trace(i, report, [&](const RaySegment& segment, const Rgb& power) {
+                share_out(scene, segment, power, cover, accounts, report);
+            });
     });
     PhotonReport report;
     for (const PhotonReport& part : parts)

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "tracing/direct_light.h"
+#include "virtual_lights/candidates.h"
 #include "virtual_lights/cover.h"
-#include "virtual_lights/settings.h"
 
 namespace brisance {
 
@@ -55,6 +55,9 @@ BoundingBall ball_around(const DirectLight& scene);
 
 // Power that particles carry, luminance [W].
 double emitted_power(const DirectLight& scene, const BoundingBall& ball);
+
+// Where the particles of `paths` light paths meet surfaces that hold light.
+std::vector<LightCandidate> light_path_candidates(const DirectLight& scene, std::size_t paths, std::uint32_t seed);
 
 PhotonReport trace_photons(const DirectLight& scene, const BoundingBall& ball, const LightCover& cover,
                            const VirtualLightSettings& settings, LightAccounts& accounts);

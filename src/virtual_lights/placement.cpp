@@ -51,6 +51,7 @@ Survivors at_random(const std::vector<vec3>& points, const VirtualLightSettings&
     order.resize(count);
     std::sort(order.begin(), order.end());
     std::vector<vec3> chosen;
+    chosen.reserve(count);
     for (const std::uint32_t i : order)
         chosen.push_back(points[i]);
     Survivors out = distances(chosen, kFewNeighbours);
@@ -72,6 +73,7 @@ std::vector<VirtualLight> place_lights(const Scene& scene, const std::vector<Lig
     if (candidates.empty() || settings.count <= 0)
         return {};
     std::vector<vec3> points;
+    points.reserve(candidates.size());
     for (const LightCandidate& c : candidates)
         points.push_back(c.position);
     const Survivors chosen =

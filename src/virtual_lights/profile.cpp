@@ -1,7 +1,10 @@
 #include "virtual_lights/profile.h"
 
-#include <cstring>
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
+#include <numbers>
 
 #include "core/parallel.h"
 #include "virtual_lights/hemisphere_map.h"
@@ -54,8 +57,9 @@ public:
 
 private:
     dvec3 direction(std::size_t texel, int quarter) const {
-        const double x = double(texel % static_cast<std::size_t>(side_)) + 0.25 + 0.5 * (quarter & 1);
-        const double y = double(texel / static_cast<std::size_t>(side_)) + 0.25 + 0.5 * (quarter >> 1);
+        const std::size_t row = texel / static_cast<std::size_t>(side_),
+                          column = texel % static_cast<std::size_t>(side_);
+        const double x = double(column) + 0.25 + 0.5 * (quarter & 1), y = double(row) + 0.25 + 0.5 * (quarter >> 1);
         return hemisphere_of_square(x / side_, y / side_);
     }
 

@@ -7,7 +7,15 @@ namespace brisance {
 
 enum class LightPlacement {
     BlueNoise,  // camera paths' second vertices, thinned out by weighted sample elimination
-    Random      // the same, any of them
+    Random,     // the same, any of them
+    LightPaths  // any of the places where particles of light arrive: instant radiosity, as a baseline
+};
+
+// What a light is for those who ask; all are given light by the photons around them.
+enum class VirtualLightKind {
+    Patch,   // the surface itself, between lights interpolated
+    Sphere,  // a ball with a kernel of fixed area and one ray for its visibility: rich virtual spherical lights
+    Point    // a point with a bound on its geometric term: rich virtual point lights
 };
 
 enum class LightRadius {
@@ -16,7 +24,7 @@ enum class LightRadius {
 };
 
 enum class LightSampling {
-    Power,        // a light in proportion to its power, a direction toward it
+    Power,        // a light in proportion to its power per area, a direction toward it: the camera sees all about alike
     LightTree,    // a light by what it may send to the place, a direction toward it
     Bsdf,         // a ray by BSDF or phase function, and all lights where it arrives
     Combined,     // Power and Bsdf by the balance heuristic
@@ -26,6 +34,9 @@ enum class LightSampling {
 struct VirtualLightSettings {
     int count = 12000;  // virtual lights; 0: none, all surface light is found by paths
     LightPlacement placement = LightPlacement::BlueNoise;
+    VirtualLightKind kind =
+        VirtualLightKind::Patch;         // the others are baselines: asked by Power or LightTree, without extension
+    double point_bound = 100.0;          // Point: the greatest cosine over squared distance [1/m^2]; the rest is lost
     double candidates_per_pixel = 0.25;  // camera paths; never fewer than eight per light
     LightRadius radius = LightRadius::Adaptive;
     int neighbours = 128;         // candidates from whose distance their density is taken

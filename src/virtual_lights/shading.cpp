@@ -69,7 +69,7 @@ double VirtualLights::trust(const Seen& seen, double pdf) const {
     if (seen.shares.count == 0)
         return 0.0;
     if (!settings_.extension)
-        return 1.0;
+        return 1.0;  // spheres and points have been asked for all that such places reflect
     double area = 0.0;
     for (int i = 0; i < seen.shares.count; ++i)
         area += seen.shares.weight[i] * lights_[seen.shares.light[i]].area;
@@ -85,7 +85,40 @@ Rgb VirtualLights::from_chosen_light(const Scatterer& place, Rng& rng) const {
     const std::optional<LightTree::Choice> choice = choice_.choose(place.lit(), rng.next_double());
     if (!choice)
         return Rgb(0.0f);
-    const VirtualLight& light = lights_[choice->light];
+    return settings_.kind == VirtualLightKind::Patch ? from_patch(place, *choice, rng)
+                                                     : from_ball_or_point(place, *choice, rng);
+}
+
+// Of the light's own material.
+Rgb VirtualLights::radiance(const VirtualLight& light, const dvec3& toward) const {
+    if (light.profile >= 0)
+        return profiles_.radiance(light, toward);
+    return light.irradiance * light.material.base_colour / std::numbers::pi_v<float>;
+}
+
+// The light's power leaves a ball of its radius (Hasan et al., Virtual Spherical Lights for Many-Light Rendering of
+// Glossy Scenes, 2009) or its middle, seen or not seen as that is.
+Rgb VirtualLights::from_ball_or_point(const Scatterer& place, const LightTree::Choice& choice, Rng& rng) const {
+    const VirtualLight& light = lights_[choice.light];
+    const double clear = 1e-3 * light.radius;
+    double distance = 0.0;
+    const Ray ray = place.toward(light.position + clear * light.frame.normal, distance);
+    const bool ball = settings_.kind == VirtualLightKind::Sphere;
+    const dvec3 direction = ball ? sample_toward(light, place.lit(), rng) : ray.direction;
+    const double cosine = -glm::dot(light.frame.normal, direction);
+    const Rgb scattered = place.at(direction).value;
+    if (!(cosine > 0.0) || !(distance > 0.0) || scattered == Rgb(0.0f) ||
+        scene_.surroundings()->intersector().occluded(ray, distance))
+        return Rgb(0.0f);
+    double seen = std::min(cosine / (distance * distance), settings_.point_bound);
+    if (ball)
+        seen = cosine / (std::numbers::pi * light.radius * light.radius * pdf_toward(light, place.lit(), direction));
+    seen *= scene_.lines().transmittance(ray, distance, rng) * light.area / choice.probability;
+    return scattered * radiance(light, -direction) * float(seen);
+}
+
+Rgb VirtualLights::from_patch(const Scatterer& place, const LightTree::Choice& choice, Rng& rng) const {
+    const VirtualLight& light = lights_[choice.light];
     const dvec3 direction = sample_toward(light, place.lit(), rng);
     const Scatterer::Value scattered = place.at(direction);
     if (scattered.value == Rgb(0.0f))
@@ -100,9 +133,9 @@ Rgb VirtualLights::from_chosen_light(const Scatterer& place, Rng& rng) const {
     segment.point = surface_point(scene_.surroundings()->scene(), *segment.hit, -direction);
     const Seen seen = seen_by(segment);
     for (int i = 0; i < seen.shares.count; ++i) {
-        if (seen.shares.light[i] != choice->light)
+        if (seen.shares.light[i] != choice.light)
             continue;
-        const double pdf = choice->probability * pdf_toward(light, place.lit(), direction);
+        const double pdf = choice.probability * pdf_toward(light, place.lit(), direction);
         const bool both =
             settings_.sampling == LightSampling::Combined || settings_.sampling == LightSampling::CombinedTree;
         const double density = both ? pdf + scattered.pdf : pdf;

@@ -27,6 +27,10 @@ void check(const VirtualLightSettings& s) {
     require(s.neighbours >= 1, "neighbours must be at least 1");
     require(s.radius_factor > 0.0 && s.radius_factor <= 10.0, "radius_factor must lie above 0 and not above 10");
     require(s.profile_resolution >= 2 && s.profile_resolution <= 128, "profile_resolution must lie in 2..128");
+    require(s.point_bound > 0.0, "point_bound must be above 0");
+    const bool by_light = s.sampling == LightSampling::Power || s.sampling == LightSampling::LightTree;
+    require(s.kind == VirtualLightKind::Patch || (by_light && !s.extension),
+            "kinds sphere and point need sampling by power or light tree, and no extension: no ray finds them");
     require(s.n_min >= 0.0 && s.n_max >= s.n_min, "n_min must not be negative, and n_max not below it");
 }
 
@@ -61,14 +65,16 @@ void VirtualLights::build(const PixelCamera& camera) {
     const double paths =
         std::max(settings_.candidates_per_pixel * camera.width * camera.height, kLeastCandidates * settings_.count);
     const std::vector<LightCandidate> candidates =
-        light_candidates(scene_, camera, static_cast<std::size_t>(paths), settings_.seed);
+        settings_.placement == LightPlacement::LightPaths
+            ? light_path_candidates(scene_, static_cast<std::size_t>(kLeastCandidates * settings_.count),
+                                    settings_.seed)
+            : light_candidates(scene_, camera, static_cast<std::size_t>(paths), settings_.seed);
     report_.candidates = candidates.size();
     report_.candidate_seconds = lap.take();
     lights_ = place_lights(scene, candidates, settings_);
     report_.elimination_seconds = lap.take();
 
-    cover_ = LightCover(lights_);
-    measure_areas(scene_.surroundings()->intersector(), cover_, lights_, settings_.seed);
+    measure_lights();
     for (VirtualLight& light : lights_)
         if (needs_energy_tables(light.material))
             light.profile = static_cast<std::int32_t>(report_.profiles++);
@@ -88,10 +94,23 @@ void VirtualLights::build(const PixelCamera& camera) {
     report_.bytes = lights_.size() * sizeof(VirtualLight) + cover_.bytes() + profiles_.bytes() + choice_.bytes();
 }
 
-// A light that speaks for no area, as none of the rays that measured it found any, gives back nothing.
+// Lights whose area cannot be told leave their surface to others, or to extended paths.
+void VirtualLights::measure_lights() {
+    const Intersector& surfaces = scene_.surroundings()->intersector();
+    cover_ = LightCover(surfaces, lights_);
+    const std::vector<std::uint8_t> known = measure_areas(surfaces, cover_, lights_, settings_.seed);
+    std::vector<VirtualLight> kept;
+    for (std::size_t i = 0; i < lights_.size(); ++i)
+        if (known[i])
+            kept.push_back(lights_[i]);
+    if (kept.size() == lights_.size())
+        return;
+    lights_ = std::move(kept);
+    cover_ = LightCover(surfaces, lights_);
+    measure_areas(surfaces, cover_, lights_, settings_.seed);
+}
+
 void VirtualLights::finish_lights(const LightAccounts& accounts) {
-    for (VirtualLight& light : lights_)
-        light.area = std::max(light.area, 1e-6 * light.radius * light.radius);
     profiles_ = Profiles(lights_, accounts, settings_.profile_resolution);
     for (std::size_t i = 0; i < lights_.size(); ++i) {
         VirtualLight& light = lights_[i];

@@ -1,14 +1,15 @@
 #include "room.h"
 
+#include "fixtures/media.h"
 #include "scene/load_scene.h"
 
 namespace brisance::testing {
 
 namespace {
 
-Scene scene_of(const SceneSettings& settings) {
+Scene scene_of(const SceneSettings& settings, const dvec3& origin) {
     Progress silent;
-    return load_scene(settings, {}, 0.0, dvec3(0.0), std::uint64_t(1) << 30, silent);
+    return load_scene(settings, {}, 0.0, origin, std::uint64_t(1) << 30, silent);
 }
 
 // The six sides of a box; `inward` chooses which way their fronts look.
@@ -74,16 +75,18 @@ SceneSettings coloured_room() {
 
 Room::Room(const SceneSettings& settings, Medium m)
     : medium(std::move(m)),
-      surroundings(scene_of(settings), settings.lights),
+      origin(medium.world_of_local(vec3(0.0f))),
+      surroundings(scene_of(settings, origin), settings.lights),
       direct(medium, {}, &surroundings),
       tracer(medium, {}, -1, &surroundings) {}
 
-Ray Room::ray(double x, double y) {
-    return {{0.0, 0.0, 0.98}, glm::normalize(dvec3(1.6 * (x / 64.0 - 0.5), 1.6 * (0.5 - y / 64.0), -1.0))};
+Ray Room::ray(double x, double y) const {
+    return {dvec3(0.0, 0.0, 0.98) - origin,
+            glm::normalize(dvec3(1.6 * (x / 64.0 - 0.5), 1.6 * (0.5 - y / 64.0), -1.0))};
 }
 
-PixelCamera Room::camera() {
-    return {64, 64, ray};
+PixelCamera Room::camera() const {
+    return {64, 64, [this](double x, double y) { return ray(x, y); }};
 }
 
 VirtualLights Room::lights(const VirtualLightSettings& settings) const {
@@ -93,14 +96,44 @@ VirtualLights Room::lights(const VirtualLightSettings& settings) const {
 Rgb Room::by_lights(const VirtualLights& lights, double x, double y, Rng& rng) const {
     const Ray seen = ray(64.0 * x, 64.0 * y);
     const RaySegment segment = direct.segment_along(seen);
-    return segment.point ? lights.shade(Scatterer(*segment.point, seen.direction), rng) : Rgb(0.0f);
+    if (!segment.point)
+        return Rgb(0.0f);
+    const double through = direct.lines().transmittance(seen, segment.end, rng);
+    return float(through) * lights.shade(Scatterer(*segment.point, seen.direction), rng);
 }
 
-Rgb Room::by_paths(double x, double y, Rng& rng) const {
+Rgb Room::in_smoke_by_lights(const VirtualLights& lights, double x, double y, Rng& rng) const {
+    const Ray seen = ray(64.0 * x, 64.0 * y);
+    CameraLine line;
+    direct.lines().follow_camera(seen, rng, line, direct.segment_along(seen).end);
+    if (!(line.opacity() > 0.0))
+        return Rgb(0.0f);
+    const Collision c = direct.lines().choose(line, rng.next_double());
+    return float(line.opacity()) * direct.field().albedo(c.brick, c.position) *
+           lights.shade(direct.in_smoke(seen, c), rng);
+}
+
+Rgb Room::by_paths(double x, double y, Rng& rng, Cell cell) const {
     PathSum sum{};
     PathStatistics statistics;
     tracer.trace(ray(64.0 * x, 64.0 * y), rng.next_double(), rng, sum, statistics);
-    return sum.cells[static_cast<int>(Cell::SS)];
+    return sum.cells[static_cast<int>(cell)];
+}
+
+Medium smoke_ball(const dvec3& centre, float density, const Rgb& albedo, float glow) {
+    constexpr int kNodes = 8;
+    constexpr double kRadius = 0.45;
+    Recipe r;
+    r.box = cube(-kNodes - 1, kNodes + 1);
+    r.world_from_index = cubic(kRadius / kNodes, centre);
+    r.density = [](const ivec3& n) { return ball(n, dvec3(0.0), kNodes); };
+    r.flame = r.density;
+    r.settings = black_smoke();
+    r.settings.smoke.extinction_per_metre = density;
+    r.settings.smoke.albedo = albedo;
+    r.settings.smoke.mean_cosine = 0.4f;
+    r.settings.fire.strength = glow;
+    return make_medium(r);
 }
 
 VirtualLightSettings few_lights() {

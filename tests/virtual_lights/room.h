@@ -23,21 +23,29 @@ SceneSettings coloured_room();
 
 struct Room {
     explicit Room(const SceneSettings& settings, Medium m = {});
+    Room(const Room&) = delete;
+    Room& operator=(const Room&) = delete;
 
     // From the middle of the front wall through the whole room; 64 x 64 pixels.
-    static Ray ray(double x, double y);
-    static PixelCamera camera();
+    Ray ray(double x, double y) const;
+    PixelCamera camera() const;
     VirtualLights lights(const VirtualLightSettings& settings) const;
 
     // What virtual lights, or the path tracer, bring to the cell SS along one ray of the camera through [0, 1]^2.
     Rgb by_lights(const VirtualLights& lights, double x, double y, Rng& rng) const;
-    Rgb by_paths(double x, double y, Rng& rng) const;
+    Rgb by_paths(double x, double y, Rng& rng, Cell cell = Cell::SS) const;
+    // The cell MS: a collision is forced on the ray.
+    Rgb in_smoke_by_lights(const VirtualLights& lights, double x, double y, Rng& rng) const;
 
     Medium medium;
+    dvec3 origin;  // of local space, world [m]
     Surroundings surroundings;
     DirectLight direct;
     PathTracer tracer;
 };
+
+// Smoke in a ball of 0.45 m around a place of the room, that glows with source function `glow` (or not, for 0).
+Medium smoke_ball(const dvec3& centre, float density, const Rgb& albedo, float glow);
 
 // Few lights and photons, for tests that compare with each other.
 VirtualLightSettings few_lights();

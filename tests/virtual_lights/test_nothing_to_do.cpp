@@ -20,7 +20,8 @@ bool agrees_with_paths(const Room& room, const VirtualLights& lights) {
 TEST(NothingToDo, WithoutSurroundings) {
     const Medium nothing;
     const DirectLight direct(nothing, {}, nullptr);
-    const VirtualLights lights(direct, Room::camera(), {});
+    const PixelCamera camera{64, 64, [](double, double) { return Ray{dvec3(0.0), dvec3(0.0, 0.0, 1.0)}; }};
+    const VirtualLights lights(direct, camera, {});
     Rng rng(Stream::Path, 0);
     EXPECT_EQ(lights.report().candidates, 0u);
     EXPECT_EQ(lights.report().bytes, 0u);
@@ -102,6 +103,16 @@ TEST(Settings, OutOfRangeAreRefused) {
     refused([](VirtualLightSettings& s) { s.radius_factor = 0.0; });
     refused([](VirtualLightSettings& s) { s.profile_resolution = 1; });
     refused([](VirtualLightSettings& s) { s.n_max = 1.0; });
+    refused([](VirtualLightSettings& s) { s.point_bound = 0.0; });
+    refused([](VirtualLightSettings& s) {
+        s.kind = VirtualLightKind::Point;
+        s.sampling = LightSampling::Power;  // and extension
+    });
+    refused([](VirtualLightSettings& s) {
+        s.kind = VirtualLightKind::Sphere;
+        s.extension = false;
+        s.sampling = LightSampling::Bsdf;
+    });
 }
 
 }  // namespace
