@@ -4,6 +4,7 @@
 
 #include <ctime>
 
+#include "core/error.h"
 #include "core/stopwatch.h"
 #include "medium/similar_medium.h"
 #include "render/camera.h"
@@ -100,8 +101,20 @@ std::unique_ptr<VirtualLights> place_virtual_lights(const Shot& shot, const Dire
 // Anti-aliasing samples along a pixel's side where there are surfaces: their edges are sharp.
 constexpr int kSurfaceSamples = 4;
 
+// What the lighting grid and virtual lights cannot do with surfaces is said, not left out in silence.
+void check_surroundings(const Shot& shot) {
+    if (shot.lighting.gather == GatherMethod::RayMarch)
+        throw Error(ExitCode::Usage, "lighting.gather: ray_march knows no surfaces and lights; use cache");
+    if (shot.scattering.bounces > 1)
+        throw Error(ExitCode::Usage,
+                    "scattering.bounces: with a scene it may be 0, 1 or \"all\", as virtual lights hold light of all "
+                    "orders; other numbers need method path");
+}
+
 Image draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const Surroundings* surroundings,
                 const Camera& camera, Statistics& statistics, ImageMetadata& metadata, Progress& progress) {
+    if (surroundings)
+        check_surroundings(shot);
     std::optional<PathTracer> paths;
     if (plan.surfaces)
         paths.emplace(medium, shot.tracing, shot.scattering.bounces, surroundings);
@@ -146,6 +159,8 @@ Image draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     Image image = render_picture(field, camera, settings, light_points, progress, light_surfaces);
     if (shot.output.bounce_layers && marching)
         progress.warning("bounce-layers", "output.layers.bounces needs lighting.gather = cache; left out");
+    else if (shot.output.bounce_layers && surroundings)
+        progress.warning("bounce-layers", "output.layers.bounces with a scene needs method = path; left out");
     else if (shot.output.bounce_layers && lighting)
         add_order_layers(image, field, nodes, medium, similar ? &*similar : nullptr, camera, settings, progress);
     metadata.samples_per_pixel = double(settings.samples_per_axis) * settings.samples_per_axis;
@@ -212,11 +227,12 @@ std::string joined(const std::vector<std::string>& names) {
     return all;
 }
 
-void add_certificate(RenderedFrame& out, const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera,
-                     Progress& progress) {
+void add_certificate(RenderedFrame& out, const Shot& shot, const Plan& plan, const Medium& medium,
+                     const Surroundings* surroundings, const Camera& camera, Progress& progress) {
     const Stopwatch watch;
     const std::clock_t cpu = std::clock();
-    const Certificate certificate = certify(out.image, shot, plan, medium, camera, shot.certify, progress);
+    const Certificate certificate =
+        certify(out.image, shot, plan, medium, camera, shot.certify, progress, surroundings);
     out.statistics.certificate = certificate.to_json();
     out.statistics.stages.push_back(
         {"certificate",
@@ -243,7 +259,7 @@ void render_into(RenderedFrame& out, const Shot& shot, const Medium& medium, con
         out.image = draw(shot, plan, medium, surroundings, camera, out.statistics, out.metadata, progress);
     }
     if (shot.certify.enabled)
-        add_certificate(out, shot, plan, medium, camera, progress);
+        add_certificate(out, shot, plan, medium, surroundings, camera, progress);
     out.metadata.camera_from_world = camera.camera_from_world();
     out.metadata.vertical_fov_degrees = camera_settings.vertical_fov_degrees;
     out.metadata.text["brisance/cells"] = joined(plan.cells());
