@@ -213,11 +213,17 @@ std::string checkpoint_key(Shot shot, const std::filesystem::path& volume, int f
     shot.tracing.transmittance = given.transmittance;
     const bool bounces = shot.output.bounce_layers;
     shot.certify = CertifySettings{};
+    shot.virtual_lights = VirtualLightSettings{};
     shot.output = OutputSettings{};
     shot.output.bounce_layers = bounces;
-    std::error_code ignored;
-    return to_json(shot) + volume.filename().string() + " " +
-           std::to_string(std::filesystem::file_size(volume, ignored)) + " " + std::to_string(frame);
+    const auto size_of = [](const std::filesystem::path& file) {
+        std::error_code ignored;
+        return std::to_string(std::filesystem::file_size(file, ignored)) + " ";
+    };
+    std::string key = to_json(shot) + volume.filename().string() + " " + size_of(volume) + std::to_string(frame);
+    for (const SceneFile& file : shot.scene.files)
+        key += " " + size_of(shot.folder / file.file);
+    return key;
 }
 
 std::string joined(const std::vector<std::string>& names) {
