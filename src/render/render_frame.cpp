@@ -218,11 +218,11 @@ std::string checkpoint_key(Shot shot, const std::filesystem::path& volume, int f
     shot.output.bounce_layers = bounces;
     const auto size_of = [](const std::filesystem::path& file) {
         std::error_code ignored;
-        return std::to_string(std::filesystem::file_size(file, ignored)) + " ";
+        return std::to_string(std::filesystem::file_size(file, ignored));
     };
-    std::string key = to_json(shot) + volume.filename().string() + " " + size_of(volume) + std::to_string(frame);
+    std::string key = to_json(shot) + volume.filename().string() + " " + size_of(volume) + " " + std::to_string(frame);
     for (const SceneFile& file : shot.scene.files)
-        key += " " + size_of(shot.folder / file.file);
+        key.append(" ").append(size_of(shot.folder / file.file));
     return key;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "tracing/roulette.h"
 
 namespace brisance {
 
@@ -13,15 +14,8 @@ namespace {
 // First scatterings drawn on one ray of the camera: the ray itself, integrated cell by cell, costs as much as several.
 constexpr int kFirstCollisions = 16;
 
-// Paths that carry less than this part of what they began with are ended by roulette.
-constexpr float kRouletteBelow = 0.5f;
-
 double exponential(Rng& rng) {
     return -std::log1p(-rng.next_double());
-}
-
-float largest(const Rgb& c) {
-    return std::max({c.x, c.y, c.z});
 }
 
 void note(PathStatistics& statistics, const TracedVertex& vertex) {
@@ -29,26 +23,9 @@ void note(PathStatistics& statistics, const TracedVertex& vertex) {
         statistics.vertices->push_back(vertex);
 }
 
-// Paths between surfaces that lose nothing must end, too; smoke lets them out.
-constexpr int kManyScatterings = 64;
-constexpr float kGoesOn = 0.95f;
-
 // Surface paths that begin at the end of one ray of the camera that comes through smoke: what the ray itself costs is
 // shared by them. Where there is none a ray costs little.
 constexpr int kFirstReflections = 4;
-
-// Ends the path, or makes up for those that ended. False: ended. `endless`: nothing else may end it.
-bool survives(Rgb& throughput, float begin, bool endless, Rng& rng) {
-    float part = largest(throughput) / begin;
-    if (endless)
-        part = std::min(part, kGoesOn);
-    else if (part >= kRouletteBelow)
-        return true;
-    if (!(rng.next() < part))
-        return false;
-    throughput /= part;
-    return true;
-}
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "core/parallel.h"
+#include "tracing/roulette.h"
 #include "virtual_lights/virtual_light.h"
 
 namespace brisance {
@@ -12,10 +13,6 @@ namespace {
 
 constexpr int kPerPath = 2;     // candidates
 constexpr int kMostTurns = 16;  // of a path, mirrors and smoke included
-
-float largest(const Rgb& c) {
-    return std::max({c.x, c.y, c.z});
-}
 
 struct Found {
     std::array<LightCandidate, kPerPath> candidates;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "tracing/roulette.h"
 #include "virtual_lights/hemisphere_map.h"
 
 namespace brisance {
@@ -12,17 +13,10 @@ namespace brisance {
 namespace {
 
 constexpr std::size_t kBlock = 1024;
-// From here on photons that lose nothing must end, too.
-constexpr int kManyScatterings = 64;
-constexpr float kGoesOn = 0.95f;
 // Where a shading normal leans far from a surface seen at a grazing angle, one photon would outshine all others.
 constexpr double kMostBrighter = 4.0;
 // Sums hold 2^16 times the power that is emitted, in steps of 2^-46 of it.
 constexpr double kSteps = 0x1p46;
-
-float largest(const Rgb& c) {
-    return std::max({c.x, c.y, c.z});
-}
 
 bool finite(const Rgb& c) {
     return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);

@@ -3,32 +3,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "tracing/roulette.h"
 #include "virtual_lights/virtual_lights.h"
 
 namespace brisance {
 
 namespace {
-
-// Extended paths are ended by roulette, as the path tracer's are.
-constexpr float kRouletteBelow = 0.5f;
-constexpr int kManyScatterings = 64;
-constexpr float kGoesOn = 0.99f;
-
-float largest(const Rgb& c) {
-    return std::max({c.x, c.y, c.z});
-}
-
-bool survives(Rgb& throughput, int order, Rng& rng) {
-    float part = largest(throughput);
-    if (order > kManyScatterings)
-        part = std::min(part, kGoesOn);
-    else if (part >= kRouletteBelow)
-        return true;
-    if (!(rng.next() < part))
-        return false;
-    throughput /= part;
-    return true;
-}
 
 // A base colour in place of another.
 Rgb recoloured(const Rgb& to, const Rgb& from) {
@@ -171,7 +151,7 @@ Rgb VirtualLights::shade(const Scatterer& asking, Rng& rng) const {
         return sum;
     Scatterer place = asking;
     float light_lines = 0.0f;
-    for (int order = 0; survives(throughput, order, rng); ++order) {
+    for (int order = 0; survives(throughput, 1.0f, order > kManyScatterings, rng); ++order) {
         if (choice_.by_lights() && !place.only_delta())
             sum += throughput * from_chosen_light(place, rng);
         if (light_lines > 0.0f && (light_lines == 1.0f || rng.next() < light_lines))
