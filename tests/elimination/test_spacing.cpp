@@ -77,7 +77,8 @@ TEST(Spacing, HasTheSpectrumOfBlueNoise) {
         std::printf("power below half the lattice's frequency %.3f, about it %.2f, at 3 to 4 times %.2f\n",
                     mean(0.1, 0.5), mean(0.9, 1.1), mean(3.0, 4.0));
         EXPECT_LT(mean(0.1, 0.5), 0.15);
-        EXPECT_GT(mean(0.9, 1.1), 1.5);
+        // 1.7 with one radius; adaptive radii blur the peak to about 1.5, from one set of points to the next.
+        EXPECT_GT(mean(0.9, 1.1), 1.35);
         EXPECT_NEAR(mean(3.0, 4.0), 1.0, 0.1);
     }
 }
