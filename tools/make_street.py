@@ -300,8 +300,8 @@ def car(paint):
         for z in (-1.3, 1.32):
             wheel(part, side, z)
         x = sorted((side * 0.4, side * 0.68))
-        part.box("tail_light", (x[0], 0.62, 2.0), (x[1], 0.76, 2.14), "z")
-        part.box("metal", (x[0], 0.58, -2.1), (x[1], 0.7, -2.0), "Z")
+        part.box("tail_light", (x[0], 0.6, 2.0), (x[1], 0.75, 2.18), "z")
+        part.box("metal", (x[0], 0.5, -2.14), (x[1], 0.6, -2.0), "Z")
     part.box("char", (-0.72, 0.36, -2.16), (0.72, 0.5, -1.9))
     part.box("char", (-0.72, 0.38, 1.9), (0.72, 0.52, 2.19))
     part.box("frame", (-0.26, 0.54, 2.1), (0.26, 0.65, 2.18), "z")
@@ -326,7 +326,7 @@ def product(p, q):
 
 def choose_bay(draw, storey, i, balconies, shops):
     """The maker of a bay, and its pane."""
-    pane = "glass" if draw.random() > 0.24 else draw.choice(["lit_warm", "lit_warm", "lit_cool"])
+    pane = "glass" if draw.random() > 0.17 else draw.choice(["lit_warm", "lit_warm", "lit_cool"])
     if storey == 0:
         return (bay_door if i == 1 else bay_shop if shops else bay_window), pane
     return (bay_balcony if balconies and i % 2 == 1 else bay_window), pane
@@ -382,7 +382,7 @@ def place_things(glb):
         glb.root(glb.node(glb.mesh(f"car {paint}", car, paint), (x, 0, z), turn(yaw)))
     for i in range(6):
         glb.root(glb.node(post, (5.0, PAVEMENT, 6.6 + 2.0 * i)))
-    for x, y, z, yaw in ((-6.4, 0, 14.6, 12), (-5.8, 0, 13.5, 40), (-6.3, 0.8, 14.5, 30), (-7.2, 0, 12.2, 5)):
+    for x, y, z, yaw in ((-7.3, 0, 9.4, 12), (-6.3, 0, 8.3, 40), (-7.25, 0.8, 9.3, 30), (6.2, 0, 7.2, 20)):
         glb.root(glb.node(box, (x, y + PAVEMENT, z), turn(yaw)))
     place_debris(glb)
 
@@ -440,7 +440,7 @@ def damp(size=224):
         for i in range(size):
             height = sum(rows_of[j][i] * weight for rows_of, weight in octaves)
             dry = min(1.0, max(0.0, (height - 0.5) / 0.05))
-            row.append(byte(7 + dry * (42 + 90 * (height - 0.5) + 14 * draw.random())))
+            row.append(byte(7 + dry * (58 + 90 * (height - 0.5) + 5 * draw.random())))
         rows.append(row)
     return png(size, rows)
 
