@@ -138,6 +138,12 @@ void Emitters::add_light(const LightSettings& light, const Texture* picture) {
     far_.push_back(std::move(far));
 }
 
+bool Emitters::visible() const {
+    return std::any_of(near_.begin(), near_.end(), [](const Near& near) { return !near.light; }) ||
+           std::any_of(far_.begin(), far_.end(),
+                       [](const Far& far) { return far.environment || far.solid_angle > 0.0; });
+}
+
 double Emitters::far_probability() const {
     if (far_.empty())
         return 0.0;

@@ -33,6 +33,7 @@ public:
     Emitters(const Scene& scene, const std::vector<LightSettings>& lights, const std::vector<const Texture*>& pictures);
 
     bool empty() const { return tree_.empty() && far_.empty(); }
+    bool visible() const;  // some of them can be seen: not points, spots, and suns without a disc alone
     std::size_t near_count() const { return near_.size(); }
 
     // One light, chosen for the point, and a place on it. None where that brings nothing.

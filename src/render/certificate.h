@@ -12,7 +12,7 @@ namespace brisance {
 
 // Of the picture, or of one of its ledger cells relative to that cell's own truth R. Infinite bounds: nothing is known.
 struct CertifiedError {
-    std::string cell;     // "V", "MV", "MM"; empty: the picture
+    std::string cell;     // of the ledger; empty: the picture
     double square = 0.0;  // estimate of error^2 without bias: below 0 by chance, fit to be averaged over certificates
     double error = 0.0;   // ||I - R|| / ||R||, over all pixels and channels: root of the square, or of 0
     Interval error_interval;  // from 0 where an error of 0 cannot be excluded: then its end is an upper bound, no more

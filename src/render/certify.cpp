@@ -35,30 +35,35 @@ std::size_t draws_of(int samples) {
     return std::clamp<std::size_t>(std::lround(draws), 2, std::max(2, samples / 2));
 }
 
-// Pictures of one or several orders of scattering: the beauty, and its cells.
-constexpr std::size_t kMostTargets = 4;
+// Pictures of one or several orders of scattering: the beauty, and its cells. With surroundings paths know the cells
+// themselves.
+constexpr std::size_t kMostTargets = 1 + kCells;
 
 struct Target {
     const Layer* layer;
     int first_order, end_order;
+    int cell = -1;  // in place of the orders
     dvec3 pixel(std::size_t p) const {
         const float* v = &layer->pixels[p * layer->channels.size()];
         return {v[0], v[1], v[2]};
     }
 };
 
-std::vector<Target> targets_of(const Image& image) {
-    struct Cell {
-        const char* layer;
-        int first_order, end_order;
-    };
-    static constexpr std::array<Cell, kMostTargets> cells = {
-        {{"", 0, kPathOrders}, {"V", 0, 1}, {"MV", 1, 2}, {"MM", 2, kPathOrders}}};
+std::vector<Target> targets_of(const Image& image, bool surroundings) {
     std::vector<Target> targets;
-    for (const Cell& cell : cells)
+    const auto add = [&](const char* name, int first_order, int end_order, int cell) {
         for (const Layer& layer : image.layers)
-            if (layer.name == cell.layer)
-                targets.push_back({&layer, cell.first_order, cell.end_order});
+            if (layer.name == name)
+                targets.push_back({&layer, first_order, end_order, cell});
+    };
+    add("", 0, kPathOrders, -1);
+    for (int cell = 0; cell < kCells && surroundings; ++cell)
+        add(kCellNames[cell], 0, 0, cell);
+    if (surroundings)
+        return targets;
+    add("V", 0, 1, -1);
+    add("MV", 1, 2, -1);
+    add("MM", 2, kPathOrders, -1);
     return targets;
 }
 
@@ -107,6 +112,8 @@ public:
 
 private:
     static dvec3 seen(const Target& target, const PathSum& path) {
+        if (target.cell >= 0)
+            return dvec3(path.cells[target.cell]);
         dvec3 sum(0.0);
         for (int order = target.first_order; order < target.end_order; ++order)
             sum += dvec3(path[order]);
@@ -129,6 +136,8 @@ private:
         }
         for (Rgb& order : path)
             order *= filter_weight(s.filter, x, y);
+        for (Rgb& cell : path.cells)
+            cell *= filter_weight(s.filter, x, y);
         return path;
     }
 
@@ -272,9 +281,9 @@ void warn(const Certificate& c, Progress& progress) {
 }  // namespace
 
 Certificate certify(const Image& image, const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera,
-                    const CertifySettings& settings, Progress& progress) {
+                    const CertifySettings& settings, Progress& progress, const Surroundings* surroundings) {
     progress.stage("certificate");
-    const std::vector<Target> targets = targets_of(image);
+    const std::vector<Target> targets = targets_of(image, surroundings);
     const Population population(image, targets);
     const PixelSurvey survey(population.sizes(), image.width, draws_of(settings.samples), settings.seed);
     const auto& draws = survey.draws();
@@ -284,7 +293,7 @@ Certificate certify(const Image& image, const Shot& shot, const Plan& plan, cons
     out.pixels = draws.size();
     out.samples_per_pixel = draws.empty() ? 0 : std::max<std::uint64_t>(2, settings.samples / out.pixels);
     out.samples = out.pixels * out.samples_per_pixel;
-    const PathTracer tracer(medium, shot.tracing, shot.scattering.bounces);
+    const PathTracer tracer(medium, shot.tracing, shot.scattering.bounces, surroundings);
     Sampler sampler(targets, tracer, camera, settings.seed, static_cast<int>(out.samples_per_pixel));
     std::vector<ToldOfAll> told(draws.size());
     std::atomic<std::size_t> done = 0;
@@ -295,8 +304,8 @@ Certificate certify(const Image& image, const Shot& shot, const Plan& plan, cons
     out.not_finite_samples = sampler.not_finite();
     for (std::size_t t = 0; t < targets.size(); ++t) {
         const bool black = population.total([&](std::size_t p) { return sum_of(targets[t].pixel(p)); }) == 0.0;
-        out.errors.push_back(black && !plan.emission ? nothing_missing(targets[t])
-                                                     : conclude(population, targets[t], told, t));
+        out.errors.push_back(black && !plan.emission && !plan.emitters ? nothing_missing(targets[t])
+                                                                       : conclude(population, targets[t], told, t));
     }
     warn(out, progress);
     return out;

@@ -28,6 +28,6 @@ namespace brisance {
 // What it cannot see: light that none of its samples met, and errors that hide in few pixels. A share s of the pixels
 // that is wrongly dark goes unnoticed with probability (1 - s)^(draws / 5); one that is wrongly bright hardly ever.
 Certificate certify(const Image& image, const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera,
-                    const CertifySettings& settings, Progress& progress);
+                    const CertifySettings& settings, Progress& progress, const Surroundings* surroundings = nullptr);
 
 }  // namespace brisance

@@ -333,6 +333,8 @@ RaySum integrate(const CellField& field, const Ray& ray, int parts, double end) 
 }
 
 int automatic_samples(const Camera& camera, const CellField& field) {
+    if (field.bricks().empty())
+        return 1;
     const Medium& medium = field.medium();
     double nearest = 1e300;
     for (std::size_t b = 0; b < field.bricks().brick_count(); ++b) {

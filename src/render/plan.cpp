@@ -23,11 +23,11 @@ std::string why_no_emission(const Shot& shot, const Medium& medium) {
 }
 
 // Which cells can be other than zero.
-void decide(Plan& plan, bool scatters, int bounces) {
+void decide(Plan& plan, bool scatters, bool visible, int bounces) {
     const bool once = bounces != 0, twice = bounces < 0 || bounces > 1, lit = plan.emission || plan.emitters;
     const auto set = [&](Cell cell, bool needed) { plan.needed[static_cast<int>(cell)] = needed; };
     set(Cell::V, plan.emission);
-    set(Cell::A, plan.emitters);
+    set(Cell::A, plan.emitters && visible);
     set(Cell::MV, plan.emission && scatters && once);
     set(Cell::MM, lit && scatters && twice);
     set(Cell::MS, lit && scatters && plan.surfaces && twice);
@@ -50,7 +50,7 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
     plan.emission = medium.emits();
     const int bounces = shot.scattering.bounces;
     const bool scatters = medium.scatters();
-    decide(plan, scatters, bounces);
+    decide(plan, scatters, plan.emitters && surroundings->emitters().visible(), bounces);
     if (!plan.surfaces)
         skip("row S, column S", "no surfaces in the shot");
     if (!plan.emitters)

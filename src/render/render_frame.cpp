@@ -4,6 +4,7 @@
 
 #include <ctime>
 
+#include "core/error.h"
 #include "core/stopwatch.h"
 #include "medium/similar_medium.h"
 #include "render/camera.h"
@@ -100,8 +101,20 @@ std::unique_ptr<VirtualLights> place_virtual_lights(const Shot& shot, const Dire
 // Anti-aliasing samples along a pixel's side where there are surfaces: their edges are sharp.
 constexpr int kSurfaceSamples = 4;
 
+// What the lighting grid and virtual lights cannot do with surfaces is said, not left out in silence.
+void check_surroundings(const Shot& shot) {
+    if (shot.lighting.gather == GatherMethod::RayMarch)
+        throw Error(ExitCode::Usage, "lighting.gather: ray_march knows no surfaces and lights; use cache");
+    if (shot.scattering.bounces > 1)
+        throw Error(ExitCode::Usage,
+                    "scattering.bounces: with a scene it may be 0, 1 or \"all\", as virtual lights hold light of all "
+                    "orders; other numbers need method path");
+}
+
 Image draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const Surroundings* surroundings,
                 const Camera& camera, Statistics& statistics, ImageMetadata& metadata, Progress& progress) {
+    if (surroundings)
+        check_surroundings(shot);
     std::optional<PathTracer> paths;
     if (plan.surfaces)
         paths.emplace(medium, shot.tracing, shot.scattering.bounces, surroundings);
@@ -146,6 +159,8 @@ Image draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     Image image = render_picture(field, camera, settings, light_points, progress, light_surfaces);
     if (shot.output.bounce_layers && marching)
         progress.warning("bounce-layers", "output.layers.bounces needs lighting.gather = cache; left out");
+    else if (shot.output.bounce_layers && surroundings)
+        progress.warning("bounce-layers", "output.layers.bounces with a scene needs method = path; left out");
     else if (shot.output.bounce_layers && lighting)
         add_order_layers(image, field, nodes, medium, similar ? &*similar : nullptr, camera, settings, progress);
     metadata.samples_per_pixel = double(settings.samples_per_axis) * settings.samples_per_axis;
@@ -198,11 +213,17 @@ std::string checkpoint_key(Shot shot, const std::filesystem::path& volume, int f
     shot.tracing.transmittance = given.transmittance;
     const bool bounces = shot.output.bounce_layers;
     shot.certify = CertifySettings{};
+    shot.virtual_lights = VirtualLightSettings{};
     shot.output = OutputSettings{};
     shot.output.bounce_layers = bounces;
-    std::error_code ignored;
-    return to_json(shot) + volume.filename().string() + " " +
-           std::to_string(std::filesystem::file_size(volume, ignored)) + " " + std::to_string(frame);
+    const auto size_of = [](const std::filesystem::path& file) {
+        std::error_code ignored;
+        return std::to_string(std::filesystem::file_size(file, ignored)) + " ";
+    };
+    std::string key = to_json(shot) + volume.filename().string() + " " + size_of(volume) + std::to_string(frame);
+    for (const SceneFile& file : shot.scene.files)
+        key += " " + size_of(shot.folder / file.file);
+    return key;
 }
 
 std::string joined(const std::vector<std::string>& names) {
@@ -212,11 +233,12 @@ std::string joined(const std::vector<std::string>& names) {
     return all;
 }
 
-void add_certificate(RenderedFrame& out, const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera,
-                     Progress& progress) {
+void add_certificate(RenderedFrame& out, const Shot& shot, const Plan& plan, const Medium& medium,
+                     const Surroundings* surroundings, const Camera& camera, Progress& progress) {
     const Stopwatch watch;
     const std::clock_t cpu = std::clock();
-    const Certificate certificate = certify(out.image, shot, plan, medium, camera, shot.certify, progress);
+    const Certificate certificate =
+        certify(out.image, shot, plan, medium, camera, shot.certify, progress, surroundings);
     out.statistics.certificate = certificate.to_json();
     out.statistics.stages.push_back(
         {"certificate",
@@ -243,7 +265,7 @@ void render_into(RenderedFrame& out, const Shot& shot, const Medium& medium, con
         out.image = draw(shot, plan, medium, surroundings, camera, out.statistics, out.metadata, progress);
     }
     if (shot.certify.enabled)
-        add_certificate(out, shot, plan, medium, camera, progress);
+        add_certificate(out, shot, plan, medium, surroundings, camera, progress);
     out.metadata.camera_from_world = camera.camera_from_world();
     out.metadata.vertical_fov_degrees = camera_settings.vertical_fov_degrees;
     out.metadata.text["brisance/cells"] = joined(plan.cells());

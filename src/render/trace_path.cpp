@@ -44,6 +44,7 @@ TracedPath trace_path(const Shot& shot, const std::filesystem::path& volume, int
     PathStatistics counts;
     counts.vertices = &out.vertices;
     out.orders = trace_sample(tracer, camera, pixel, sample, counts);
+    out.has_cells = input.surroundings != nullptr;
     out.scatterings = counts.scatterings;
     for (TracedVertex& vertex : out.vertices)
         vertex.position += input.medium.world_of_local(vec3(0.0f));

@@ -7,9 +7,21 @@ void add_virtual_light_keys(std::vector<Key>& keys) {
         "virtual_lights.count", "of them; 0: none, all light from surfaces is found by paths", whole(0, 100000000),
         [](Shot & s) -> auto& { return s.virtual_lights.count; }));
     keys.push_back(make_key(
-        "virtual_lights.placement", "blue_noise: thinned out evenly; random: for comparison",
-        choice<LightPlacement>({{"blue_noise", LightPlacement::BlueNoise}, {"random", LightPlacement::Random}}),
+        "virtual_lights.placement", "blue_noise: from the camera, thinned out evenly; the others are for comparison",
+        choice<LightPlacement>({{"blue_noise", LightPlacement::BlueNoise},
+                                {"random", LightPlacement::Random},
+                                {"light_paths", LightPlacement::LightPaths}}),
         [](Shot & s) -> auto& { return s.virtual_lights.placement; }));
+    keys.push_back(make_key(
+        "virtual_lights.kind",
+        "patch: the surface itself; sphere, point: for comparison, with sampling power or light_tree, no extension",
+        choice<VirtualLightKind>({{"patch", VirtualLightKind::Patch},
+                                  {"sphere", VirtualLightKind::Sphere},
+                                  {"point", VirtualLightKind::Point}}),
+        [](Shot & s) -> auto& { return s.virtual_lights.kind; }));
+    keys.push_back(make_key(
+        "virtual_lights.point_bound", "of kind point: greatest cosine over squared distance; the rest is lost [1/m^2]",
+        real(above(0.0)), [](Shot & s) -> auto& { return s.virtual_lights.point_bound; }));
     keys.push_back(make_key(
         "virtual_lights.candidates_per_pixel", "camera paths to choose places from; at least eight to a light",
         real({0.0, 1024.0}), [](Shot & s) -> auto& { return s.virtual_lights.candidates_per_pixel; }));

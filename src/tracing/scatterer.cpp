@@ -42,16 +42,16 @@ Scatterer::Scatterer(const dvec3& position, const dvec3& arriving, float mean_co
     : lit_{position, dvec3(0.0), LitPoint::Kind::Medium}, arriving_(arriving), mean_cosine_(mean_cosine) {}
 
 Scatterer::Scatterer(const SurfacePoint& point, const dvec3& arriving)
-    : lit_(lit_point(point)), arriving_(arriving), only_delta_(is_only_delta(point.material)), point_(point) {
-    bsdf_.emplace(point.material, point.frame);
+    : lit_(lit_point(point)), arriving_(arriving), only_delta_(is_only_delta(point.material)) {
+    surface_.emplace(OnSurface{point, Bsdf(point.material, point.frame)});
 }
 
 Ray Scatterer::leaving(const dvec3& direction) const {
-    return on_surface() ? point_.leaving(direction) : Ray{lit_.position, direction};
+    return on_surface() ? surface_->point.leaving(direction) : Ray{lit_.position, direction};
 }
 
 Ray Scatterer::toward(const dvec3& place, double& distance) const {
-    const dvec3 from = on_surface() ? point_.start_toward(place) : lit_.position;
+    const dvec3 from = on_surface() ? surface_->point.start_toward(place) : lit_.position;
     const dvec3 way = place - from;
     distance = glm::length(way);
     return {from, distance > 0.0 ? way / distance : dvec3(0.0, 0.0, 1.0)};
@@ -61,7 +61,7 @@ Ray Scatterer::toward(const dvec3& place, double& distance) const {
 // side of the triangle, what they call transmission must leave it.
 bool Scatterer::leaks(const dvec3& wi) const {
     const auto same_side = [&](const dvec3& n) { return glm::dot(n, wi) * glm::dot(n, -arriving_) > 0.0; };
-    return same_side(point_.frame.normal) != same_side(point_.geometric_normal);
+    return same_side(surface_->point.frame.normal) != same_side(surface_->point.geometric_normal);
 }
 
 Scatterer::Value Scatterer::at(const dvec3& wi) const {
@@ -69,9 +69,9 @@ Scatterer::Value Scatterer::at(const dvec3& wi) const {
         const float phase = henyey_greenstein(static_cast<float>(glm::dot(arriving_, wi)), mean_cosine_);
         return {Rgb(phase), phase};
     }
-    Value out{Rgb(0.0f), bsdf_->pdf(-arriving_, wi)};
+    Value out{Rgb(0.0f), surface_->bsdf.pdf(-arriving_, wi)};
     if (!leaks(wi))
-        out.value = bsdf_->evaluate(-arriving_, wi);
+        out.value = surface_->bsdf.evaluate(-arriving_, wi);
     return out;
 }
 
@@ -83,7 +83,7 @@ std::optional<Scatterer::Sample> Scatterer::sample(Rng& rng) const {
         return s;
     }
     const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
-    const std::optional<BsdfSample> drawn = bsdf_->sample(-arriving_, {x, y, z});
+    const std::optional<BsdfSample> drawn = surface_->bsdf.sample(-arriving_, {x, y, z});
     if (!drawn || leaks(drawn->wi))
         return std::nullopt;
     return Sample{drawn->wi, drawn->weight, drawn->pdf, drawn->delta};
@@ -93,11 +93,11 @@ std::optional<Scatterer::Sample> Scatterer::sample_particle(Rng& rng) const {
     if (!on_surface())
         return sample(rng);
     const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
-    const std::optional<BsdfSample> drawn = bsdf_->sample(-arriving_, {x, y, z}, Transport::Importance);
+    const std::optional<BsdfSample> drawn = surface_->bsdf.sample(-arriving_, {x, y, z}, Transport::Importance);
     if (!drawn || leaks(drawn->wi))
         return std::nullopt;
     const auto cosine = [&](const dvec3& n, const dvec3& v) { return std::abs(glm::dot(n, v)); };
-    const dvec3 &shading = point_.frame.normal, &geometric = point_.geometric_normal;
+    const dvec3 &shading = surface_->point.frame.normal, &geometric = surface_->point.geometric_normal;
     const double below = cosine(shading, drawn->wi) * cosine(geometric, arriving_);
     const double above = cosine(geometric, drawn->wi) * cosine(shading, arriving_);
     if (!(below > 0.0))

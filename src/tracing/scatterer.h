@@ -15,7 +15,7 @@ public:
     Scatterer(const dvec3& position, const dvec3& arriving, float mean_cosine);
     Scatterer(const SurfacePoint& point, const dvec3& arriving);
 
-    bool on_surface() const { return bsdf_.has_value(); }
+    bool on_surface() const { return surface_.has_value(); }
     const dvec3& position() const { return lit_.position; }
     const LitPoint& lit() const { return lit_; }
     // Nothing can be asked of it but sample().
@@ -51,8 +51,12 @@ private:
     dvec3 arriving_;
     float mean_cosine_ = 0.0f;
     bool only_delta_ = false;
-    SurfacePoint point_;
-    std::optional<Bsdf> bsdf_;
+    // Together, so that smoke, which asks for neither, does not pay for them.
+    struct OnSurface {
+        SurfacePoint point;
+        Bsdf bsdf;
+    };
+    std::optional<OnSurface> surface_;
 };
 
 // A direction drawn in proportion to the Henyey-Greenstein phase function about `forward`.

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/error.h"
 #include "core/parallel.h"
 #include "fixtures/media.h"
 #include "fixtures/sets.h"
@@ -111,7 +112,7 @@ TEST(Sets, WhatIsNotThereIsNotPlanned) {
     const Surroundings lit(scene, lamps()), dark(scene, {});
     const Shot shot = shot_of(RenderMethod::LightingGrid);
     const RenderedFrame frame = render_medium(shot, nothing, silent, &lit);
-    EXPECT_EQ(frame.statistics.cells, (std::vector<std::string>{"A", "SS", "SA"}));
+    EXPECT_EQ(frame.statistics.cells, (std::vector<std::string>{"SS", "SA"}));
     for (const StageCost& stage : frame.statistics.stages)
         EXPECT_TRUE(stage.name == "virtual lights" || stage.name == "camera") << stage.name;
     const RenderedFrame black = render_medium(shot, nothing, silent, &dark);
@@ -120,6 +121,19 @@ TEST(Sets, WhatIsNotThereIsNotPlanned) {
         EXPECT_EQ(stage.name, "camera");
     EXPECT_EQ(whole(black.image.layer("")).sum, 0.0);
     EXPECT_GT(whole(frame.image.layer("")).sum, 0.0);
+}
+
+// What the many-light methods cannot do is refused, not left out.
+TEST(Sets, RefuseWhatTheyCannotDo) {
+    const Medium nothing;
+    const Surroundings surroundings(stage(nothing), lamps());
+    Progress silent;
+    Shot finite = shot_of(RenderMethod::LightingGrid), marched = finite, plain = shot_of(RenderMethod::Path);
+    finite.scattering.bounces = 3;
+    marched.lighting.gather = GatherMethod::RayMarch;
+    plain.tracing.emission = EmissionEstimator::Collision;
+    for (const Shot* shot : {&finite, &marched, &plain})
+        EXPECT_THROW(render_medium(*shot, nothing, silent, &surroundings), Error);
 }
 
 // A surface in front hides what is behind it and closes the picture.

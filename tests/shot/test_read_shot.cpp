@@ -145,7 +145,6 @@ TEST(ReadShot, MistakesInTheTextNameTheLine) {
     EXPECT_TRUE(complaint("{\"name\": \"\xff\"}").starts_with("a.json:1: "));
     EXPECT_EQ(complaint("[]"), "a.json: a shot: expected an object in braces, got [] (a list)");
     EXPECT_EQ(complaint("{\n\"smoke\": 3}"), "a.json:2: smoke: expected an object in braces, got 3 (a number)");
-    EXPECT_EQ(complaint("{}"), "a.json: volume.file is missing: which .vdb file to render");
     EXPECT_NE(complaint_about({"nonsense"}), "");
     EXPECT_NE(complaint_about({"=3"}), "");
 }
@@ -178,6 +177,63 @@ TEST(ReadShot, RendersWithoutEndAreFound) {
         "tracing.error");
     for (const char* end : {"tracing.samples=2", "tracing.seconds=1", "tracing.error=0.5", "method=lighting_grid"})
         EXPECT_EQ(complaint_about({"method=path", "tracing.samples=none", end}), "") << end;
+}
+
+TEST(ReadShot, ScenesAreListsOfThings) {
+    const Shot shot = parsed(R"({"scene": {
+        "files": [{"file": "street.glb", "up": "z"}],
+        "quads": [{"corners": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], "colour": 0.3, "emission": [1, 2, 3]}],
+        "spheres": [{"centre": [1, 2, 3], "radius": 0.5, "metallic": 1, "roughness": 0.2}],
+        "lights": [{"kind": "spot", "position": [0, 0, 4], "power": 10, "outer_degrees": 30, "inner_degrees": 20},
+                   {"kind": "environment", "power": 0.1}],
+        "frames_per_second": 25}})");
+    ASSERT_EQ(shot.scene.files.size(), 1u);
+    EXPECT_EQ(shot.scene.files[0].file, "street.glb");
+    EXPECT_EQ(shot.scene.files[0].up, 'z');
+    ASSERT_EQ(shot.scene.quads.size(), 1u);
+    EXPECT_EQ(shot.scene.quads[0].corners[2], dvec3(1, 1, 0));
+    EXPECT_EQ(shot.scene.quads[0].material.colour, Rgb(0.3f));
+    EXPECT_EQ(shot.scene.quads[0].material.emission, Rgb(1, 2, 3));
+    ASSERT_EQ(shot.scene.spheres.size(), 1u);
+    EXPECT_EQ(shot.scene.spheres[0].radius, 0.5);
+    EXPECT_EQ(shot.scene.spheres[0].material.roughness, 0.2f);
+    ASSERT_EQ(shot.scene.lights.size(), 2u);
+    EXPECT_EQ(shot.scene.lights[0].kind, LightKind::Spot);
+    EXPECT_EQ(shot.scene.lights[0].outer_degrees, 30.0);
+    EXPECT_EQ(shot.scene.lights[1].power, Rgb(0.1f));
+    EXPECT_EQ(shot.scene.frames_per_second, 25.0);
+}
+
+// A long list is no help unless the part that is wrong is named.
+TEST(ReadShot, MistakesInListsNameTheirPlace) {
+    const auto told = [](const std::string& scene) { return complaint(R"({"scene": )" + scene + "}"); };
+    EXPECT_EQ(told(R"({"spheres": [{"centre": [0, 0, 0], "radius": 1}, {"centre": [0, 0, 0], "radius": -2}]})"),
+              "a.json:1: scene.spheres[1].radius: expected a number above 0, got -2 (a number)");
+    EXPECT_EQ(told(R"({"files": [{"file": "a.glb", "upp": "z"}]})"),
+              "a.json:1: scene.files[0]: expected keys it knows, such as \"up\", got \"upp\" (text)");
+    EXPECT_EQ(told(R"({"files": [{"up": "z"}]})"),
+              "a.json:1: scene.files[0]: expected \"file\", which is missing: text in quotes that is not empty, got "
+              "{\"up\":\"z\"} (an object)");
+    EXPECT_EQ(told(R"({"lights": [{"kind": "lamp"}]})"),
+              "a.json:1: scene.lights[0].kind: expected one of \"point\", \"spot\", \"sun\", \"quad\", "
+              "\"environment\", got \"lamp\" (text)");
+    EXPECT_EQ(told(R"({"quads": {}})"),
+              "a.json:1: scene.quads: expected a list of quads [{\"corners\": ...}], got {} (an object)");
+}
+
+TEST(ReadShot, LightsThatCannotBeAreFound) {
+    const auto told = [](const std::string& light) { return complaint(R"({"scene": {"lights": [)" + light + "]}}"); };
+    EXPECT_EQ(told(R"({"kind": "sun", "direction": [0, 0, 0]})"),
+              "a.json:1: scene.lights: light [0] has a direction of no length");
+    EXPECT_EQ(told(R"({"kind": "spot", "inner_degrees": 50, "outer_degrees": 40})"),
+              "a.json:1: scene.lights: light [0] has inner_degrees above outer_degrees");
+    EXPECT_EQ(told(R"({"kind": "environment"}, {"kind": "environment"})"),
+              "a.json:1: scene.lights: light [1] is a second environment; there can be only one");
+}
+
+TEST(ReadShot, NothingToRenderIsFound) {
+    EXPECT_EQ(complaint("{}"), "a.json: volume.file is missing, and so is a scene: which file to render");
+    EXPECT_EQ(complaint(R"({"scene": {"lights": [{"kind": "environment"}]}})"), "");
 }
 
 TEST(ReadShot, FilesAreTakenByNameAndFolder) {

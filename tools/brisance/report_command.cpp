@@ -20,7 +20,7 @@
 #include "page_pictures.h"
 #include "reference.h"
 #include "render/camera.h"
-#include "render/load_medium.h"
+#include "render/frame_input.h"
 #include "report.h"
 #include "report_json.h"
 #include "report_text.h"
@@ -73,9 +73,8 @@ FrameFile only_frame(const Shot& shot, const ReportOptions& options) {
 }
 
 // A camera that is the same for every run, whatever its picture's width.
-void fix_camera(Shot& shot, const Medium& medium) {
-    if (!shot.camera_given)
-        shot.camera = framed_camera(medium, shot.camera);
+void fix_camera(Shot& shot, const FrameInput& input) {
+    shot.camera = input.camera;
     shot.camera_given = true;
 }
 
@@ -160,9 +159,9 @@ Report begin_report(const ReportOptions& options, const Shot& shot, const FrameF
 }
 
 ReportReference make_reference(const ReportOptions& options, const std::vector<PlannedMethod>& methods,
-                               const Shot& shot, const Medium& medium, TextProgress& progress) {
+                               const Shot& shot, const FrameInput& input, TextProgress& progress) {
     const std::vector<std::string> settings = reference_settings(options, methods);
-    ReportReference reference = trace_reference(shot_with(shot, "reference", settings), medium, progress);
+    ReportReference reference = trace_reference(shot_with(shot, "reference", settings), input, progress);
     reference.summary.command = render_command(options, settings, "reference.exr");
     return reference;
 }
@@ -213,18 +212,18 @@ int run_report(const ReportOptions& options) {
 
     const Stopwatch watch;
     Statistics loading;
-    const Medium medium = load_medium(shot, frame.file, loading, progress);
+    const FrameInput input = load_frame(shot, frame.file, frame.frame, loading, progress);
     report.loading_seconds = watch.seconds();
-    fix_camera(shot, medium);
+    fix_camera(shot, input);
     const std::vector<PlannedMethod> planned = plan_runs(shot, methods, reference ? reference->seeds : std::set<int>());
     if (!reference)
-        reference = make_reference(options, planned, shot, medium, progress);
+        reference = make_reference(options, planned, shot, input, progress);
     report.reference = reference->summary;
     for (const std::string& layer : report_layers())
         if (reference->layers.contains(layer))
             report.layers.push_back(layer);
     PagePictures pictures = begin_pictures(options, shot, *reference);
-    measure_runs(planned, medium, *reference, {options.repeats}, report, pictures, progress);
+    measure_runs(planned, input, *reference, {options.repeats}, report, pictures, progress);
     add_commands(options, planned, report);
     progress.stage("writing");
     write_report(files, report, pictures);

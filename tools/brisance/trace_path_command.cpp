@@ -25,8 +25,13 @@ const char* cell_name(int order) {
     return order == 0 ? "V" : order == 1 ? "MV" : "MM";
 }
 
-std::string order_name(int order) {
-    return fmt::format("{}{} {}", order, order + 1 == kPathOrders ? "+" : "", cell_name(order));
+std::string order_name(int order, bool has_cells) {
+    return fmt::format("{}{} {}", order, order + 1 == kPathOrders ? "+" : "", has_cells ? "" : cell_name(order));
+}
+
+// Where there are surroundings the number of scatterings does not tell the cell.
+std::string vertex_name(const TracedVertex& vertex, bool has_cells) {
+    return has_cells ? std::to_string(vertex.order) : fmt::format("{} {}", vertex.order, cell_name(vertex.order));
 }
 
 template <class T>
@@ -40,13 +45,13 @@ std::string place(const dvec3& p) {
 
 void print_vertices(const TracedPath& path) {
     fmt::print(
-        "vertices: scatterings, place [m], throughput, radiance gathered along the segment that leaves it and "
-        "by a line toward the fire:\n");
+        "vertices: scatterings, place [m], throughput, radiance gathered along the segment that leaves it, by a line "
+        "toward the fire, and by a ray toward an emitter:\n");
     for (const TracedVertex& vertex : path.vertices)
-        fmt::print("  {:<6} at {}  throughput {}  along {}  from fire {}{}\n",
-                   fmt::format("{} {}", vertex.order, cell_name(vertex.order)), place(vertex.position),
-                   triple(vertex.throughput), triple(vertex.along_segment), triple(vertex.from_fire),
-                   finite(vertex) ? "" : "  NOT FINITE");
+        fmt::print("  {:<6} {} {}  throughput {}  along {}  from fire {}  from emitters {}{}\n",
+                   vertex_name(vertex, path.has_cells), vertex.on_surface ? "on a surface at" : "at",
+                   place(vertex.position), triple(vertex.throughput), triple(vertex.along_segment),
+                   triple(vertex.from_fire), triple(vertex.from_emitters), finite(vertex) ? "" : "  NOT FINITE");
 }
 
 }  // namespace
@@ -65,7 +70,10 @@ int run_trace_path(const TracePathOptions& options) {
     fmt::print("{} scatterings followed; radiance R G B [W/(m^2 sr)] by scatterings:\n", path.scatterings);
     for (int order = 0; order < kPathOrders; ++order)
         if (path.orders[order] != Rgb(0.0f))
-            fmt::print("  {:<6} {}\n", order_name(order), triple(path.orders[order]));
+            fmt::print("  {:<6} {}\n", order_name(order, path.has_cells), triple(path.orders[order]));
+    for (int cell = 0; cell < kCells && path.has_cells; ++cell)
+        if (path.orders.cells[cell] != Rgb(0.0f))
+            fmt::print("  {:<6} {}\n", kCellNames[cell], triple(path.orders.cells[cell]));
     fmt::print("{}\n", path.finite() ? "finite" : "NOT FINITE");
     return static_cast<int>(path.finite() ? ExitCode::Success : ExitCode::RenderFailed);
 }

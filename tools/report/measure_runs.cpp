@@ -53,12 +53,12 @@ struct Rendered {
     Cost cost;
 };
 
-Rendered render_repeatedly(const Shot& shot, const Medium& medium, int repeats, Progress& progress) {
+Rendered render_repeatedly(const Shot& shot, const FrameInput& input, int repeats, Progress& progress) {
     Rendered result;
     std::vector<Cost> costs;
     for (int i = 0; i < repeats; ++i) {
         const CostMeter meter;
-        result.frame = render_medium(shot, medium, progress);
+        result.frame = render_medium(shot, input.medium, progress, input.surroundings.get());
         costs.push_back(meter.cost());
     }
     const auto middle = costs.begin() + static_cast<std::ptrdiff_t>((costs.size() - 1) / 2);
@@ -121,14 +121,14 @@ std::vector<PlannedMethod> plan_runs(const Shot& shot, const std::vector<Method>
     return planned;
 }
 
-void measure_runs(const std::vector<PlannedMethod>& methods, const Medium& medium, const ReportReference& reference,
+void measure_runs(const std::vector<PlannedMethod>& methods, const FrameInput& input, const ReportReference& reference,
                   const MeasureOptions& options, Report& report, PagePictures& pictures, Progress& progress) {
     for (std::size_t m = 0; m < methods.size(); ++m) {
         MethodResult result{methods[m].method, {}};
         for (std::size_t s = 0; s < methods[m].runs.size(); ++s) {
             const PlannedRun& planned = methods[m].runs[s];
             NamedProgress named(progress, fmt::format("{}, {}", result.method.label, planned.step.label));
-            Rendered rendered = render_repeatedly(planned.shot, medium, options.repeats, named);
+            Rendered rendered = render_repeatedly(planned.shot, input, options.repeats, named);
             MeasuredRun run;
             run.id = fmt::format("method{}step{}", m + 1, s + 1);
             run.step = planned.step;

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "medium/medium.h"
 #include "page_pictures.h"
 #include "reference.h"
+#include "render/frame_input.h"
 #include "report.h"
 #include "shot/shot.h"
 
@@ -43,7 +43,7 @@ struct MeasureOptions {
 };
 
 // Adds the runs' results to `report`, whose reference is set, and their pictures to `pictures`.
-void measure_runs(const std::vector<PlannedMethod>& methods, const Medium& medium, const ReportReference& reference,
+void measure_runs(const std::vector<PlannedMethod>& methods, const FrameInput& input, const ReportReference& reference,
                   const MeasureOptions& options, Report& report, PagePictures& pictures, Progress& progress);
 
 }  // namespace brisance

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "core/cell.h"
 #include "core/error.h"
 #include "film/write_image.h"
 #include "metrics/differences.h"
@@ -138,7 +139,11 @@ void notice_origin(const std::vector<GivenFile>& given, ReportReference& referen
 }  // namespace
 
 const std::vector<std::string>& report_layers() {
-    static const std::vector<std::string> layers = {"", "V", "MV", "MM"};
+    static const std::vector<std::string> layers = [] {
+        std::vector<std::string> names = {""};
+        names.insert(names.end(), kCellNames.begin(), kCellNames.end());
+        return names;
+    }();
     return layers;
 }
 
@@ -149,10 +154,10 @@ Picture mean_picture(const Reference& reference) {
     return mean;
 }
 
-ReportReference trace_reference(const Shot& shot, const Medium& medium, Progress& progress) {
+ReportReference trace_reference(const Shot& shot, const FrameInput& input, Progress& progress) {
     const CostMeter meter;
     NamedProgress named(progress, "reference");
-    const RenderedFrame frame = render_medium(shot, medium, named);
+    const RenderedFrame frame = render_medium(shot, input.medium, named, input.surroundings.get());
     ReportReference reference;
     reference.seeds = {shot.tracing.seed};
     ReferenceSummary& summary = reference.summary;

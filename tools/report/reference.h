@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "medium/medium.h"
 #include "metrics/comparison.h"
+#include "render/frame_input.h"
 #include "report.h"
 #include "shot/shot.h"
 
@@ -25,7 +25,7 @@ struct ReportReference {
 const std::vector<std::string>& report_layers();
 
 // Both halves of a path-traced picture of `shot`, whose method, seed and stop are set.
-ReportReference trace_reference(const Shot& shot, const Medium& medium, Progress& progress);
+ReportReference trace_reference(const Shot& shot, const FrameInput& input, Progress& progress);
 
 // One EXR, or two independent halves. Throws Error MissingInput or BadData; the latter names all in which it differs
 // from the shot: size, frame, scene.

@@ -75,7 +75,7 @@ struct Report {
     Machine machine;
     double loading_seconds = 0.0;  // reading the volume and building the medium, shared by all runs
     int repeats = 1;
-    std::vector<std::string> layers;  // of the reference: "", "V", "MV", "MM"
+    std::vector<std::string> layers;  // of the reference: "" and its cells
     ReferenceSummary reference;
     std::vector<MethodResult> methods;
 };
