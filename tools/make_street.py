@@ -432,15 +432,18 @@ def byte(value):
 
 
 def damp(size=224):
-    """Roughness and colour of asphalt in one: grainy and rougher where it is merely wet, dark and smooth in puddles."""
+    """Roughness and colour of asphalt in one: grainy and rougher where it is merely wet, dark and smooth in puddles.
+
+    The largest puddle lies before the camera, in the hollow."""
     octaves = [(noise(size, cells, cells), weight) for cells, weight in ((5, 0.5), (9, 0.3), (20, 0.14), (46, 0.06))]
     draw, rows = random.Random(1), []
+    hollow = lambda i, j: 0.3 * math.exp(-(((i / size + 0.48) % 1.0 - 0.5) / 0.15) ** 2 - ((j / size - 0.17) / 0.13) ** 2)
     for j in range(size):
         row = []
         for i in range(size):
-            height = sum(rows_of[j][i] * weight for rows_of, weight in octaves)
-            dry = min(1.0, max(0.0, (height - 0.5) / 0.05))
-            row.append(byte(7 + dry * (58 + 90 * (height - 0.5) + 5 * draw.random())))
+            height = sum(rows_of[j][i] * weight for rows_of, weight in octaves) - hollow(i, j)
+            dry = min(1.0, max(0.0, (height - 0.53) / 0.05))
+            row.append(byte(7 + dry * (58 + 90 * (height - 0.53) + 5 * draw.random())))
         rows.append(row)
     return png(size, rows)
 
