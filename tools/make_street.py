@@ -377,8 +377,8 @@ def place_things(glb):
     lamp, post, box = (glb.mesh(make.__name__, make) for make in (street_lamp, bollard, crate))
     for side, z in ((-1, 10.0), (1, 11.0), (1, -11.0), (-1, -13.0), (-1, -31.0), (1, -29.0)):
         glb.root(glb.node(lamp, (side * 5.1, PAVEMENT, z), turn(0.0 if side < 0 else 180.0)))
-    for paint, x, z, yaw in (("car_red", 2.5, 10.0, 24.0), ("car_white", -3.5, 13.2, 1.5), ("car_white", 3.4, -14.0, 0.0),
-                             ("car_red", -3.4, -17.0, 180.0)):
+    for paint, x, z, yaw in (("car_red", 2.5, 10.0, 24.0), ("car_white", -3.5, 13.2, 1.5),
+                             ("car_white", 3.4, -14.0, 0.0), ("car_red", -3.4, -17.0, 180.0)):
         glb.root(glb.node(glb.mesh(f"car {paint}", car, paint), (x, 0, z), turn(yaw)))
     for i in range(6):
         glb.root(glb.node(post, (5.0, PAVEMENT, 6.6 + 2.0 * i)))
@@ -437,7 +437,8 @@ def damp(size=224):
     The largest puddle lies before the camera, in the hollow."""
     octaves = [(noise(size, cells, cells), weight) for cells, weight in ((5, 0.5), (9, 0.3), (20, 0.14), (46, 0.06))]
     draw, rows = random.Random(1), []
-    hollow = lambda i, j: 0.3 * math.exp(-(((i / size + 0.48) % 1.0 - 0.5) / 0.15) ** 2 - ((j / size - 0.17) / 0.13) ** 2)
+    across = lambda i: ((i / size + 0.48) % 1.0 - 0.5) / 0.15
+    hollow = lambda i, j: 0.3 * math.exp(-across(i) ** 2 - ((j / size - 0.17) / 0.13) ** 2)
     for j in range(size):
         row = []
         for i in range(size):
@@ -473,8 +474,8 @@ def brick(size=64):
 def plaster(size=64):
     """Plaster with streaks of dirt that run down."""
     streaks, blotches, draw = noise(size, 16, 8), noise(size, 6, 9), random.Random(6)
-    return png(size, [[byte(232 - 62 * streaks[0][i] * streaks[j][(i * 3) % size] - 40 * blotches[j][i] - 10 * draw.random())
-                       for i in range(size)] for j in range(size)])
+    dirt = lambda i, j: 62 * streaks[0][i] * streaks[j][(i * 3) % size] + 40 * blotches[j][i]
+    return png(size, [[byte(232 - dirt(i, j) - 10 * draw.random()) for i in range(size)] for j in range(size)])
 
 
 PICTURES = {"damp": damp, "slabs": slabs, "brick": brick, "plaster": plaster}
