@@ -33,12 +33,12 @@ public:
                    glm::length(medium.local_from_index[2]) * size.z);
     }
 
-    Arriving ask(const vec3& p, int batch) const {
+    Arriving ask(std::size_t node, const vec3& p, int batch) const {
         Arriving out;
         std::array<vec3, kRays> ends;
         std::array<float, kRays> depth;
         for (int k = 0; k < kRays; ++k)
-            ends[k] = place(p, batch * kRays + k, out.direction[k], out.light[k]);
+            ends[k] = place(node, p, batch * kRays + k, out.direction[k], out.light[k]);
         depths_.between(p, ends.data(), depth.data());
         for (int k = 0; k < kRays; ++k)
             out.light[k] *= std::exp(-depth[k]) / float(kRays * kBatches);
@@ -46,9 +46,9 @@ public:
     }
 
 private:
-    // Where the ray ends that number `number` of all nodes asks; its light before any smoke.
-    vec3 place(const vec3& p, int number, vec3& direction, Rgb& light) const {
-        Rng rng(Stream::NodeEmitter, static_cast<std::uint64_t>(number));
+    // Where ray `number` of a node ends; its light before any smoke.
+    vec3 place(std::size_t node, const vec3& p, int number, vec3& direction, Rgb& light) const {
+        Rng rng(Stream::NodeEmitter, node, static_cast<std::uint64_t>(number));
         const auto sample = surroundings_.emitters().sample({dvec3(p), dvec3(0.0), LitPoint::Kind::Medium},
                                                             (number + 0.5) / (kRays * kBatches), rng);
         direction = vec3(0.0f, 0.0f, 1.0f);
@@ -103,7 +103,7 @@ Gathered gather_from_emitters(const Surroundings& surroundings, const Extinction
             const vec3 p = medium.local_of_node(medium.lattice.first_node(node / BrickLattice::kNodes) +
                                                 BrickLattice::node_in_brick(int(node % BrickLattice::kNodes)));
             for (int batch = 0; batch < kBatches; ++batch) {
-                const Arriving a = gather.ask(p, batch);
+                const Arriving a = gather.ask(node, p, batch);
                 for (int k = 0; k < kRays; ++k)
                     if (a.light[k] != Rgb(0.0f))
                         add(node, a.direction[k], a.light[k]);
