@@ -17,11 +17,13 @@
 namespace brisance {
 namespace {
 
-const Medium& medium() {
-    static const Medium ball = [] {
+const FrameInput& input() {
+    static const FrameInput ball = [] {
         media::Recipe recipe = media::glowing_ball(5, 2.0f);
         recipe.settings.smoke.albedo = Rgb(0.7f);
-        return media::make_medium(recipe);
+        FrameInput made;
+        made.medium = media::make_medium(recipe);
+        return made;
     }();
     return ball;
 }
@@ -59,11 +61,11 @@ TEST(Seeds, ShareNoNoise) {
     Shot exact = shot();
     exact.tracing.samples = 2048;
     exact.tracing.seed = 2;
-    const Picture truth = beauty(render_medium(exact, medium(), silent).image);
-    const Picture ordinary = beauty(render_medium(shot(), medium(), silent).image);
+    const Picture truth = beauty(render_medium(exact, input().medium, silent).image);
+    const Picture ordinary = beauty(render_medium(shot(), input().medium, silent).image);
     Shot reseeded = shot();
     reseeded.tracing.seed = 1;
-    const Picture other = beauty(render_medium(reseeded, medium(), silent).image);
+    const Picture other = beauty(render_medium(reseeded, input().medium, silent).image);
     EXPECT_NE(other.pixels, ordinary.pixels);
     // 432 independent pixels: a correlation of 0.25 would be five standard deviations.
     EXPECT_NEAR(correlation(ordinary, other, truth), 0.0, 0.25);
@@ -79,7 +81,7 @@ TEST(Measuring, FindsTheErrorsOfThePathTracerHalvedByFourTimesThePaths) {
     Shot long_one = base;
     long_one.tracing.samples = 1024;
     long_one.tracing.seed = 1;
-    const ReportReference reference = trace_reference(long_one, medium(), silent);
+    const ReportReference reference = trace_reference(long_one, input(), silent);
     EXPECT_TRUE(reference.summary.halves);
     EXPECT_EQ(reference.layers.size(), 4u);
     EXPECT_GT(reference.summary.noise.at(""), 0.0);
@@ -89,7 +91,7 @@ TEST(Measuring, FindsTheErrorsOfThePathTracerHalvedByFourTimesThePaths) {
     report.layers = {""};
     PagePictures pictures({});
     const auto planned = plan_runs(base, parse_methods({{"path"}, {"4,16,64"}, {}}));
-    measure_runs(planned, medium(), reference, {}, report, pictures, silent);
+    measure_runs(planned, input(), reference, {}, report, pictures, silent);
     const std::vector<MeasuredRun>& runs = report.methods.at(0).runs;
     ASSERT_EQ(runs.size(), 3u);
     for (std::size_t i = 0; i < 3; ++i) {
