@@ -87,6 +87,28 @@ TEST(Sets, EveryCellIsThePathTracers) {
     EXPECT_LT(std::abs(difference), 0.015 * all);
 }
 
+// A few places on the sky, asked by every node: wrong by a tenth if all nodes asked the same ones.
+TEST(Sets, ASkyLightsTheSmoke) {
+    Recipe recipe = glowing_ball(20, 3.0f);
+    recipe.settings.smoke.albedo = Rgb(0.8f);
+    Medium medium = make_medium(recipe);
+    medium.source.clear();
+    LightSettings sky;
+    sky.kind = LightKind::Environment;
+    sky.power = Rgb(0.5f);
+    const Surroundings surroundings(Scene{}, {sky});
+    Shot grid = shot_of(RenderMethod::LightingGrid), paths = shot_of(RenderMethod::Path);
+    grid.scattering.bounces = paths.scattering.bounces = 1;
+    paths.tracing.samples = 256;
+    Progress silent;
+    const RenderedFrame truth = render_medium(paths, medium, silent, &surroundings);
+    const double ma = whole(truth.image.layer("MA")).sum;
+    const double noise = std::abs(whole(truth.halves[0].layer("MA")).sum - whole(truth.halves[1].layer("MA")).sum);
+    const RenderedFrame ours = render_medium(grid, medium, silent, &surroundings);
+    EXPECT_NEAR(whole(ours.image.layer("MA")).sum, ma, 0.02 * ma + 2.0 * noise);
+    EXPECT_NEAR(whole(ours.image.layer("A")).sum, whole(truth.image.layer("A")).sum, 0.01);
+}
+
 TEST(Sets, DoNotKnowHowManyThreadsThereAre) {
     const Medium medium = make_medium(glowing_ball(12, 3.0f));
     const Surroundings surroundings(stage(medium), lamps());
