@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "gathering/far_kernels.h"
+#include "medium/local_bounds.h"
 #include "medium/phase.h"
 #include "shadows/shadow_maps.h"
 
@@ -18,13 +19,10 @@ constexpr std::size_t kLeastBatch = 2048;  // lights with maps at once, below wh
 
 // From any light of the level to the farthest corner of the medium: beyond, nothing dims the light any more.
 float farthest_distance(const GridLevel& level, const Medium& medium) {
-    Box lights, corners;
+    Box lights;
     for (const vec3& p : level.position)
         lights.add(p);
-    const ivec3 first = medium.lattice.min_brick() * BrickLattice::kSize;
-    for (int k = 0; k < 8; ++k)
-        corners.add(medium.local_of_node(first + medium.lattice.brick_extent() * BrickLattice::kSize *
-                                                     ivec3(k & 1, k >> 1 & 1, k >> 2 & 1)));
+    const LocalBounds corners = local_bounds(medium);
     const vec3 far = glm::max(glm::abs(lights.high - corners.low), glm::abs(corners.high - lights.low));
     return glm::length(far);
 }

@@ -5,6 +5,8 @@
 #include <map>
 #include <tuple>
 
+#include "medium/local_bounds.h"
+
 namespace brisance {
 
 namespace {
@@ -22,22 +24,7 @@ struct Sum {
     std::vector<float> directional;
 };
 
-// The box of the medium's nodes, local [m].
-struct Box {
-    vec3 low{1e30f}, high{-1e30f};
-    explicit Box(const Medium& medium) {
-        const ivec3 first = medium.lattice.min_brick() * BrickLattice::kSize;
-        const ivec3 size = medium.lattice.brick_extent() * BrickLattice::kSize;
-        for (int k = 0; k < 8; ++k) {
-            const vec3 p = medium.local_of_node(first + size * ivec3(k & 1, k >> 1 & 1, k >> 2 & 1));
-            low = glm::min(low, p);
-            high = glm::max(high, p);
-        }
-    }
-    float distance(const vec3& p) const { return glm::length(glm::max(glm::max(low - p, p - high), vec3(0.0f))); }
-};
-
-GridLevel make_level(const Medium& medium, const PointLights& lights, int number, float range, const Box& box) {
+GridLevel make_level(const Medium& medium, const PointLights& lights, int number, float range, const LocalBounds& box) {
     std::map<ivec3, Sum, Earlier> sums;
     const float scale = 1.0f / float(1 << number);
     for (std::size_t i = 0; i < lights.size(); ++i) {
@@ -82,7 +69,7 @@ LightingGrid build_point_grid(const Medium& medium, const PointLights& lights, f
     const vec3 size = (high - low) / medium.spacing;
     const float longest = std::max({size.x, size.y, size.z, 1.0f});
     const int top = std::clamp(static_cast<int>(std::ceil(std::log2(longest / 5.0f))), 1, kMostLevels);
-    const Box box(medium);
+    const LocalBounds box = local_bounds(medium);
     for (int l = 0; l <= top; ++l) {
         const float range = l == top ? 3e38f : 2.0f * alpha * medium.spacing * float(1 << l);
         grid.levels.push_back(make_level(medium, lights, l, range, box));

@@ -6,6 +6,7 @@
 #include "core/parallel.h"
 #include "gathering/point_depths.h"
 #include "gathering/sh.h"
+#include "medium/local_bounds.h"
 #include "medium/phase.h"
 
 namespace brisance {
@@ -25,12 +26,8 @@ class NodeGather {
 public:
     NodeGather(const Surroundings& surroundings, const ExtinctionPyramid& pyramid)
         : surroundings_(surroundings), depths_(pyramid, 0) {
-        const Medium& medium = pyramid.medium();
         // Farther than anything in the medium from anywhere in it.
-        const vec3 size = vec3(medium.lattice.brick_extent() * BrickLattice::kSize);
-        beyond_ = 2.0f *
-                  (glm::length(medium.local_from_index[0]) * size.x + glm::length(medium.local_from_index[1]) * size.y +
-                   glm::length(medium.local_from_index[2]) * size.z);
+        beyond_ = 2.0f * local_bounds(pyramid.medium()).diagonal();
     }
 
     Arriving ask(std::size_t node, const vec3& p, int batch) const {

@@ -16,13 +16,6 @@ namespace {
 // Of the pyramid that rays toward extended lights march: which part of a light is hidden by smoke needs no more.
 constexpr int kAimLevel = 2;
 
-// Of the coarsest level that surfaces ask.
-constexpr std::size_t kLeastTopLights = 1000;
-
-// Of the balance of what escapes.
-constexpr int kSpherePoints = 1024;
-constexpr std::size_t kEscapeRays = std::size_t{1} << 17;
-
 nlohmann::ordered_json level_table(const std::vector<LevelCost>& costs) {
     auto table = nlohmann::ordered_json::array();
     for (const LevelCost& c : costs)
@@ -86,73 +79,6 @@ std::vector<vec3> directions_to(const Medium& medium, const vec3& eye) {
         },
         4096);
     return directions;
-}
-
-// Sorts points into cubes of four nodes inside the medium, of ever more with their distance from it: only coarse lights
-// matter there.
-class PointCells {
-public:
-    explicit PointCells(const Medium& medium) : medium_(medium) {
-        const ivec3 first = (medium.lattice.min_brick() * BrickLattice::kSize) - medium.reference_node;
-        low_ = vec3(first);
-        high_ = vec3(first + medium.lattice.brick_extent() * BrickLattice::kSize);
-    }
-
-    std::uint64_t key(const vec3& local) const {
-        const vec3 p = medium_.index_from_local * local;
-        const vec3 outside = glm::max(glm::max(low_ - p, p - high_), vec3(0.0f));
-        const float distance = glm::length(outside) / 8.0f;
-        const int shift = 2 + std::clamp(distance > 1.0f ? std::ilogb(distance) + 1 : 0, 0, 24);
-        const vec3 scaled = p / std::ldexp(1.0f, shift);
-        const ivec3 cell = ivec3(glm::clamp(glm::floor(scaled), vec3(-(1 << 18)), vec3((1 << 18) - 1))) + (1 << 18);
-        return std::uint64_t(shift) << 57 | std::uint64_t(cell.x) << 38 | std::uint64_t(cell.y) << 19 |
-               std::uint64_t(cell.z);
-    }
-
-private:
-    const Medium& medium_;
-    vec3 low_, high_;  // of the medium, in nodes from the reference node
-};
-
-// March points as receivers, sorted into blocks by cell; `order` says which point each padded receiver is.
-Receivers point_receivers(const Medium& medium, const std::vector<MarchPoint>& points, bool directional,
-                          std::vector<std::uint32_t>& order) {
-    struct Keyed {
-        std::uint64_t cell;
-        std::uint32_t point;
-    };
-    std::vector<Keyed> keyed(points.size());
-    const PointCells cells(medium);
-    for (std::size_t i = 0; i < points.size(); ++i)
-        keyed[i] = {cells.key(points[i].local), std::uint32_t(i)};
-    std::sort(keyed.begin(), keyed.end(),
-              [](const Keyed& a, const Keyed& b) { return a.cell != b.cell ? a.cell < b.cell : a.point < b.point; });
-    Receivers receivers;
-    std::vector<vec3> positions, directions;
-    for (std::size_t i = 0; i < keyed.size();) {
-        positions.clear();
-        directions.clear();
-        std::size_t end = i;
-        for (; end < keyed.size() && keyed[end].cell == keyed[i].cell; ++end) {
-            positions.push_back(points[keyed[end].point].local);
-            if (directional)
-                directions.push_back(points[keyed[end].point].toward_camera);
-            order.push_back(keyed[end].point);
-        }
-        receivers.add_block(positions, directions);
-        while (order.size() < receivers.size())
-            order.push_back(order.back());
-        i = end;
-    }
-    return receivers;
-}
-
-// Surfaces stand outside of the smoke: light of a coarse vertex comes to them through all the smoke around it, which
-// differs from voxel to voxel more than its map, made for the smoke nearby, can tell. On real smoke two levels fewer
-// bring the error from 8 to 2 % of what escapes, for one more microsecond per point and light.
-void drop_coarse_levels(LightingGrid& grid) {
-    while (grid.levels.size() > 1 && grid.levels.back().size() < kLeastTopLights)
-        grid.levels.pop_back();
 }
 
 }  // namespace
@@ -283,63 +209,6 @@ Gathered Lighting::light_from_fire() {
     return first;
 }
 
-// Makes what gathering at points asks for, from lights that have found their place.
-void Lighting::keep(KeptLights& lights, float alpha) {
-    if (!marching())
-        drop_coarse_levels(lights.lights.grid);
-    lights.field = lights.lights.field(pyramid_, alpha, shot_.lighting, &lights.maps);
-    lights.bottom = bottom_level(lights.field);
-    if (!lights_surfaces())
-        return;
-    lights.aim = std::make_unique<ExtendedLight>(medium_, depths_, lights.lights.light.intensity);
-    if (shot_.lighting.energy_balance)
-        balance_escape(lights);
-}
-
-// What passes through the sphere around the medium must be what rays say escapes.
-void Lighting::balance_escape(KeptLights& lights) {
-    const ScatteredLight& light = lights.lights.light;
-    const dvec3 emitted = total(light.intensity);
-    const CollisionEstimate inside = estimate_collisions(pyramid_, light.intensity, light.directional, kEscapeRays);
-    const ivec3 first = medium_.lattice.min_brick() * BrickLattice::kSize;
-    const ivec3 size = medium_.lattice.brick_extent() * BrickLattice::kSize;
-    const vec3 low = medium_.local_of_node(first), high = medium_.local_of_node(first + size);
-    const vec3 middle = 0.5f * (low + high);
-    const float radius = 0.5f * glm::distance(low, high);
-    std::vector<MarchPoint> sphere;
-    for (int i = 0; i < kSpherePoints; ++i) {
-        const float z = 1.0f - (2.0f * float(i) + 1.0f) / kSpherePoints, r = std::sqrt(1.0f - z * z);
-        const float azimuth = 2.3999632297f * float(i);  // the golden angle
-        const vec3 d(r * std::cos(azimuth), r * std::sin(azimuth), z);
-        sphere.push_back({middle + radius * d, -d});
-    }
-    std::vector<std::uint32_t> order;
-    const Receivers receivers = point_receivers(medium_, sphere, true, order);
-    std::vector<LevelCost> costs;
-    Progress silent;
-    const Gathered g =
-        gather_at_points(lights.field, lights.bottom, receivers, 0.0f, costs, silent, ReceiverKind::Surface);
-    dvec3 through(0.0);
-    std::vector<bool> counted(sphere.size(), false);
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        if (counted[order[i]])
-            continue;  // padding
-        counted[order[i]] = true;
-        for (int c = 0; c < 3; ++c)
-            through[c] += g.scattered[c * order.size() + i];
-    }
-    through *= double(kPi) * radius * radius / kSpherePoints;  // over 4 pi, as the intensities are
-    for (int c = 0; c < 3; ++c)
-        if (through[c] > 0.0)
-            lights.escape_scale[c] = float((1.0 - inside.fraction[c]) * emitted[c] / through[c]);
-    statistics_.stages.push_back({"balance of what escapes",
-                                  0.0,
-                                  0,
-                                  {{"escaped", 1.0 - luminance(Rgb(inside.fraction))},
-                                   {"standard_error", inside.standard_error},
-                                   {"scale", luminance(lights.escape_scale)}}});
-}
-
 Gathered Lighting::gather_last_flight(const HierarchyLights& lights, int order, nlohmann::ordered_json& balances,
                                       std::vector<LevelCost>& costs) {
     const LightField field = lights.field(pyramid_, shot_.scattering.alpha, shot_.lighting, nullptr);
@@ -431,66 +300,6 @@ void Lighting::light_from_smoke(const Gathered& first) {
     if (!balances.empty())
         last.detail["balance"] = balances;
     statistics_.stages.push_back(last);
-}
-
-void Lighting::at_surfaces(std::vector<SurfaceReceiver>& points) {
-    if (points.empty())
-        return;
-    std::vector<MarchPoint> places;
-    for (const SurfaceReceiver& p : points)
-        places.push_back({p.local, p.normal});
-    std::vector<std::uint32_t> order;
-    const Receivers receivers = point_receivers(medium_, places, true, order);
-    const std::size_t n = order.size();
-    const auto gather = [&](const std::unique_ptr<KeptLights>& lights, Rgb SurfaceReceiver::*slot) {
-        if (!lights)
-            return;
-        std::vector<LevelCost> costs;
-        Progress silent;
-        const Gathered g =
-            gather_at_points(lights->field, lights->bottom, receivers, 0.0f, costs, silent, ReceiverKind::Surface);
-        // Scaled by the balance of what escapes, not of what collides.
-        for (std::size_t i = 0; i < n; ++i)
-            for (int c = 0; c < 3; ++c)
-                (points[order[i]].*slot)[c] = lights->escape_scale[c] * g.scattered[c * n + i];
-    };
-    gather(fire_, &SurfaceReceiver::fire);
-    gather(smoke_, &SurfaceReceiver::smoke);
-}
-
-void Lighting::at_points(const std::vector<MarchPoint>& points, std::vector<PointLighting>& lighting) {
-    if (points.empty())
-        return;
-    std::vector<std::uint32_t> order;
-    const Receivers receivers = point_receivers(medium_, points, plan_.directional, order);
-    const std::size_t n = order.size();
-    const auto gather = [&](const std::unique_ptr<KeptLights>& lights, Rgb PointLighting::*slot) {
-        if (!lights)
-            return;
-        std::vector<LevelCost> costs;
-        Progress silent;
-        const Gathered g =
-            gather_at_points(lights->field, lights->bottom, receivers, medium_.mean_cosine, costs, silent);
-        for (std::size_t i = 0; i < n; ++i) {
-            Rgb& out = lighting[order[i]].*slot;
-            for (int c = 0; c < 3; ++c)
-                out[c] = lights->scale[c] *
-                         (g.scattered.empty() ? g.fluence[c * n + i] / (4.0f * kPi) : g.scattered[c * n + i]);
-        }
-    };
-    gather(fire_, &PointLighting::single);
-    gather(smoke_, &PointLighting::multiple);
-    // Albedo per point, where it varies, is that of the nearest node.
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        Rgb albedo = medium_.albedo;
-        if (!medium_.albedo_nodes.empty()) {
-            const std::int64_t node = medium_.lattice.find_node(
-                ivec3(glm::round(medium_.index_from_local * points[i].local)) + medium_.reference_node);
-            albedo = node < 0 ? Rgb(0.0f) : medium_.albedo_nodes[node];
-        }
-        lighting[i].single *= albedo;
-        lighting[i].multiple *= albedo;
-    }
 }
 
 }  // namespace brisance
