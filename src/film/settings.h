@@ -14,6 +14,7 @@ struct OutputSettings {
     bool cell_layers = true;                     // one layer per ledger cell
     bool bounce_layers = false;                  // one layer per scattering order
     bool halves = false;                         // STEM.A.exr and STEM.B.exr beside the EXR, where there are any
+    bool virtual_lights = false;                 // STEM.virtual_lights.*: pictures of the many-light method's lights
     float exposure_stops = 0.0f;                 // of the PNG only
     ViewTransform view = ViewTransform::Filmic;  // of the PNG only
     double frames_per_second = 0.0;              // recorded in the EXR; 0: not recorded

@@ -79,6 +79,16 @@ Ray Camera::ray(double x, double y) const {
     return {eye_, glm::normalize(forward_ + u * right_ + v * up_)};
 }
 
+std::optional<glm::dvec2> Camera::project(const dvec3& local) const {
+    const dvec3 away = local - eye_;
+    const double depth = glm::dot(away, forward_);
+    if (!(depth > 0.0))
+        return std::nullopt;
+    const double pixels = 0.5 * settings_.height / (tan_half_ * depth);  // per metre at that depth
+    return glm::dvec2(0.5 * settings_.width + pixels * glm::dot(away, right_),
+                      0.5 * settings_.height - pixels * glm::dot(away, up_));
+}
+
 dmat4 Camera::camera_from_world() const {
     return glm::inverse(world_from_camera_);
 }

@@ -1,6 +1,8 @@
 // A pinhole camera: pixels to rays in the medium's local space.
 #pragma once
 
+#include <optional>
+
 #include "medium/cell_walk.h"
 #include "render/camera_settings.h"
 #include "scene/scene.h"
@@ -14,6 +16,8 @@ public:
 
     // Through the point (x, y) of the picture in pixels: (0, 0) is the outer corner of the top left pixel.
     Ray ray(double x, double y) const;
+    // The point of the picture at which a local place is seen; nothing where it is not in front of the eye.
+    std::optional<glm::dvec2> project(const dvec3& local) const;
     dvec3 eye_local() const { return eye_; }
     dvec3 forward() const { return forward_; }
     dmat4 camera_from_world() const;

@@ -86,6 +86,7 @@ std::unique_ptr<VirtualLights> place_virtual_lights(const Shot& shot, const Dire
                                  {{"candidates", r.candidates},
                                   {"lights", r.lights},
                                   {"with_profiles", r.profiles},
+                                  {"reflected_watts", {r.flux.x, r.flux.y, r.flux.z}},
                                   {"photons", r.photons.photons},
                                   {"photons_from_fire", r.photons.from_fire},
                                   {"photons_not_finite", r.photons.not_finite},
@@ -111,7 +112,36 @@ void check_surroundings(const Shot& shot) {
                     "orders; other numbers need method path");
 }
 
-Image draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const Surroundings* surroundings,
+// A picture, and what else is known of how it came about.
+struct Drawn {
+    Image image;
+    std::optional<LightPictures> light_pictures;
+};
+
+constexpr const char* kNoLightPictures = "no pictures of virtual lights are written: ";
+
+std::optional<LightPictures> picture_lights(const VirtualLights* lights, const Surroundings* surroundings,
+                                            const Camera& camera, const Image& image, const PathLengths& lengths,
+                                            Statistics& statistics, Progress& progress) {
+    if (!lights)
+        return std::nullopt;  // told before anything was drawn
+    if (lights->lights().empty()) {
+        progress.warning("virtual-lights",
+                         kNoLightPictures + std::string("none was placed, as no path of the camera meets a surface "
+                                                        "that could hold one"));
+        return std::nullopt;
+    }
+    progress.stage("pictures of virtual lights");
+    const Stopwatch watch;
+    LightPictures out = make_light_pictures(*lights, *surroundings, camera, image.layer(""), lengths.means());
+    if (out.profiles.layers.empty())
+        progress.notice("no virtual light has a profile: all surfaces are plain Lambert; no picture of profiles");
+    statistics.stages.push_back(
+        {"pictures of virtual lights", watch.seconds(), 0, {{"lights_seen_by_camera", out.seen}}});
+    return out;
+}
+
+Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const Surroundings* surroundings,
                 const Camera& camera, Statistics& statistics, ImageMetadata& metadata, Progress& progress) {
     if (surroundings)
         check_surroundings(shot);
@@ -147,10 +177,14 @@ Image draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     settings.surroundings = surroundings;
     if (plan.surfaces && camera.settings().samples_per_axis == 0)
         settings.samples_per_axis = std::max(settings.samples_per_axis, kSurfaceSamples);
+    std::optional<PathLengths> lengths;
+    if (shot.output.virtual_lights)
+        lengths.emplace(std::size_t(camera.settings().width) * camera.settings().height);
     std::optional<SurfaceShader> shader;
     LightSurfaces light_surfaces;
     if (plan.surfaces) {
-        shader.emplace(plan, field, lighting.get(), virtual_lights.get(), *paths, settings.parts);
+        shader.emplace(plan, field, lighting.get(), virtual_lights.get(), *paths, settings.parts,
+                       lengths ? &*lengths : nullptr);
         light_surfaces = [&](const auto& samples, auto& light) { shader->shade(samples, light); };
     }
     LightPoints light_points;
@@ -166,7 +200,11 @@ Image draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     metadata.samples_per_pixel = double(settings.samples_per_axis) * settings.samples_per_axis;
     statistics.stages.push_back(
         {"camera", watch.seconds(), field.bytes(), {{"samples_per_pixel", metadata.samples_per_pixel}}});
-    return image;
+    Drawn out{std::move(image), std::nullopt};
+    if (lengths)
+        out.light_pictures =
+            picture_lights(virtual_lights.get(), surroundings, camera, out.image, *lengths, statistics, progress);
+    return out;
 }
 
 // Where forward peaks count as no scattering (similar_medium.h), MV holds light that was scattered more than once: MV
@@ -181,25 +219,26 @@ void file_single_scattering(Image& image, const Image& single) {
     }
 }
 
-Image draw(const Shot& shot, const Plan& plan, const Medium& medium, const Surroundings* surroundings,
+Drawn draw(const Shot& shot, const Plan& plan, const Medium& medium, const Surroundings* surroundings,
            const Camera& camera, Statistics& statistics, ImageMetadata& metadata, Progress& progress) {
-    Image image = draw_once(shot, plan, medium, surroundings, camera, statistics, metadata, progress);
+    Drawn drawn = draw_once(shot, plan, medium, surroundings, camera, statistics, metadata, progress);
     const bool mixed = plan.multiple && shot.scattering.bounces < 0 && forward_share(medium.mean_cosine) > 0.0f;
     if (!mixed || !shot.output.cell_layers)
-        return image;
+        return drawn;
     Shot alone = shot;
     alone.scattering.bounces = 1;
-    alone.output.bounce_layers = false;
+    alone.output.bounce_layers = alone.output.virtual_lights = false;
     Plan single = plan;
     single.multiple = false;
     Statistics costs;
     ImageMetadata ignored;
-    file_single_scattering(image, draw_once(alone, single, medium, surroundings, camera, costs, ignored, progress));
+    file_single_scattering(drawn.image,
+                           draw_once(alone, single, medium, surroundings, camera, costs, ignored, progress).image);
     for (StageCost& stage : costs.stages) {
         stage.name += ", for its own layer";
         statistics.stages.push_back(std::move(stage));
     }
-    return image;
+    return drawn;
 }
 
 // All that decides a path tracer's bits, but for when it stops and what becomes of them.
@@ -255,6 +294,9 @@ void render_into(RenderedFrame& out, const Shot& shot, const Medium& medium, con
     out.statistics.cells = plan.cells();
     out.statistics.skipped = plan.skipped;
     const Camera camera(camera_settings, medium);
+    if (shot.output.virtual_lights)
+        if (const std::optional<std::string> reason = why_no_virtual_lights(shot, plan))
+            progress.warning("virtual-lights", kNoLightPictures + *reason);
     if (shot.method == RenderMethod::Path) {
         TracedPicture traced =
             trace_picture(shot, plan, medium, surroundings, camera, checkpoint, out.statistics, progress);
@@ -262,7 +304,9 @@ void render_into(RenderedFrame& out, const Shot& shot, const Medium& medium, con
         out.halves = {std::move(traced.halves[0]), std::move(traced.halves[1])};
         out.metadata.samples_per_pixel = traced.samples_per_pixel;
     } else {
-        out.image = draw(shot, plan, medium, surroundings, camera, out.statistics, out.metadata, progress);
+        Drawn drawn = draw(shot, plan, medium, surroundings, camera, out.statistics, out.metadata, progress);
+        out.image = std::move(drawn.image);
+        out.light_pictures = std::move(drawn.light_pictures);
     }
     if (shot.certify.enabled)
         add_certificate(out, shot, plan, medium, surroundings, camera, progress);

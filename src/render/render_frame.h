@@ -7,6 +7,7 @@
 #include "emitters/surroundings.h"
 #include "film/image.h"
 #include "medium/medium.h"
+#include "render/light_pictures.h"
 #include "render/statistics.h"
 #include "shot/shot.h"
 
@@ -14,7 +15,8 @@ namespace brisance {
 
 struct RenderedFrame {
     Image image;
-    std::vector<Image> halves;  // method path: two independent ones, whose mean is `image`
+    std::vector<Image> halves;                    // method path: two independent ones, whose mean is `image`
+    std::optional<LightPictures> light_pictures;  // where output.virtual_lights asks for them and there are lights
     ImageMetadata metadata;
     Statistics statistics;
 };

@@ -22,14 +22,15 @@ bool has_specular(const SurfaceMaterial& m) {
 }  // namespace
 
 SurfaceShader::SurfaceShader(const Plan& plan, const CellField& field, Lighting* lighting, const VirtualLights* lights,
-                             const PathTracer& paths, int parts)
+                             const PathTracer& paths, int parts, PathLengths* lengths)
     : plan_(plan),
       field_(field),
       lighting_(lighting),
       lights_(lights),
       paths_(paths),
       surroundings_(*paths.direct().surroundings()),
-      parts_(parts) {}
+      parts_(parts),
+      lengths_(lengths) {}
 
 Rgb SurfaceShader::from_emitters(const Scatterer& place, Rng& rng) const {
     const DirectLight& direct = paths_.direct();
@@ -113,6 +114,7 @@ void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector
     std::vector<SurfacePoint> points;
     std::vector<SurfaceReceiver> receivers;
     light_bases(samples, points, receivers);
+    std::vector<int> vertices(lengths_ ? samples.size() : 0);
     parallel_for(
         samples.size(),
         [&](std::size_t i) {
@@ -134,7 +136,7 @@ void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector
             if (!plan_.needs(Cell::SS))
                 return;
             if (lights_) {
-                out.at(Cell::SS) += lights_->shade(place, rng);
+                out.at(Cell::SS) += lights_->shade(place, rng, lengths_ ? &vertices[i] : nullptr);
                 return;
             }
             PathSum path{};
@@ -142,6 +144,8 @@ void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector
             out.at(Cell::SS) += path.cells.at(Cell::SS);
         },
         kSamplesAtOnce);
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        lengths_->add(samples[i].pixel, vertices[i]);
 }
 
 }  // namespace brisance

@@ -12,6 +12,7 @@
 #include "render/cell_field.h"
 #include "render/integrate.h"
 #include "render/lighting.h"
+#include "render/path_lengths.h"
 #include "render/plan.h"
 #include "tracing/path_tracer.h"
 #include "virtual_lights/virtual_lights.h"
@@ -21,9 +22,9 @@ namespace brisance {
 class SurfaceShader {
 public:
     // Keeps references. `lighting`: null where neither fire nor smoke shines; `lights`: null where the shot wants none.
-    // `parts`: as of PictureSettings.
+    // `parts`: as of PictureSettings. `lengths`: counts the paths of the virtual lights; null: nobody wants to know.
     SurfaceShader(const Plan& plan, const CellField& field, Lighting* lighting, const VirtualLights* lights,
-                  const PathTracer& paths, int parts);
+                  const PathTracer& paths, int parts, PathLengths* lengths = nullptr);
 
     void shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) const;
 
@@ -41,6 +42,7 @@ private:
     const PathTracer& paths_;
     const Surroundings& surroundings_;
     int parts_;
+    PathLengths* lengths_;
 };
 
 }  // namespace brisance

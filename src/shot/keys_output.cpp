@@ -37,6 +37,10 @@ void add_output_keys(std::vector<Key>& keys) {
         "output.halves", "the path tracer's two independent halves as STEM.A.exr and STEM.B.exr beside the EXR", flag(),
         [](Shot & s) -> auto& { return s.output.halves; }));
     keys.push_back(make_key(
+        "output.virtual_lights",
+        "pictures of the virtual lights of surfaces beside the EXR: STEM.virtual_lights.ply, .exr, .png, ...", flag(),
+        [](Shot & s) -> auto& { return s.output.virtual_lights; }));
+    keys.push_back(make_key(
         "output.layers.cells", "one layer per kind of light path: V, MV, MM", flag(),
         [](Shot & s) -> auto& { return s.output.cell_layers; }));
     keys.push_back(make_key(

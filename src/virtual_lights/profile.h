@@ -23,6 +23,10 @@ public:
     Rgb exitance(const VirtualLight& light) const;
     float brightest(const VirtualLight& light) const;
 
+    // Texels along a side of each map, 0 without any, and one light's map in rows (hemisphere_map.h) [W/(m^2 sr)].
+    int resolution() const { return static_cast<int>(side_); }
+    std::span<const Rgb> map(const VirtualLight& light) const { return {map_of(light), side_ * side_}; }
+
     std::uint64_t bytes() const { return texels_.size() * sizeof(Rgb); }
 
 private:

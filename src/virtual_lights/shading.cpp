@@ -24,13 +24,15 @@ struct VirtualLights::Seen {
     LightShares shares;
 };
 
+LightShares VirtualLights::shares_at(const SurfaceHit& hit, const SurfacePoint& point) const {
+    if (!holds_light(point.material))
+        return {};
+    const int material = scene_.surroundings()->scene().meshes[hit.mesh].material;
+    return cover_.shares(point.position, lit_normal(point), material);
+}
+
 VirtualLights::Seen VirtualLights::seen_by(const RaySegment& segment) const {
-    Seen seen{segment, {}};
-    if (holds_light(segment.point->material)) {
-        const int material = scene_.surroundings()->scene().meshes[segment.hit->mesh].material;
-        seen.shares = cover_.shares(segment.point->position, lit_normal(*segment.point), material);
-    }
-    return seen;
+    return {segment, shares_at(*segment.hit, *segment.point)};
 }
 
 // What one of the lights adds to the radiance seen.
@@ -145,13 +147,15 @@ Rgb VirtualLights::at_end_of_ray(const Scatterer& place, const Seen& seen, doubl
 }
 
 // The place itself asks for what surfaces reflect toward it; places along an extended path for everything.
-Rgb VirtualLights::shade(const Scatterer& asking, Rng& rng) const {
+Rgb VirtualLights::shade(const Scatterer& asking, Rng& rng, int* vertices) const {
     Rgb sum(0.0f), throughput(1.0f);
     if (!shines_)
         return sum;
     Scatterer place = asking;
     float light_lines = 0.0f;
     for (int order = 0; survives(throughput, 1.0f, order > kManyScatterings, rng); ++order) {
+        if (vertices)
+            ++*vertices;
         if (choice_.by_lights() && !place.only_delta())
             sum += throughput * from_chosen_light(place, rng);
         if (light_lines > 0.0f && (light_lines == 1.0f || rng.next() < light_lines))

@@ -122,6 +122,7 @@ void VirtualLights::finish_lights(const LightAccounts& accounts) {
             light.power = luminance(light.irradiance * light.material.base_colour) * light.area;
             light.intensity = light.power / std::numbers::pi;
         }
+        report_.flux += flux(light);
     }
 }
 

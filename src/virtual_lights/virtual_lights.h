@@ -25,6 +25,7 @@ namespace brisance {
 
 struct VirtualLightReport {
     std::uint64_t candidates = 0, lights = 0, profiles = 0;
+    Rgb flux{0.0f};  // that all lights reflect [W]
     PhotonReport photons;
     double candidate_seconds = 0.0, elimination_seconds = 0.0, area_seconds = 0.0, photon_seconds = 0.0,
            profile_seconds = 0.0, choice_seconds = 0.0;
@@ -41,8 +42,9 @@ public:
     // One sample of the radiance [W/(m^2 sr)] that a place scatters of what surfaces reflect toward it: the ledger's
     // cell SS for a surface, MS for smoke (without its albedo). Light that emitters or the fire send straight to the
     // place is not part of it. Its mean is right up to the lights' own blur and noise; with extension, that is only
-    // found where many lights lie in a ray's footprint.
-    Rgb shade(const Scatterer& place, Rng& rng) const;
+    // found where many lights lie in a ray's footprint. `vertices`: is raised by the number of places that the path
+    // had, the asking one among them.
+    Rgb shade(const Scatterer& place, Rng& rng, int* vertices = nullptr) const;
 
     const std::vector<VirtualLight>& lights() const { return lights_; }
     // What a light reflects in all directions [W].
@@ -50,6 +52,11 @@ public:
         return float(light.area) *
                (light.profile >= 0 ? profiles_.exitance(light) : light.irradiance * light.material.base_colour);
     }
+    // What a light of its own surface's colour sends that way [W/(m^2 sr)]. `toward`: unit, world.
+    Rgb radiance(const VirtualLight& light, const dvec3& toward) const;
+    // How many lights speak for a place where a ray has met a surface, up to LightShares::kMost; 0: paths go on there.
+    int speaking_for(const SurfaceHit& hit, const SurfacePoint& point) const { return shares_at(hit, point).count; }
+    const Profiles& profiles() const { return profiles_; }
     const VirtualLightReport& report() const { return report_; }
 
 private:
@@ -57,9 +64,9 @@ private:
     void build(const PixelCamera& camera);
     void measure_lights();
     void finish_lights(const LightAccounts& accounts);
+    LightShares shares_at(const SurfaceHit& hit, const SurfacePoint& point) const;
     Seen seen_by(const RaySegment& segment) const;
     Rgb reflected(const Seen& seen, int share) const;
-    Rgb radiance(const VirtualLight& light, const dvec3& toward) const;
     double trust(const Seen& seen, double pdf) const;
     Rgb from_chosen_light(const Scatterer& place, Rng& rng) const;
     Rgb from_patch(const Scatterer& place, const LightTree::Choice& choice, Rng& rng) const;

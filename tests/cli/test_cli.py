@@ -587,6 +587,78 @@ class PathTracer(VolumeCase):
         self.assertIn("frame 2,", self.expect(0, "trace-path", pattern, 1, 2, 3, *self.SHOT, "-f", 2).stdout)
 
 
+class VirtualLights(Case):
+    """--debug virtual-lights: pictures of the method beside the frame."""
+
+    SUFFIXES = ["count.png", "exr", "path_length.png", "ply", "png", "profiles.exr", "profiles.png"]
+
+    def setUp(self):
+        super().setUp()
+        self.out = self.folder / "out"
+        self.out.mkdir()
+        quad = lambda *corners: {"corners": corners, "colour": 0.6, "metallic": 1, "specular": 1, "roughness": 0.5}
+        self.shot = self.write("room.json", json.dumps({
+            "scene": {"quads": [quad([-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]),
+                                quad([-1, 1, 0], [1, 1, 0], [1, 1, 2], [-1, 1, 2])],
+                      "lights": [{"kind": "point", "position": [0, 0, 1], "power": [9, 9, 9]}]},
+            "camera": {"eye": [0, -3, 1], "target": [0, 0, 0.7], "up": [0, 0, 1], "width": 24, "height": 16,
+                       "samples_per_axis": 1},
+            "virtual_lights": {"count": 300, "photons": 20000, "profile_resolution": 4}}))
+
+    def outputs(self):
+        return sorted(path.name for path in self.out.iterdir())
+
+    def render(self, *more, code=0, **options):
+        return self.expect(code, "render", self.shot, "--debug", "virtual-lights", "-o", self.out / "a.exr", *more,
+                           **options)
+
+    def test_files_beside_the_frame(self):
+        done = self.render()
+        files = ["a.exr", "a.png", "a.stats.json", *(f"a.virtual_lights.{end}" for end in self.SUFFIXES)]
+        self.assertEqual(self.outputs(), files)
+        self.assertEqual(sorted(pathlib.Path(line).name for line in done.stdout.split()), files)
+        self.assertIn(b"\nelement vertex 2", (self.out / "a.virtual_lights.ply").read_bytes())
+
+    def test_only_where_asked_for(self):
+        self.expect(0, "render", self.shot, "-o", self.out / "a.exr")
+        self.assertEqual(self.outputs(), ["a.exr", "a.png", "a.stats.json"])
+
+    def test_key_of_the_shot_and_no_pngs(self):
+        self.expect(0, "render", self.shot, "--set", "output.virtual_lights=true", "--set", "output.png=false", "-o",
+                    self.out / "a.exr")
+        self.assertEqual(self.outputs(), ["a.exr", "a.stats.json", *(f"a.virtual_lights.{end}" for end in
+                                                                     ("exr", "ply", "profiles.exr"))])
+
+    def test_sequences(self):
+        self.expect(0, "render", self.shot, "--debug", "virtual-lights", "-f", "1-3", "-o", self.out / "b.####.exr",
+                    "--set", "output.png=false")
+        self.assertEqual(len([name for name in self.outputs() if name.endswith(".ply")]), 3)
+        self.assertIn("b.0003.virtual_lights.profiles.exr", self.outputs())
+
+    def test_nothing_to_show_is_one_line(self):
+        for more, why in ((["--method", "path", "--set", "tracing.samples=1"], "method path uses none"),
+                          (["--set", "virtual_lights.count=0"], "virtual_lights.count is 0"),
+                          (["--set", "scene.quads=[]"], "there are no surfaces")):
+            done = self.render(*more, says=f"no pictures of virtual lights are written: {why}")
+            self.assertEqual(done.stderr.count("virtual-lights"), 1)
+            self.assertEqual(self.outputs(), ["a.exr", "a.png", "a.stats.json"])
+
+    def test_unknown_pictures(self):
+        self.expect(2, "render", self.shot, "--debug", "lights", says="virtual-lights")
+
+    def test_a_name_that_is_taken_is_found_before_rendering(self):
+        (self.out / "a.virtual_lights.ply").mkdir()
+        self.render(code=73, says="a.virtual_lights.ply")
+        self.assertEqual(self.outputs(), ["a.virtual_lights.ply"])
+
+    def test_full_disk(self):
+        def limit():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (18000, 18000))
+
+        self.render(code=74, says="a.virtual_lights.ply", preexec_fn=limit)  # 300 lights of 75 bytes
+        self.assertEqual(self.outputs(), ["a.exr", "a.png"])
+
+
 class Checkpoints(VolumeCase):
     """Long renders that are stopped, and go on as if nothing had been."""
 

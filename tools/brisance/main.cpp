@@ -179,6 +179,15 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
     command.add_flag("--certify", options.certify,
                      "Estimates the finished picture's error against the truth, with 95 % confidence intervals, from "
                      "certify.samples unbiased samples: on standard error, in the statistics and in the EXR's header");
+    command
+        .add_option("--debug", options.debug,
+                    "virtual-lights: pictures of the method beside the EXR, STEM.virtual_lights.*: the virtual lights "
+                    "of surfaces as points (.ply), as the camera sees them (.exr, .png), how many speak for each pixel "
+                    "(.count.png), how long paths are (.path_length.png), and the glossy ones' profiles "
+                    "(.profiles.exr, .profiles.png); the same as --set output.virtual_lights=true")
+        ->check(CLI::IsMember({kDebugVirtualLights}))
+        ->type_name("WHAT")
+        ->allow_extra_args(false);
     command.add_flag("--explain", options.explain, "Prints what ran, what was left out and why, and what it cost");
     command.add_flag("--print-config", options.print_config, "Prints the resolved shot instead of rendering");
 }

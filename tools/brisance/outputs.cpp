@@ -42,6 +42,8 @@ std::vector<fs::path> files_of(const FrameOutput& output) {
     for (const fs::path& file : {output.exr, output.png, output.statistics, output.halves[0], output.halves[1]})
         if (!file.empty())
             files.push_back(file);
+    const std::vector<fs::path> lights = output.lights.all();
+    files.insert(files.end(), lights.begin(), lights.end());
     return files;
 }
 
@@ -71,6 +73,8 @@ std::vector<FrameOutput> plan_outputs(const Shot& shot, const std::string& asked
         if (shot.output.halves)
             output.halves = {fs::path(output.exr).replace_extension(".A.exr"),
                              fs::path(output.exr).replace_extension(".B.exr")};
+        if (shot.output.virtual_lights)
+            output.lights = light_picture_files(output.exr, shot.output.png);
         const auto [other, first] = frame_of.emplace(output.exr, frame.frame);
         if (!first)
             throw Error(ExitCode::Usage, fmt::format("frames {} and {} would both be written to {}", other->second,

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "render/write_light_pictures.h"
 #include "shot/shot.h"
 #include "volume/frame_path.h"
 
@@ -16,6 +17,7 @@ struct FrameOutput {
     std::filesystem::path png;                    // empty: not wanted
     std::filesystem::path statistics;             // STEM.stats.json; empty: not wanted
     std::array<std::filesystem::path, 2> halves;  // STEM.A.exr and STEM.B.exr; empty: not wanted
+    LightPictureFiles lights;                     // STEM.virtual_lights.*; empty: not wanted
 };
 
 // One output for each frame. `asked`: the EXR of the command line, or a folder for it, relative to the current folder;

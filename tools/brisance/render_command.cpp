@@ -35,6 +35,9 @@ Shot load(const RenderOptions& options, Progress& progress) {
         layers.overrides.insert(layers.overrides.begin(), "method=" + options.method);
     if (options.certify)
         layers.overrides.emplace_back("certify.enabled=true");
+    for (const std::string& pictures : options.debug)
+        if (pictures == kDebugVirtualLights)
+            layers.overrides.emplace_back("output.virtual_lights=true");
     return load_shot(options.input, layers, progress);
 }
 
@@ -183,11 +186,15 @@ void write_frame(RenderedFrame& frame, const Shot& shot, const fs::path& volume,
     }
     write_halves(frame, output, progress);
     std::optional<float> exposure;
-    if (!output.png.empty()) {
+    if (!output.png.empty() || frame.light_pictures)
         exposure = png_exposure.of(frame.image, progress);
+    if (!output.png.empty()) {
         write_png(output.png, frame.image, *exposure, shot.output.view);
         announce(output.png);
     }
+    if (frame.light_pictures)
+        write_light_pictures(*frame.light_pictures, output.lights, frame.metadata, *exposure, shot.output.view,
+                             announce);
     if (!output.statistics.empty()) {
         write_text(output.statistics, statistics_json(frame, volume, output, exposure));
         announce(output.statistics);

@@ -8,6 +8,8 @@
 
 namespace brisance {
 
+inline constexpr const char* kDebugVirtualLights = "virtual-lights";
+
 struct RenderOptions {
     std::string input;   // a shot file, or a .vdb with or without frame tokens
     std::string output;  // -o; empty: the shot's, or by name
@@ -15,9 +17,10 @@ struct RenderOptions {
     std::string preset;
     std::string method;  // of rendering; empty: the shot's
     std::vector<std::string> overrides;
-    std::string checkpoint;  // where the state of a long render is kept, and taken up; empty: nowhere
-    bool certify = false;    // also where the shot does not ask for it
-    int threads = 0;         // 0: all processors
+    std::string checkpoint;          // where the state of a long render is kept, and taken up; empty: nowhere
+    std::vector<std::string> debug;  // pictures of how a method works: kDebugVirtualLights
+    bool certify = false;            // also where the shot does not ask for it
+    int threads = 0;                 // 0: all processors
     bool explain = false;
     bool print_config = false;
     bool keep_going = false;

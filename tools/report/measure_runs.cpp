@@ -21,7 +21,7 @@ bool sets(const std::vector<std::string>& settings, const std::string& key) {
                        [&](const std::string& setting) { return setting.starts_with(key + "="); });
 }
 
-// The step alone says when a run stops, and cells are what is compared.
+// The step alone says when a run stops, cells are what is compared, and pictures of lights would cost time.
 void complete(const Shot& shot, std::vector<std::string>& settings) {
     if (sets(settings, "tracing.samples") && shot.tracing.seconds > 0.0 && !sets(settings, "tracing.seconds"))
         settings.push_back("tracing.seconds=none");
@@ -29,6 +29,8 @@ void complete(const Shot& shot, std::vector<std::string>& settings) {
         settings.push_back("tracing.error=none");
     if (!shot.output.cell_layers)
         settings.push_back("output.layers.cells=true");
+    if (shot.output.virtual_lights)
+        settings.push_back("output.virtual_lights=false");
 }
 
 PlannedRun plan_run(const Shot& shot, const Method& method, const MethodStep& step, const std::set<int>& taken) {
