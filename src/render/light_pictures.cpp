@@ -10,7 +10,7 @@ namespace brisance {
 
 namespace {
 
-constexpr float kDim = 0.1f;  // of the picture's luminance, behind the discs
+constexpr float kDim = 0.25f;  // of the picture's luminance, behind the discs
 
 // Of a disc [pixels]: three pixels across in a picture of 360 rows.
 double disc_radius(int height) {

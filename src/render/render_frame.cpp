@@ -120,12 +120,10 @@ struct Drawn {
 
 constexpr const char* kNoLightPictures = "no pictures of virtual lights are written: ";
 
-std::optional<LightPictures> picture_lights(const VirtualLights* lights, const Surroundings* surroundings,
+std::optional<LightPictures> picture_lights(const VirtualLights& lights, const Surroundings& surroundings,
                                             const Camera& camera, const Image& image, const PathLengths& lengths,
                                             Statistics& statistics, Progress& progress) {
-    if (!lights)
-        return std::nullopt;  // told before anything was drawn
-    if (lights->lights().empty()) {
+    if (lights.lights().empty()) {
         progress.warning("virtual-lights",
                          kNoLightPictures + std::string("none was placed, as no path of the camera meets a surface "
                                                         "that could hold one"));
@@ -133,7 +131,7 @@ std::optional<LightPictures> picture_lights(const VirtualLights* lights, const S
     }
     progress.stage("pictures of virtual lights");
     const Stopwatch watch;
-    LightPictures out = make_light_pictures(*lights, *surroundings, camera, image.layer(""), lengths.means());
+    LightPictures out = make_light_pictures(lights, surroundings, camera, image.layer(""), lengths.means());
     if (out.profiles.layers.empty())
         progress.notice("no virtual light has a profile: all surfaces are plain Lambert; no picture of profiles");
     statistics.stages.push_back(
@@ -178,7 +176,7 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     if (plan.surfaces && camera.settings().samples_per_axis == 0)
         settings.samples_per_axis = std::max(settings.samples_per_axis, kSurfaceSamples);
     std::optional<PathLengths> lengths;
-    if (shot.output.virtual_lights)
+    if (shot.output.virtual_lights && !why_no_virtual_lights(shot, plan))
         lengths.emplace(std::size_t(camera.settings().width) * camera.settings().height);
     std::optional<SurfaceShader> shader;
     LightSurfaces light_surfaces;
@@ -203,7 +201,7 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     Drawn out{std::move(image), std::nullopt};
     if (lengths)
         out.light_pictures =
-            picture_lights(virtual_lights.get(), surroundings, camera, out.image, *lengths, statistics, progress);
+            picture_lights(*virtual_lights, *surroundings, camera, out.image, *lengths, statistics, progress);
     return out;
 }
 

@@ -1,5 +1,7 @@
 #include "render/write_light_pictures.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -61,6 +63,35 @@ void write_heat(const fs::path& file, const Image& image, const std::string& lay
     write_png(file, image.width, image.height, false_colours(plane));
 }
 
+// Profiles differ by powers of ten, and what is to be seen is their shape: each has its brightest texel at white.
+Image shown_profiles(const LightPictures& pictures) {
+    const Layer& from = pictures.profiles.layer("");
+    const int side = pictures.tile, pitch = side + 1, rows = pictures.profiles.height / side;
+    Image out{pictures.columns * pitch, rows * pitch, {{"", {"R", "G", "B"}, false, {}}}};
+    std::vector<float>& to = out.layers.front().pixels;
+    to.assign(std::size_t(3) * static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height), 0.0f);
+    const auto row_of = [&](int tile, int row) {
+        const int y = tile / pictures.columns * side + row, x = tile % pictures.columns * side;
+        return &from.pixels[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(pictures.profiles.width) +
+                                 static_cast<std::size_t>(x))];
+    };
+    for (int tile = 0; tile < pictures.columns * rows; ++tile) {
+        float most = 0.0f;
+        for (int row = 0; row < side; ++row)
+            most = std::max(most, *std::max_element(row_of(tile, row), row_of(tile, row) + 3 * side));
+        if (!(most > 0.0f))
+            continue;
+        for (int row = 0; row < side; ++row) {
+            const int y = tile / pictures.columns * pitch + row, x = tile % pictures.columns * pitch;
+            std::transform(row_of(tile, row), row_of(tile, row) + 3 * side,
+                           &to[3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(out.width) +
+                                    static_cast<std::size_t>(x))],
+                           [&](float value) { return value / most; });
+        }
+    }
+    return out;
+}
+
 }  // namespace
 
 std::vector<fs::path> LightPictureFiles::all() const {
@@ -107,7 +138,8 @@ void write_light_pictures(const LightPictures& pictures, const LightPictureFiles
     metadata.text["brisance/profiles"] =
         nlohmann::ordered_json{{"texels_along_a_tile", pictures.tile}, {"tiles_in_a_row", pictures.columns}}.dump();
     write(files.profiles_exr, [&](const fs::path& file) { write_exr(file, pictures.profiles, metadata); });
-    write(files.profiles_png, [&](const fs::path& file) { write_png(file, pictures.profiles, exposure_stops, view); });
+    write(files.profiles_png,
+          [&](const fs::path& file) { write_png(file, shown_profiles(pictures), 0.0f, ViewTransform::Srgb); });
 }
 
 }  // namespace brisance

@@ -636,7 +636,7 @@ class VirtualLights(Case):
         self.assertIn("b.0003.virtual_lights.profiles.exr", self.outputs())
 
     def test_nothing_to_show_is_one_line(self):
-        for more, why in ((["--method", "path", "--set", "tracing.samples=1"], "method path uses none"),
+        for more, why in ((["--method", "path", "--set", "tracing.samples=2"], "method path uses none"),
                           (["--set", "virtual_lights.count=0"], "virtual_lights.count is 0"),
                           (["--set", "scene.quads=[]"], "there are no surfaces")):
             done = self.render(*more, says=f"no pictures of virtual lights are written: {why}")

@@ -39,6 +39,9 @@ VirtualLightSettings settings(bool extension) {
     VirtualLightSettings s = few_lights();
     s.count = 2000;
     s.extension = extension;
+    // No place between lights is left out: paths would go on there.
+    s.radius = LightRadius::Uniform;
+    s.radius_factor = 2.5;
     return s;
 }
 
