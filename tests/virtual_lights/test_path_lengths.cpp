@@ -48,9 +48,10 @@ VirtualLightSettings settings(bool extension) {
 TEST(PathLengths, WithoutExtensionEveryPathHasOnePlace) {
     const Room room(white_room());
     const VirtualLights lights = room.lights(settings(false));
+    // Not through the middles of pixels: along diagonals they meet the room's edges, where two walls are one.
     for (int y = 0; y < 64; ++y)
         for (int x = 0; x < 64; ++x)
-            ASSERT_EQ(vertices_along(room, lights, room.ray(x + 0.5, y + 0.5), std::uint64_t(64 * y + x)), 1)
+            ASSERT_EQ(vertices_along(room, lights, room.ray(x + 0.51, y + 0.38), std::uint64_t(64 * y + x)), 1)
                 << x << " " << y;
 }
 
