@@ -20,9 +20,8 @@ struct LightPictureFiles {
 LightPictureFiles light_picture_files(const std::filesystem::path& frame_exr, bool png);
 
 // `metadata`: the frame's. Exposure and view of the PNG and of the colours in the PLY. `written` is told each file when
-// it is there. Profiles are only written where there are some; in their PNG
-// each is as bright as can be, and a black line parts it from the next. Throws Error CannotCreate or OutputFailed; each
-// file is then whole or as it was before.
+// it is there. Profiles are only written where there are some; in their PNG each is as bright as can be, and a black
+// line parts it from the next. Throws Error CannotCreate or OutputFailed; each file is then whole or as it was before.
 void write_light_pictures(const LightPictures& pictures, const LightPictureFiles& files, ImageMetadata metadata,
                           float exposure_stops, ViewTransform view,
                           const std::function<void(const std::filesystem::path&)>& written);

@@ -37,11 +37,11 @@ TEST(SceneDifferences, AllAreTold) {
 }
 
 TEST(SceneDifferences, AreNotInTheMethodNorInWhatIsWritten) {
-    EXPECT_EQ(differences({"name=other", "lighting.alpha=3", "lighting.shadows=exact", "scattering.remainder=0.1",
-                           "scattering.alpha=4", "camera.samples_per_axis=2", "output.png=false",
-                           "output.layers.bounces=true", "output.virtual_lights=true", "output.exposure_stops=1",
-                           "$schema=x.json"},
-                          {}),
+    EXPECT_EQ(differences(
+                  {"name=other", "lighting.alpha=3", "lighting.shadows=exact", "scattering.remainder=0.1",
+                   "scattering.alpha=4", "camera.samples_per_axis=2", "output.png=false", "output.layers.bounces=true",
+                   "output.virtual_lights=true", "output.exposure_stops=1", "$schema=x.json"},
+                  {}),
               Lines{});
 }
 
