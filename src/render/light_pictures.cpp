@@ -78,7 +78,8 @@ std::vector<float> counts(const VirtualLights& lights, const Surroundings& surro
     const auto width = static_cast<std::size_t>(camera.settings().width);
     std::vector<float> out(width * static_cast<std::size_t>(camera.settings().height), 0.0f);
     parallel_for(out.size(), [&](std::size_t p) {
-        const Ray ray = camera.ray(double(p % width) + 0.5, double(p / width) + 0.5);
+        const std::size_t column = p % width, row = p / width;
+        const Ray ray = camera.ray(double(column) + 0.5, double(row) + 0.5);
         const std::optional<SurfaceHit> hit = surroundings.intersector().first_hit(ray);
         if (hit)
             out[p] = static_cast<float>(
