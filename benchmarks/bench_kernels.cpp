@@ -52,8 +52,8 @@ void far_kernel(benchmark::State& state, FarLights::Shadow shadow) {
     std::vector<std::uint16_t> maps;
     if (shadow == FarLights::Shadow::Maps) {
         lights.list_base = list.front();
-        build_shadow_maps(fire.pyramid, level, fire.weight, lights.layout, list.front(), list.back() - list.front() + 1,
-                          maps);
+        build_shadow_maps(fire.pyramid, level, fire.weight, nullptr, lights.layout, list.front(),
+                          list.back() - list.front() + 1, maps);
         lights.maps = maps.data();
     }
     const PackedExtinction fine = fire.pyramid.view(0);

@@ -82,7 +82,7 @@ HWY_INLINE V map_transmittance(D d, const ShadowMapLayout& layout, const std::ui
     const V t00 = at_texel(0, 0), t01 = at_texel(0, 1), t10 = at_texel(1, 0), t11 = at_texel(1, 1);
     const V t0 = hn::MulAdd(at, hn::Sub(t01, t00), t00);
     const V t1 = hn::MulAdd(at, hn::Sub(t11, t10), t10);
-    return hn::Mul(hn::MulAdd(as, hn::Sub(t1, t0), t0), hn::Set(d, 1.0f / 65535.0f));
+    return hn::Mul(hn::MulAdd(as, hn::Sub(t1, t0), t0), hn::Set(d, layout.range / 65535.0f));
 }
 
 // Numerical transmittance between the light and the receivers; `way` points from receiver to light [m].

@@ -38,6 +38,8 @@ ShadowMapLayout layout_of(const LightField& field, const GridLevel& level, bool 
     const float radius = field.alpha * level.spacing;
     layout.near_distance = 0.5f * radius;
     layout.far_distance = 2.0f * radius;
+    layout.for_outside = field.escape != nullptr;
+    layout.range = layout.for_outside ? 1.0f / FootprintPicker::kLeastShare : 1.0f;
     if (top) {
         const float far = std::max(layout.far_distance, farthest_distance(level, field.pyramid->medium()));
         layout.distances = std::min(64, static_cast<int>(std::ceil(layout.distances * far / layout.far_distance)));
@@ -125,7 +127,8 @@ public:
             const std::size_t count = std::min(batch, level.size() - first);
             Stopwatch watch;
             if (maps && !made)
-                build_shadow_maps(*field_.pyramid, level, *field_.weight, layout, first, count, transmittance);
+                build_shadow_maps(*field_.pyramid, level, *field_.weight, field_.escape, layout, first, count,
+                                  transmittance);
             cost.map_seconds += watch.seconds();
             watch = Stopwatch();
             cost.evaluations += gather_batch(level, top, layout, first, count, transmittance.data());

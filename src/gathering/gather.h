@@ -46,6 +46,8 @@ struct LightField {
     float alpha;
     LightingSettings settings;
     ShadowMapCache* cache = nullptr;  // used by levels that fit the memory limit as a whole
+    // For receivers outside of the medium: per node, how likely its light is to get there. Null: receivers are inside.
+    const std::vector<float>* escape = nullptr;
 };
 
 // Which nodes ask, and for what.

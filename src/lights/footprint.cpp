@@ -16,7 +16,7 @@ double FootprintPicker::search_brick(int brick, const ivec3& centre, double pass
         if (std::min({rest.x, rest.y, rest.z}) <= 0)
             continue;
         passed += double(weights[n]) * (double(rest.x) / h) * (double(rest.y) / h) * (double(rest.z) / h);
-        found_.push_back({node, passed});
+        found_.push_back({node, std::size_t(brick) * BrickLattice::kNodes + n, passed});
     }
     return passed;
 }
@@ -45,6 +45,33 @@ const std::vector<ivec3>& FootprintPicker::pick(const ivec3& vertex, int count) 
         picks_.push_back(found_[at].node);
     }
     return picks_;
+}
+
+const std::vector<FootprintPicker::WeightedPick>& FootprintPicker::pick(const ivec3& vertex, int count,
+                                                                        const NodeWeights& importance) {
+    search(vertex);
+    weighted_picks_.clear();
+    if (found_.empty())
+        return weighted_picks_;
+    double mean = 0.0, before = 0.0;
+    for (const Found& f : found_) {
+        mean += (f.passed - before) * importance[f.index];
+        before = f.passed;
+    }
+    mean /= before;
+    const auto density = [&](const Found& f) {
+        return mean > 0.0 ? kLeastShare + (1.0 - kLeastShare) * importance[f.index] / mean : 1.0;
+    };
+    // The density's sum is that of the weights.
+    std::size_t at = 0;
+    double passed = found_[0].passed * density(found_[0]);
+    for (int k = 0; k < count; ++k) {
+        const double goal = (k + 0.5) / count * before;
+        for (; at + 1 < found_.size() && passed < goal; ++at)
+            passed += (found_[at + 1].passed - found_[at].passed) * density(found_[at + 1]);
+        weighted_picks_.push_back({found_[at].node, float(1.0 / density(found_[at]))});
+    }
+    return weighted_picks_;
 }
 
 }  // namespace brisance

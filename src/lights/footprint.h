@@ -21,10 +21,20 @@ public:
     // `count` picks in node order; empty when nothing has weight.
     const std::vector<ivec3>& pick(const ivec3& vertex, int count);
 
+    struct WeightedPick {
+        ivec3 node;
+        float weight;  // the mean of weight times f over all picks is that of f over the footprint
+    };
+    // The same with a density that follows `importance` (per node, >= 0) but for the share kLeastShare, which does not:
+    // no pick weighs more than its reciprocal.
+    const std::vector<WeightedPick>& pick(const ivec3& vertex, int count, const NodeWeights& importance);
+    static constexpr float kLeastShare = 0.25f;
+
 private:
     struct Found {
         ivec3 node;
-        double passed;  // running sum of weights
+        std::size_t index;  // in the medium's fields
+        double passed;      // running sum of weights
     };
     void search(const ivec3& vertex);
     double search_brick(int brick, const ivec3& centre, double passed);
@@ -34,6 +44,7 @@ private:
     int level_;
     std::vector<Found> found_;
     std::vector<ivec3> picks_;
+    std::vector<WeightedPick> weighted_picks_;
 };
 
 }  // namespace brisance

@@ -78,6 +78,7 @@ private:
         LightField field;
         GridLevel bottom;
         ShadowMapCache maps;
+        std::vector<float> escape;  // for surfaces: per node, how likely light is to leave the medium
         Rgb scale{1.0f};
         std::unique_ptr<ExtendedLight> aim;  // for surfaces
         Rgb escape_scale{1.0f};              // the same

@@ -2,22 +2,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gathering/escape.h"
 #include "lights/voxel_lights.h"
 #include "medium/local_bounds.h"
 #include "medium/phase.h"
 #include "render/lighting.h"
+#include "render/outside_lights.h"
 #include "scattering/balance.h"
 
 namespace brisance {
 
 namespace {
 
-// Of the coarsest level that surfaces ask.
-constexpr std::size_t kLeastTopLights = 1000;
-
 // Of the balance of what escapes.
 constexpr int kSpherePoints = 1024;
-constexpr std::size_t kEscapeRays = std::size_t{1} << 17;
+constexpr std::size_t kEscapeRays = std::size_t{1} << 18;
 
 // Sorts points into cubes of four nodes inside the medium, of ever more with their distance from it: only coarse lights
 // matter there.
@@ -78,21 +77,17 @@ Receivers point_receivers(const Medium& medium, const std::vector<MarchPoint>& p
     return receivers;
 }
 
-// Surfaces stand outside of the smoke: light of a coarse vertex comes to them through all the smoke around it, which
-// differs from voxel to voxel more than its map, made for the smoke nearby, can tell. On real smoke two levels fewer
-// bring the error from 8 to 2 % of what escapes, for one more microsecond per point and light.
-void drop_coarse_levels(LightingGrid& grid) {
-    while (grid.levels.size() > 1 && grid.levels.back().size() < kLeastTopLights)
-        grid.levels.pop_back();
-}
-
 }  // namespace
 
 // Makes what gathering at points asks for, from lights that have found their place.
 void Lighting::keep(KeptLights& lights, float alpha) {
-    if (!marching())
-        drop_coarse_levels(lights.lights.grid);
+    if (!marching()) {
+        lights.escape = escape_likelihood(medium_, depths_, lights.lights.light.intensity);
+        serve_outside(lights.lights, medium_, lights.escape);
+    }
     lights.field = lights.lights.field(pyramid_, alpha, shot_.lighting, &lights.maps);
+    if (!marching())
+        lights.field.escape = &lights.escape;
     lights.bottom = bottom_level(lights.field);
     if (!lights_surfaces())
         return;
@@ -104,8 +99,8 @@ void Lighting::keep(KeptLights& lights, float alpha) {
 // What passes through the sphere around the medium must be what rays say escapes.
 void Lighting::balance_escape(KeptLights& lights) {
     const ScatteredLight& light = lights.lights.light;
-    const dvec3 emitted = total(light.intensity);
-    const CollisionEstimate inside = estimate_collisions(pyramid_, light.intensity, light.directional, kEscapeRays);
+    const EscapeEstimate escape =
+        estimate_escape(pyramid_, light.intensity, light.directional, lights.escape, kEscapeRays);
     const LocalBounds bounds = local_bounds(medium_);
     const float radius = 0.5f * bounds.diagonal();
     std::vector<MarchPoint> sphere;
@@ -133,12 +128,12 @@ void Lighting::balance_escape(KeptLights& lights) {
     through *= double(kPi) * radius * radius / kSpherePoints;  // over 4 pi, as the intensities are
     for (int c = 0; c < 3; ++c)
         if (through[c] > 0.0)
-            lights.escape_scale[c] = float((1.0 - inside.fraction[c]) * emitted[c] / through[c]);
+            lights.escape_scale[c] = float(escape.power[c] / through[c]);
     statistics_.stages.push_back({"balance of what escapes",
                                   0.0,
                                   0,
-                                  {{"escaped", 1.0 - luminance(Rgb(inside.fraction))},
-                                   {"standard_error", inside.standard_error},
+                                  {{"escaped", luminance(Rgb(escape.power / total(light.intensity)))},
+                                   {"relative_standard_error", escape.standard_error},
                                    {"scale", luminance(lights.escape_scale)}}});
 }
 

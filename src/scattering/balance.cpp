@@ -16,6 +16,7 @@ namespace brisance {
 namespace {
 
 constexpr std::size_t kBatches = 16;
+constexpr float kEvenShare = 0.25f;  // of rays that do not follow the likelihood of escape
 constexpr double kGoldenRatio = 0.61803398874989484820;
 
 vec3 sphere_direction(double u, double v) {
@@ -90,15 +91,20 @@ std::uint64_t vertex_key(const ivec3& v) {
     return part(v.x) << 42 | part(v.y) << 21 | part(v.z);
 }
 
-// Node index of each of `rays` systematic picks in proportion to luminance.
-std::vector<std::size_t> pick_nodes(const std::vector<Rgb>& intensity, std::size_t rays) {
-    double sum = 0.0;
+std::vector<float> luminances(const std::vector<Rgb>& intensity) {
+    std::vector<float> y;
     for (const Rgb& i : intensity)
-        sum += std::max(0.0f, luminance(i));
+        y.push_back(std::max(0.0f, luminance(i)));
+    return y;
+}
+
+// Node index of each of `rays` systematic picks in proportion to `density`.
+std::vector<std::size_t> pick_nodes(const std::vector<float>& density, std::size_t rays) {
+    const double sum = std::accumulate(density.begin(), density.end(), 0.0);
     std::vector<std::size_t> picks;
     double passed = 0.0;
-    for (std::size_t i = 0; i < intensity.size(); ++i) {
-        passed += std::max(0.0f, luminance(intensity[i]));
+    for (std::size_t i = 0; i < density.size(); ++i) {
+        passed += density[i];
         while (picks.size() < rays && passed > (picks.size() + 0.5) / rays * sum)
             picks.push_back(i);
     }
@@ -119,15 +125,9 @@ Rgb directional_part(const float* coefficients, const std::array<float, kShMomen
     return sum;
 }
 
-}  // namespace
-
-CollisionEstimate estimate_collisions(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& intensity,
-                                      std::span<const float> directional, std::size_t rays) {
-    CollisionEstimate estimate;
+// One ray from each of the picked nodes to the edge of the medium: the part that collides.
+std::vector<float> collisions_from(const ExtinctionPyramid& pyramid, const std::vector<std::size_t>& picks) {
     const Medium& medium = pyramid.medium();
-    const std::vector<std::size_t> picks = pick_nodes(intensity, rays);
-    if (picks.empty())
-        return estimate;
     ExitRays exits(pyramid, picks.size());
     parallel_for(
         picks.size(),
@@ -138,14 +138,31 @@ CollisionEstimate estimate_collisions(const ExtinctionPyramid& pyramid, const st
             exits.set(r, vec3(node - medium.reference_node), ray_direction(r));
         },
         1024);
-    const std::vector<float> collided = exits.march(1.0f);
+    return exits.march(1.0f);
+}
+
+// What node i sends along ray r [W/sr].
+dvec3 sent(const std::vector<Rgb>& intensity, std::span<const float> directional, std::size_t i, std::size_t r) {
+    dvec3 toward(intensity[i]);
+    if (!directional.empty())
+        toward += dvec3(directional_part(&directional[i * 3 * kShMoments], sh_basis(ray_direction(r))));
+    return toward;
+}
+
+}  // namespace
+
+CollisionEstimate estimate_collisions(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& intensity,
+                                      std::span<const float> directional, std::size_t rays) {
+    CollisionEstimate estimate;
+    const std::vector<std::size_t> picks = pick_nodes(luminances(intensity), rays);
+    if (picks.empty())
+        return estimate;
+    const std::vector<float> collided = collisions_from(pyramid, picks);
     dvec3 hit[kBatches] = {}, emitted[kBatches] = {};
     for (std::size_t r = 0; r < picks.size(); ++r) {
         const std::size_t i = picks[r];
         const double y = luminance(intensity[i]);
-        dvec3 toward(intensity[i]);
-        if (!directional.empty())
-            toward += dvec3(directional_part(&directional[i * 3 * kShMoments], sh_basis(ray_direction(r))));
+        const dvec3 toward = sent(intensity, directional, i, r);
         hit[r % kBatches] += toward * (collided[r] / y);
         emitted[r % kBatches] += dvec3(intensity[i]) / y;
     }
@@ -165,6 +182,36 @@ CollisionEstimate estimate_collisions(const ExtinctionPyramid& pyramid, const st
             luminance(Rgb(hit[b])) / luminance(Rgb(emitted[b])) - luminance(Rgb(all_hit)) / luminance(Rgb(all_emitted)),
             2);
     estimate.standard_error = std::sqrt(square / (kBatches - 1.0) / kBatches);
+    return estimate;
+}
+
+EscapeEstimate estimate_escape(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& intensity,
+                               std::span<const float> directional, const std::vector<float>& likelihood,
+                               std::size_t rays) {
+    std::vector<float> density = luminances(intensity);
+    double all = 0.0, out = 0.0;
+    for (std::size_t i = 0; i < density.size(); ++i) {
+        all += density[i];
+        out += double(density[i]) * likelihood[i];
+    }
+    for (std::size_t i = 0; i < density.size() && out > 0.0; ++i)
+        density[i] *= kEvenShare + (1.0f - kEvenShare) * float(likelihood[i] * all / out);
+    const std::vector<std::size_t> picks = pick_nodes(density, rays);
+    if (picks.size() < kBatches)
+        return {};
+    const std::vector<float> collided = collisions_from(pyramid, picks);
+    dvec3 batches[kBatches] = {};
+    for (std::size_t r = 0; r < picks.size(); ++r) {
+        const double ray_stands_for = all / density[picks[r]] / double(picks.size());
+        batches[r % kBatches] += sent(intensity, directional, picks[r], r) * (ray_stands_for * (1.0 - collided[r]));
+    }
+    EscapeEstimate estimate;
+    estimate.power = std::accumulate(batches, batches + kBatches, dvec3(0.0));
+    const double mean = luminance(Rgb(estimate.power));
+    double square = 0.0;
+    for (const dvec3& b : batches)
+        square += std::pow(luminance(Rgb(b)) * double(kBatches) - mean, 2);
+    estimate.standard_error = mean > 0.0 ? std::sqrt(square / (kBatches - 1.0) / kBatches) / mean : 0.0;
     return estimate;
 }
 

@@ -80,6 +80,64 @@ void march(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
     }
 }
 
+// Rays of one group of texels, from different places of the light's extent.
+struct Bundle {
+    V offset[kParallelRays][3];
+    V weight[kParallelRays];
+    V depth[kParallelRays];
+    bool opaque[kParallelRays];
+};
+
+HWY_INLINE void open_bundle(D d, const ShadowRays& rays, std::size_t ray, Bundle& b) {
+    for (int k = 0; k < kParallelRays; ++k) {
+        const std::size_t at = (ray * 5 + k * (kStarts / kParallelRays)) % kStarts;
+        for (int a = 0; a < 3; ++a)
+            b.offset[k][a] = hn::LoadU(d, rays.starts[a] + at);
+        b.weight[k] = hn::LoadU(d, rays.weights + at);
+        b.depth[k] = hn::Zero(d);
+        b.opaque[k] = false;
+    }
+}
+
+HWY_INLINE V mean_transmittance(D d, Bundle& b) {
+    V sum = hn::Zero(d);
+    for (int k = 0; k < kParallelRays; ++k) {
+        sum = hn::MulAdd(b.weight[k], hn::Exp(d, hn::Neg(b.depth[k])), sum);
+        b.opaque[k] = hn::AllTrue(d, hn::Gt(b.depth[k], hn::Set(d, 12.0f)));
+    }
+    return hn::Mul(sum, hn::Set(d, 1.0f / kParallelRays));
+}
+
+void march_parallel(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
+                    std::span<const ShadowStep> steps, const vec3& origin, const ShadowRays& rays, int distances,
+                    float scale, std::uint16_t* out) {
+    const D d;
+    const hn::RebindToSigned<D> di;
+    const std::size_t lanes = hn::Lanes(d);
+    const V start[3] = {hn::Set(d, origin.x), hn::Set(d, origin.y), hn::Set(d, origin.z)};
+    HWY_ALIGN std::int32_t quantised[16];
+    for (std::size_t r = 0; r < rays.count; r += lanes) {
+        V direction[3];
+        for (int a = 0; a < 3; ++a)
+            direction[a] = hn::LoadU(d, rays.direction[a] + r);
+        Bundle bundle;
+        open_bundle(d, rays, r, bundle);
+        for (const std::span<const ShadowStep> part : {near_steps, steps})
+            for (const ShadowStep& s : part) {
+                for (int k = 0; k < kParallelRays; ++k)
+                    if (!bundle.opaque[k])
+                        bundle.depth[k] =
+                            hn::Add(bundle.depth[k], step_depth(d, mips, s, start, direction, bundle.offset[k], 1.0f));
+                if (s.store < 0)
+                    continue;
+                const V t = hn::Mul(mean_transmittance(d, bundle), hn::Set(d, scale));
+                hn::Store(hn::NearestInt(hn::Min(t, hn::Set(d, 65535.0f))), di, quantised);
+                for (std::size_t i = 0; i < lanes; ++i)
+                    out[(r + i) * distances + s.store] = static_cast<std::uint16_t>(quantised[i]);
+            }
+    }
+}
+
 void segments(const PackedExtinction& level, const float* const begin[3], const float* const end[3],
               const float* metres, float step_nodes, std::size_t count, float* depths) {
     const D d;
@@ -112,12 +170,19 @@ HWY_AFTER_NAMESPACE();
 namespace brisance {
 
 HWY_EXPORT(march);
+HWY_EXPORT(march_parallel);
 HWY_EXPORT(segments);
 
 void march_shadow_rays(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
                        std::span<const ShadowStep> steps, const vec3& origin, const ShadowRays& rays, int distances,
                        std::uint16_t* out) {
     HWY_DYNAMIC_DISPATCH(march)(mips, near_steps, steps, origin, rays, distances, out);
+}
+
+void march_parallel_rays(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
+                         std::span<const ShadowStep> steps, const vec3& origin, const ShadowRays& rays, int distances,
+                         float scale, std::uint16_t* out) {
+    HWY_DYNAMIC_DISPATCH(march_parallel)(mips, near_steps, steps, origin, rays, distances, scale, out);
 }
 
 void segment_optical_depths(const PackedExtinction& level, const float* const begin[3], const float* const end[3],

@@ -20,6 +20,7 @@ struct ShadowStep {
 struct ShadowRays {
     const float* direction[3];  // nodes per metre
     const float* starts[3];     // kStarts + 16 starting offsets [nodes], the last 16 repeating the first
+    const float* weights;       // of the starts, laid out the same
     std::size_t count;          // padded
 };
 
@@ -31,6 +32,12 @@ constexpr std::size_t kStarts = 64;
 void march_shadow_rays(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
                        std::span<const ShadowStep> steps, const vec3& origin, const ShadowRays& rays, int distances,
                        std::uint16_t* out);
+
+// The same with the weighted mean over kParallelRays parallel rays all along, times `scale` in place of 65535.
+constexpr int kParallelRays = 8;
+void march_parallel_rays(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
+                         std::span<const ShadowStep> steps, const vec3& origin, const ShadowRays& rays, int distances,
+                         float scale, std::uint16_t* out);
 
 // Optical depths of `count` segments from planar begins to planar ends, in nodes of level 0 relative to the reference;
 // `metres` is each one's length. Midpoint rule, steps of at most `step_nodes` nodes. Arrays are padded to 16.

@@ -64,22 +64,43 @@ TexelTable texel_table(const Medium& medium, int resolution) {
     return t;
 }
 
-// Offsets from the light's centre [nodes] to kStarts of the voxels it stands for, in a scattered order; the first 16
-// stand again at the end for whole-vector loads.
-void pick_starts(FootprintPicker& picker, const Medium& medium, const GridLevel& level, std::size_t light,
-                 std::array<std::vector<float>, 3>& starts) {
-    const vec3 centre = medium.index_from_local * level.position[light];
-    for (auto& s : starts)
-        s.assign(kStarts + 16, 0.0f);
-    const std::vector<ivec3>& picks = picker.pick(level.vertex[light], kStarts);
-    for (std::size_t k = 0; k < picks.size(); ++k) {
-        const vec3 offset = vec3(picks[k] - medium.reference_node) - centre;
+// Where rays of a light start: offsets from its centre [nodes] to kStarts of the voxels it stands for, in a scattered
+// order; the first 16 stand again at the end for whole-vector loads.
+struct Starts {
+    std::array<std::vector<float>, 3> offset;
+    std::vector<float> weight;
+
+    Starts() : weight(kStarts + 16, 1.0f) {
+        for (auto& o : offset)
+            o.assign(kStarts + 16, 0.0f);
+    }
+    void set(std::size_t k, const vec3& way, float w) {
         const std::size_t place = k * 27 % kStarts;  // 27 is prime to kStarts
         for (int a = 0; a < 3; ++a)
-            starts[a][place] = offset[a];
+            offset[a][place] = way[a];
+        weight[place] = w;
     }
-    for (auto& s : starts)
-        std::copy_n(s.begin(), 16, s.begin() + kStarts);
+    void repeat_first() {
+        for (auto* list : {&offset[0], &offset[1], &offset[2], &weight})
+            std::copy_n(list->begin(), 16, list->begin() + kStarts);
+    }
+};
+
+void pick_starts(FootprintPicker& picker, const Medium& medium, const GridLevel& level, std::size_t light,
+                 const NodeWeights* escape, Starts& starts) {
+    const vec3 centre = medium.index_from_local * level.position[light];
+    const auto way = [&](const ivec3& node) { return vec3(node - medium.reference_node) - centre; };
+    starts = Starts();
+    if (escape) {
+        const auto& picks = picker.pick(level.vertex[light], kStarts, *escape);
+        for (std::size_t k = 0; k < picks.size(); ++k)
+            starts.set(k, way(picks[k].node), picks[k].weight);
+    } else {
+        const std::vector<ivec3>& picks = picker.pick(level.vertex[light], kStarts);
+        for (std::size_t k = 0; k < picks.size(); ++k)
+            starts.set(k, way(picks[k]), 1.0f);
+    }
+    starts.repeat_first();
 }
 
 // Copies the interior of a map into place and wraps its border: crossing an edge of the square continues on the same
@@ -105,7 +126,7 @@ void place_with_border(const std::uint16_t* interior, const ShadowMapLayout& lay
 }  // namespace
 
 void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const NodeWeights& weights,
-                       const ShadowMapLayout& layout, std::size_t first, std::size_t count,
+                       const NodeWeights* escape, const ShadowMapLayout& layout, std::size_t first, std::size_t count,
                        std::vector<std::uint16_t>& maps) {
     const Medium& medium = pyramid.medium();
     const float far = layout.far_distance;
@@ -122,16 +143,21 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
     maps.resize(count * layout.stride());
     parallel_blocks(count, 8, [&](std::size_t begin, std::size_t end) {
         std::vector<std::uint16_t> interior(texels.padded * layout.distances);
-        std::array<std::vector<float>, 3> starts;
+        Starts starts;
         FootprintPicker picker(medium, weights, level.level);
         for (std::size_t k = begin; k < end; ++k) {
             const std::size_t light = first + k;
-            pick_starts(picker, medium, level, light, starts);
+            pick_starts(picker, medium, level, light, layout.for_outside ? escape : nullptr, starts);
             const ShadowRays rays{{texels.direction[0].data(), texels.direction[1].data(), texels.direction[2].data()},
-                                  {starts[0].data(), starts[1].data(), starts[2].data()},
+                                  {starts.offset[0].data(), starts.offset[1].data(), starts.offset[2].data()},
+                                  starts.weight.data(),
                                   texels.padded};
-            march_shadow_rays(mips.data(), near_steps, steps, medium.index_from_local * level.position[light], rays,
-                              layout.distances, interior.data());
+            const vec3 centre = medium.index_from_local * level.position[light];
+            if (layout.for_outside)
+                march_parallel_rays(mips.data(), near_steps, steps, centre, rays, layout.distances,
+                                    65535.0f / layout.range, interior.data());
+            else
+                march_shadow_rays(mips.data(), near_steps, steps, centre, rays, layout.distances, interior.data());
             place_with_border(interior.data(), layout, &maps[k * layout.stride()]);
         }
     });

@@ -6,13 +6,14 @@
 //  - What is stored and interpolated is transmittance, in 16 bits: a light stands for many, and the mean of their
 //    transmittances is what the receiver needs.
 //  - A light stands for a region, and near it the mean transmittance of that region is what counts, more than that of
-//  its
-//    centre (exp is convex, and fire burns where the smoke is dense): up to the nearest distance asked for, each texel
-//    averages several rays that start at voxels the light stands for, picked systematically in proportion to what they
-//    give it, and converge there.
+//    its centre (exp is convex, and fire burns where the smoke is dense): up to the nearest distance asked for, each
+//    texel averages several rays that start at voxels the light stands for, picked systematically in proportion to what
+//    they give it, and converge there.
+//  - For receivers outside of the medium, where a ray ends matters less than where it begins: rays from kParallelRays
+//    such voxels stay parallel all along. Voxels from which light escapes are picked more often, and count for less: in
+//    dense smoke few others would be among them.
 //  - Rays see density averaged over a sixteenth of the light's spacing near the light, shrinking to single voxels at
-//  the
-//    far end.
+//    the far end.
 #pragma once
 
 #include <cstdint>
@@ -25,10 +26,12 @@
 namespace brisance {
 
 struct ShadowMapLayout {
-    int resolution = 16;      // texels along one side, without border
-    int distances = 8;        // samples along a texel's ray
-    float near_distance = 0;  // of the first sample [m]
-    float far_distance = 0;   // of the last [m]
+    int resolution = 16;       // texels along one side, without border
+    int distances = 8;         // samples along a texel's ray
+    float near_distance = 0;   // of the first sample [m]
+    float far_distance = 0;    // of the last [m]
+    bool for_outside = false;  // receivers are outside of the medium
+    float range = 1.0f;        // the transmittance that is stored as 65535
 
     int side() const { return resolution + 2; }
     // 16-bit values per light; one is spare, since samples are read in pairs.
@@ -36,10 +39,11 @@ struct ShadowMapLayout {
     std::size_t bytes_per_light() const { return stride() * 2; }
 };
 
-// The maps of the lights [first, first + count) of `level`, one after another in `maps` (transmittance times 65535).
-// `weights`: what the level's centres are weighted by, per node of the medium's lattice.
+// The maps of the lights [first, first + count) of `level`, one after another in `maps` (transmittance over range times
+// 65535). `weights`: of the voxels that a light stands for, per node of the medium's lattice. `escape`: where
+// layout.for_outside, how likely light from a node is to leave the medium.
 void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const NodeWeights& weights,
-                       const ShadowMapLayout& layout, std::size_t first, std::size_t count,
+                       const NodeWeights* escape, const ShadowMapLayout& layout, std::size_t first, std::size_t count,
                        std::vector<std::uint16_t>& maps);
 
 }  // namespace brisance

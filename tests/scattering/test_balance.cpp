@@ -66,6 +66,25 @@ TEST(Balance, EscapeIsThatOfTheFieldTheCameraSees) {
     }
 }
 
+// Two ways of counting, and the second knows the little that leaves opaque smoke far better.
+TEST(Balance, WhatEscapesIsWhatDoesNotCollide) {
+    for (const float depth : {0.5f, 5.0f, 50.0f}) {
+        const Lit lit(make_medium(glowing_ball(16, depth)));
+        std::vector<float> likelihood;
+        for (std::size_t i = 0; i < lit.intensity.size(); ++i) {
+            const ivec3 node = lit.medium.lattice.first_node(i / BrickLattice::kNodes) +
+                               BrickLattice::node_in_brick(int(i % BrickLattice::kNodes));
+            likelihood.push_back(std::exp(-depth * std::max(0.0f, 1.0f - glm::length(vec3(node)) / 16.0f)));
+        }
+        const CollisionEstimate inside = estimate_collisions(lit.pyramid, lit.intensity, {}, 200000);
+        const EscapeEstimate e = estimate_escape(lit.pyramid, lit.intensity, {}, likelihood, 200000);
+        const double share = e.power.x / total(lit.intensity).x, other = 1.0 - inside.fraction.x;
+        EXPECT_NEAR(share / other, 1.0, 4.0 * (e.standard_error + inside.standard_error / other)) << depth;
+        if (depth == 50.0f)
+            EXPECT_LT(e.standard_error, 0.5 * inside.standard_error / other);
+    }
+}
+
 TEST(Balance, EscapeFromTheTableIsThreeEpsilonOverFourTau) {
     for (const Ball& b : kBalls) {
         const double tau = b.depth;

@@ -40,7 +40,7 @@ ShadowMapLayout layout_of(const GridLevel& level) {
 
 std::vector<std::uint16_t> maps_of(const Lit& lit, const GridLevel& level, const ShadowMapLayout& layout) {
     std::vector<std::uint16_t> maps;
-    build_shadow_maps(lit.pyramid, level, lit.weight, layout, 0, level.size(), maps);
+    build_shadow_maps(lit.pyramid, level, lit.weight, nullptr, layout, 0, level.size(), maps);
     return maps;
 }
 
@@ -195,7 +195,7 @@ TEST(ShadowMaps, APartOfTheLevelHasTheMapsOfTheWholeWhateverTheThreads) {
     for (const int threads : {1, 8}) {
         const ThreadLimit limit(threads);
         std::vector<std::uint16_t> part;
-        build_shadow_maps(lit.pyramid, level, lit.weight, layout, 5, 20, part);
+        build_shadow_maps(lit.pyramid, level, lit.weight, nullptr, layout, 5, 20, part);
         ASSERT_EQ(part.size(), 20 * layout.stride());
         for (std::size_t i = 0; i < part.size(); ++i) {
             const std::size_t texel = i % layout.stride();

@@ -1,0 +1,52 @@
+#include "gathering/escape.h"
+
+#include <array>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "medium/local_bounds.h"
+
+namespace brisance {
+
+namespace {
+
+using Directions = std::array<vec3, PointDepths::kRays>;
+
+Directions spiral() {
+    Directions directions;
+    constexpr float golden_angle = 2.3999632297f;
+    for (int k = 0; k < PointDepths::kRays; ++k) {
+        const float z = 1.0f - (2.0f * float(k) + 1.0f) / PointDepths::kRays, r = std::sqrt(1.0f - z * z);
+        directions[k] = {r * std::cos(golden_angle * float(k)), r * std::sin(golden_angle * float(k)), z};
+    }
+    return directions;
+}
+
+}  // namespace
+
+NodeWeights escape_likelihood(const Medium& medium, const PointDepths& depths, const std::vector<Rgb>& intensity) {
+    const Directions directions = spiral();
+    const float far = local_bounds(medium).diagonal();
+    NodeWeights likelihood(intensity.size(), 0.0f);
+    parallel_for(
+        intensity.size() / BrickLattice::kNodes,
+        [&](std::size_t b) {
+            for (int n = 0; n < BrickLattice::kNodes; ++n) {
+                const std::size_t i = b * BrickLattice::kNodes + n;
+                if (!(luminance(intensity[i]) > 0.0f))
+                    continue;
+                const vec3 from = medium.local_of_node(medium.lattice.first_node(b) + BrickLattice::node_in_brick(n));
+                std::array<vec3, PointDepths::kRays> to;
+                std::array<float, PointDepths::kRays> depth;
+                for (int k = 0; k < PointDepths::kRays; ++k)
+                    to[k] = from + far * directions[k];
+                depths.between(from, to.data(), depth.data());
+                for (const float d : depth)
+                    likelihood[i] += std::exp(-d) / PointDepths::kRays;
+            }
+        },
+        4);
+    return likelihood;
+}
+
+}  // namespace brisance

@@ -1,0 +1,19 @@
+// A hierarchy of lights for receivers outside of the smoke.
+//
+// Of a light in dense smoke only its skin is seen from there: a burst may let 1.5 % of its light out. What serves the
+// smoke itself serves surfaces badly: centres lie deep inside, and lights that stand for many voxels average over rays
+// of which hardly any leaves. For surfaces, lights lie at the middle of what they send to the outside, those that send
+// nothing are left out, and the coarsest level is finer, since light comes to surfaces through all the smoke around it,
+// which differs from voxel to voxel. On the built-in explosion these bring the error of single points from 20 % of what
+// arrives to 1 % far away and 4 % right beside the smoke.
+#pragma once
+
+#include "lights/footprint.h"
+#include "scattering/multiple_scattering.h"
+
+namespace brisance {
+
+// `escape`: how likely light is to leave the medium, per node (gathering/escape.h).
+void serve_outside(HierarchyLights& lights, const Medium& medium, const NodeWeights& escape);
+
+}  // namespace brisance
