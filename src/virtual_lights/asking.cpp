@@ -12,8 +12,10 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Height above the surface at which a light's middle is looked for, of its radius: surfaces are not flat.
+// Height above the surface at which a sphere's middle is looked for, of its radius, as surfaces are not flat; and the
+// end of the way to it that is not looked at.
 constexpr double kAboveSurface = 1e-3;
+constexpr double kLastPart = 1e-3;
 
 // How many of a sphere's directions are drawn by whom.
 struct Techniques {
@@ -49,7 +51,8 @@ struct VirtualLights::Clearance {
 VirtualLights::Clearance VirtualLights::clearance(const Scatterer& place, const VirtualLight& light) const {
     Clearance out;
     out.ray = place.toward(light.position + kAboveSurface * light.radius * light.frame.normal, out.distance);
-    out.clear = out.distance > 0.0 && !scene_.surroundings()->intersector().occluded(out.ray, out.distance);
+    out.clear =
+        out.distance > 0.0 && !scene_.surroundings()->intersector().occluded(out.ray, (1.0 - kLastPart) * out.distance);
     return out;
 }
 

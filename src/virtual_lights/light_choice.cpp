@@ -19,6 +19,22 @@ std::vector<LightBounds> bounds_of(const std::vector<VirtualLight>& lights) {
     return out;
 }
 
+// What a light brings to the picture, up to a factor. Where the camera's paths placed lights, those who lie close
+// together are the ones whose light it sees: power per area, as by power alone the large ones far off would be asked in
+// vain. Where photons placed them, power. Where photons near the camera's paths did, all bring about the same.
+double worth(const VirtualLight& light, LightPlacement placement) {
+    switch (placement) {
+        case LightPlacement::LightPaths:
+            return light.power;
+        case LightPlacement::RelaxedLightPaths:
+            return light.power > 0.0 ? 1.0 : 0.0;
+        case LightPlacement::BlueNoise:
+        case LightPlacement::Random:
+            break;
+    }
+    return light.power / light.area;
+}
+
 bool is_by_tree(LightSampling sampling) {
     return sampling == LightSampling::LightTree || sampling == LightSampling::CombinedTree;
 }
@@ -41,12 +57,9 @@ LightChoice::LightChoice(const std::vector<VirtualLight>& lights, const VirtualL
       tree_(by_tree_ ? bounds_of(lights) : std::vector<LightBounds>{}) {
     if (by_tree_ || settings.sampling == LightSampling::Bsdf || settings.sampling == LightSampling::All)
         return;
-    // Where lights lie close together the camera sees much of what each sends: all of them bring about the same to the
-    // picture for each power per area, and by power alone the large ones far off would be asked in vain. Lights of flux
-    // of their own know nothing of the camera and have no area.
     double sum = 0.0;
     for (const VirtualLight& light : lights)
-        cumulative_.push_back(sum += light.power / (settings.flux == LightFlux::Own ? 1.0 : light.area));
+        cumulative_.push_back(sum += worth(light, settings.placement));
     if (!(sum > 0.0))
         cumulative_.clear();
     for (double& c : cumulative_)
