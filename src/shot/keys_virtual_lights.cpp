@@ -4,8 +4,8 @@ namespace brisance {
 
 void add_virtual_light_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
-        "virtual_lights.count", "of them; 0: none, all light from surfaces is found by paths", whole(0, 100000000),
-        [](Shot & s) -> auto& { return s.virtual_lights.count; }));
+        "virtual_lights.count", "of them, of flux own about; 0: none, all light from surfaces is found by paths",
+        whole(0, 100000000), [](Shot & s) -> auto& { return s.virtual_lights.count; }));
     keys.push_back(make_key(
         "virtual_lights.placement", "blue_noise: from the camera, thinned out evenly; the others are for comparison",
         choice<LightPlacement>({{"blue_noise", LightPlacement::BlueNoise},
