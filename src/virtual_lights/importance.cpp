@@ -23,7 +23,7 @@ constexpr std::uint64_t kJudging = std::uint64_t{1} << 32;
 // Points sorted into cubes; those near a place are in 27 of them.
 class PointCubes {
 public:
-    PointCubes(std::vector<vec3> points, float side) : side_(side) {
+    PointCubes(const std::vector<vec3>& points, float side) : side_(side) {
         for (const vec3& p : points)
             entries_.push_back({key_of(cube_of(p)), p});
         std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) { return a.key < b.key; });

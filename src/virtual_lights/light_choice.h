@@ -16,6 +16,8 @@ inline bool draws_rays(LightSampling s) {
     return s == LightSampling::Bsdf || s == LightSampling::Combined || s == LightSampling::CombinedTree;
 }
 
+// Power and LightTree: of lights that camera paths placed by power per area, of those of photons by power, of relaxed
+// ones all alike; or by the tree's bounds.
 class LightChoice {
 public:
     // Of lights whose power, intensity, area and spread are known. Nothing is built for Bsdf and All.
@@ -36,6 +38,7 @@ private:
 
 // A direction in which the light's sphere lies, evenly; from inside it any direction that the place can scatter from.
 dvec3 sample_toward(const VirtualLight& light, const LitPoint& place, Rng& rng);
+// Whether a direction leads into the sphere.
 bool leads_into(const VirtualLight& light, const LitPoint& place, const dvec3& direction);
 // Density [1/sr] of a direction that leads into the sphere.
 double pdf_toward(const VirtualLight& light, const LitPoint& place, const dvec3& direction);

@@ -31,10 +31,10 @@ enum class LightRadius {
 };
 
 enum class LightSampling {
-    Power,      // a light in proportion to its power per area, a direction toward it: the camera sees all about alike
-    LightTree,  // a light by what it may send to the place, a direction toward it
-    Bsdf,       // a ray by BSDF or phase function, and all lights where it arrives
-    Combined,   // Power and Bsdf by the balance heuristic
+    Power,         // a light by its power and what the camera sees of it (light_choice.h), a direction toward it
+    LightTree,     // a light by what it may send to the place, a direction toward it
+    Bsdf,          // a ray by BSDF or phase function, and all lights where it arrives
+    Combined,      // Power and Bsdf by the balance heuristic
     CombinedTree,  // LightTree and Bsdf
     Resampled,     // of several by power one, by what it would send if nothing stood between: ReSTIR without reuse
     All            // every light: no noise of choice, at a price

@@ -119,7 +119,7 @@ std::vector<LightCandidate> VirtualLights::candidates(const PixelCamera& camera)
         return along_light(kLeastCandidates);
     const double paths =
         std::max(settings_.candidates_per_pixel * camera.width * camera.height, kLeastCandidates * settings_.count);
-    const std::vector<LightCandidate> from_camera =
+    std::vector<LightCandidate> from_camera =
         light_candidates(scene_, camera, static_cast<std::size_t>(paths), settings_.seed);
     if (settings_.placement == LightPlacement::RelaxedLightPaths)
         return kept_by_importance(along_light(kPathsToJudge), from_camera, least, settings_.seed);

@@ -189,9 +189,9 @@ std::vector<MethodStep> grid_steps(const std::optional<std::vector<std::string>>
 
 // Samples along a pixel's side.
 std::vector<MethodStep> sample_steps(const std::vector<std::string>& sides) {
-    std::vector<MethodStep> steps;
-    for (const std::string& side : sides)
-        steps.push_back({side + " x " + side + " spp", {"camera.samples_per_axis=" + side}});
+    std::vector<MethodStep> steps(sides.size());
+    for (std::size_t i = 0; i < sides.size(); ++i)
+        steps[i] = {fmt::format("{0} x {0} spp", sides[i]), {"camera.samples_per_axis=" + sides[i]}};
     return steps;
 }
 
