@@ -119,7 +119,9 @@ LightSampling sampling_of(const std::string& name) {
                                                            {"tree", LightSampling::LightTree},
                                                            {"bsdf", LightSampling::Bsdf},
                                                            {"combined", LightSampling::Combined},
-                                                           {"combined_tree", LightSampling::CombinedTree}};
+                                                           {"combined_tree", LightSampling::CombinedTree},
+                                                           {"resampled", LightSampling::Resampled},
+                                                           {"all", LightSampling::All}};
     for (const auto& [known, sampling] : names)
         if (name == known)
             return sampling;
@@ -171,6 +173,18 @@ void apply(VirtualLightSettings& s, const std::string& text) {
         s.placement = number != 0.0 ? LightPlacement::Random : LightPlacement::BlueNoise;
     else if (name == "light_paths")
         s.placement = number != 0.0 ? LightPlacement::LightPaths : LightPlacement::BlueNoise;
+    else if (name == "relaxed")
+        s.placement = number != 0.0 ? LightPlacement::RelaxedLightPaths : LightPlacement::BlueNoise;
+    else if (name == "own")
+        s.flux = number != 0.0 ? LightFlux::Own : LightFlux::Gathered;
+    else if (name == "bound")
+        s.point_bound = number;
+    else if (name == "sphere_neighbours")
+        s.sphere_neighbours = static_cast<int>(number);
+    else if (name == "sphere_samples")
+        s.sphere_samples = static_cast<int>(number);
+    else if (name == "resampling")
+        s.resampling_candidates = static_cast<int>(number);
     else if (name == "kind")
         s.kind = value == "point"    ? VirtualLightKind::Point
                  : value == "sphere" ? VirtualLightKind::Sphere

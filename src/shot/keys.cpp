@@ -74,6 +74,10 @@ void add_volume_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "volume.file", "the .vdb file, relative to the shot's folder; frame tokens: ####, @@@, %04d, $F4, <frame04>",
         text(false), [](Shot & s) -> auto& { return s.volume.file; }));
+    // A shot of surfaces alone, written down, must be read again.
+    keys.back().get = [get = keys.back().get](const Shot& shot) {
+        return shot.volume.file.empty() ? std::nullopt : get(shot);
+    };
     keys.push_back(make_key(
         "volume.preset", "how grids are recognised by name",
         choice<MappingPreset>({{"auto", MappingPreset::Automatic},

@@ -19,6 +19,26 @@ std::vector<LightBounds> bounds_of(const std::vector<VirtualLight>& lights) {
     return out;
 }
 
+// What a light brings to the picture, up to a factor. Where the camera's paths placed lights, those who lie close
+// together are the ones whose light it sees: power per area, as by power alone the large ones far off would be asked in
+// vain. Where photons placed them, power. Where photons near the camera's paths did, all bring about the same.
+double worth(const VirtualLight& light, LightPlacement placement) {
+    switch (placement) {
+        case LightPlacement::LightPaths:
+            return light.power;
+        case LightPlacement::RelaxedLightPaths:
+            return light.power > 0.0 ? 1.0 : 0.0;
+        case LightPlacement::BlueNoise:
+        case LightPlacement::Random:
+            break;
+    }
+    return light.power / light.area;
+}
+
+bool is_by_tree(LightSampling sampling) {
+    return sampling == LightSampling::LightTree || sampling == LightSampling::CombinedTree;
+}
+
 dvec3 around(const dvec3& axis, double cosine, double azimuth) {
     const double sine = std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine)));
     return frame_around(axis).world_from_local({sine * std::cos(azimuth), sine * std::sin(azimuth), cosine});
@@ -32,16 +52,14 @@ double cap_height(double radius, double square_distance) {
 
 }  // namespace
 
-LightChoice::LightChoice(const std::vector<VirtualLight>& lights, LightSampling sampling)
-    : by_tree_(!lights.empty() && (sampling == LightSampling::LightTree || sampling == LightSampling::CombinedTree)),
+LightChoice::LightChoice(const std::vector<VirtualLight>& lights, const VirtualLightSettings& settings)
+    : by_tree_(!lights.empty() && is_by_tree(settings.sampling)),
       tree_(by_tree_ ? bounds_of(lights) : std::vector<LightBounds>{}) {
-    if (sampling != LightSampling::Power && sampling != LightSampling::Combined)
+    if (by_tree_ || settings.sampling == LightSampling::Bsdf || settings.sampling == LightSampling::All)
         return;
-    // Where lights lie close together the camera sees much of what each sends: all of them bring about the same to the
-    // picture for each power per area, and by power alone the large ones far off would be asked in vain.
     double sum = 0.0;
     for (const VirtualLight& light : lights)
-        cumulative_.push_back(sum += light.power / light.area);
+        cumulative_.push_back(sum += worth(light, settings.placement));
     if (!(sum > 0.0))
         cumulative_.clear();
     for (double& c : cumulative_)
@@ -75,6 +93,15 @@ dvec3 sample_toward(const VirtualLight& light, const LitPoint& place, Rng& rng) 
     if (place.kind == LitPoint::Kind::Surface)
         return around(place.normal, std::sqrt(u), azimuth);
     return around({0.0, 0.0, 1.0}, 1.0 - 2.0 * u, azimuth);
+}
+
+bool leads_into(const VirtualLight& light, const LitPoint& place, const dvec3& direction) {
+    const dvec3 way = light.position - place.position;
+    const double square_distance = glm::dot(way, way), square_radius = light.radius * light.radius;
+    if (square_distance <= square_radius)
+        return true;
+    const dvec3 across = glm::cross(way, direction);
+    return glm::dot(way, direction) > 0.0 && glm::dot(across, across) < square_radius;
 }
 
 double pdf_toward(const VirtualLight& light, const LitPoint& place, const dvec3& direction) {

@@ -94,6 +94,13 @@ int material_of(const DirectLight& scene, const RaySegment& segment) {
     return scene.surroundings()->scene().meshes[segment.hit->mesh].material;
 }
 
+// By how much a surface's shading normal takes more light than the surface itself.
+float brightness_by_shading(const SurfacePoint& point, const dvec3& toward_source) {
+    const double shading = std::abs(glm::dot(point.frame.normal, toward_source));
+    const double geometric = std::abs(glm::dot(point.geometric_normal, toward_source));
+    return static_cast<float>(std::min(shading / std::max(geometric, 1e-9), kMostBrighter));
+}
+
 void share_out(const DirectLight& scene, const RaySegment& segment, const Rgb& power, const LightCover& cover,
                LightAccounts& accounts, PhotonReport& report) {
     const SurfacePoint& point = *segment.point;
@@ -102,9 +109,7 @@ void share_out(const DirectLight& scene, const RaySegment& segment, const Rgb& p
     const LightShares shares = cover.shares(point.position, lit_normal(point), material_of(scene, segment));
     (shares.count > 0 ? report.shared : report.unshared) += luminance(power);
     const dvec3 toward_source = -segment.ray.direction;
-    const double shading = std::abs(glm::dot(point.frame.normal, toward_source));
-    const double geometric = std::abs(glm::dot(point.geometric_normal, toward_source));
-    const auto brighter = static_cast<float>(std::min(shading / std::max(geometric, 1e-9), kMostBrighter));
+    const float brighter = brightness_by_shading(point, toward_source);
     for (int i = 0; i < shares.count; ++i)
         accounts.add(shares.light[i], toward_source, power * (shares.weight[i] * brighter));
 }
@@ -173,21 +178,28 @@ double emitted_power(const DirectLight& scene, const BoundingBall& ball) {
            (scene.has_emitters() ? scene.surroundings()->emitters().power(ball.radius) : 0.0);
 }
 
-std::vector<LightCandidate> light_path_candidates(const DirectLight& scene, std::size_t paths, std::uint32_t seed) {
-    const PhotonPaths all(scene, ball_around(scene), paths, Stream::LightCandidate, seed);
-    std::vector<std::vector<LightCandidate>> found(paths);
+PhotonArrivals photon_arrivals(const DirectLight& scene, std::size_t paths, Stream stream, std::uint32_t seed) {
+    const PhotonPaths all(scene, ball_around(scene), paths, stream, seed);
+    std::vector<PhotonArrivals> parts((paths + kBlock - 1) / kBlock);
     parallel_blocks(paths, kBlock, [&](std::size_t begin, std::size_t end) {
-        PhotonReport unread;
+        auto& [arrivals, report] = parts[begin / kBlock];
         for (std::size_t i = begin; i < end; ++i)
-            all.trace(i, unread, [&](const RaySegment& segment, const Rgb&) {
-                if (holds_light(segment.point->material))
-                    found[i].push_back({*segment.hit, vec3(segment.point->position), vec3(-segment.ray.direction),
-                                        material_of(scene, segment)});
-            });
+            all.trace(i, report,
+                      [&, &arrivals = arrivals, &report = report](const RaySegment& segment, const Rgb& power) {
+                          if (!holds_light(segment.point->material))
+                              return;
+                          const dvec3 toward_source = -segment.ray.direction;
+                          report.shared += luminance(power);
+                          arrivals.push_back({{*segment.hit, vec3(segment.point->position), vec3(toward_source),
+                                               material_of(scene, segment)},
+                                              power * brightness_by_shading(*segment.point, toward_source)});
+                      });
     });
-    std::vector<LightCandidate> out;
-    for (const std::vector<LightCandidate>& f : found)
-        out.insert(out.end(), f.begin(), f.end());
+    PhotonArrivals out;
+    for (const PhotonArrivals& part : parts) {
+        out.arrivals.insert(out.arrivals.end(), part.arrivals.begin(), part.arrivals.end());
+        add(out.report, part.report);
+    }
     return out;
 }
 

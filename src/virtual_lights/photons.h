@@ -56,8 +56,18 @@ BoundingBall ball_around(const DirectLight& scene);
 // Power that particles carry, luminance [W].
 double emitted_power(const DirectLight& scene, const BoundingBall& ball);
 
-// Where the particles of `paths` light paths meet surfaces that hold light.
-std::vector<LightCandidate> light_path_candidates(const DirectLight& scene, std::size_t paths, std::uint32_t seed);
+// A particle on a surface that holds light.
+struct PhotonArrival {
+    LightCandidate place;  // `toward_viewer`: toward the source
+    Rgb power{0.0f};       // [W], for the surface's shading normal
+};
+
+// Where the particles of `paths` light paths, which share all power among them, meet surfaces that hold light.
+struct PhotonArrivals {
+    std::vector<PhotonArrival> arrivals;
+    PhotonReport report;
+};
+PhotonArrivals photon_arrivals(const DirectLight& scene, std::size_t paths, Stream stream, std::uint32_t seed);
 
 PhotonReport trace_photons(const DirectLight& scene, const BoundingBall& ball, const LightCover& cover,
                            const VirtualLightSettings& settings, LightAccounts& accounts);

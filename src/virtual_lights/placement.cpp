@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "elimination/eliminate.h"
+#include "virtual_lights/spacing.h"
 
 namespace brisance {
 
@@ -14,24 +15,12 @@ namespace {
 // uneven.
 constexpr int kFewNeighbours = 12;
 
-// The area that closest packing gives to a point that keeps its distance: a hexagon.
-double area_of_distance(double distance) {
-    return 0.5 * std::sqrt(3.0) * distance * distance;
-}
-
-// Everybody survives: only the distances are of interest.
-Survivors distances(const std::vector<vec3>& points, int neighbours) {
-    EliminationSettings settings;
-    settings.neighbours = neighbours;
-    return eliminate(points, points.size(), settings);
-}
-
 Survivors blue_noise(const std::vector<vec3>& points, const VirtualLightSettings& s) {
     EliminationSettings settings;
     settings.neighbours = s.neighbours;
     if (s.radius == LightRadius::Uniform) {
         settings.radius = EliminationRadius::Uniform;
-        for (const float distance : distances(points, s.neighbours).distance)
+        for (const float distance : packing_distances(points, s.neighbours))
             settings.measure += area_of_distance(distance);
         if (!(settings.measure > 0.0))
             return {};
@@ -54,8 +43,7 @@ Survivors at_random(const std::vector<vec3>& points, const VirtualLightSettings&
     chosen.reserve(count);
     for (const std::uint32_t i : order)
         chosen.push_back(points[i]);
-    Survivors out = distances(chosen, kFewNeighbours);
-    out.index = order;
+    Survivors out{order, packing_distances(chosen, kFewNeighbours)};
     if (s.radius == LightRadius::Uniform) {
         double area = 0.0;
         for (const float distance : out.distance)
@@ -76,23 +64,27 @@ std::vector<VirtualLight> place_lights(const Scene& scene, const std::vector<Lig
     points.reserve(candidates.size());
     for (const LightCandidate& c : candidates)
         points.push_back(c.position);
-    const Survivors chosen =
-        settings.placement == LightPlacement::BlueNoise ? blue_noise(points, settings) : at_random(points, settings);
+    const bool even =
+        settings.placement == LightPlacement::BlueNoise || settings.placement == LightPlacement::RelaxedLightPaths;
+    const Survivors chosen = even ? blue_noise(points, settings) : at_random(points, settings);
     std::vector<VirtualLight> lights;
     for (std::size_t i = 0; i < chosen.index.size(); ++i) {
         if (!(chosen.distance[i] > 0.0f))
             continue;
-        const LightCandidate& c = candidates[chosen.index[i]];
-        const SurfacePoint point = surface_point(scene, c.hit, dvec3(c.toward_viewer));
-        VirtualLight light;
-        light.position = point.position;
-        light.frame = frame_around(lit_normal(point));
-        light.radius = settings.radius_factor * chosen.distance[i];
-        light.scene_material = c.scene_material;
-        light.material = point.material;
-        lights.push_back(light);
+        lights.push_back(light_at(scene, candidates[chosen.index[i]]));
+        lights.back().radius = settings.radius_factor * chosen.distance[i];
     }
     return lights;
+}
+
+VirtualLight light_at(const Scene& scene, const LightCandidate& place) {
+    const SurfacePoint point = surface_point(scene, place.hit, dvec3(place.toward_viewer));
+    VirtualLight light;
+    light.position = point.position;
+    light.frame = frame_around(lit_normal(point));
+    light.scene_material = place.scene_material;
+    light.material = point.material;
+    return light;
 }
 
 }  // namespace brisance

@@ -11,4 +11,7 @@ namespace brisance {
 std::vector<VirtualLight> place_lights(const Scene& scene, const std::vector<LightCandidate>& candidates,
                                        const VirtualLightSettings& settings);
 
+// A light that knows its place but not its radius.
+VirtualLight light_at(const Scene& scene, const LightCandidate& place);
+
 }  // namespace brisance

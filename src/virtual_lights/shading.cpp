@@ -1,4 +1,4 @@
-// Asking virtual lights: by a light, by a ray, and by both.
+// Along a ray: what virtual lights hold where it ends, and how the path goes on from there.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -18,14 +18,8 @@ Rgb recoloured(const Rgb& to, const Rgb& from) {
 
 }  // namespace
 
-// A surface at the end of a ray, and the lights that speak for it.
-struct VirtualLights::Seen {
-    const RaySegment& segment;
-    LightShares shares;
-};
-
 LightShares VirtualLights::shares_at(const SurfaceHit& hit, const SurfacePoint& point) const {
-    if (!holds_light(point.material))
+    if (settings_.flux != LightFlux::Gathered || !holds_light(point.material))
         return {};
     const int material = scene_.surroundings()->scene().meshes[hit.mesh].material;
     return cover_.shares(point.position, lit_normal(point), material);
@@ -48,6 +42,8 @@ Rgb VirtualLights::reflected(const Seen& seen, int share) const {
 
 // How far the lights are believed, 0..1: by how many of them would lie in the footprint of the ray.
 double VirtualLights::trust(const Seen& seen, double pdf) const {
+    if (settings_.flux == LightFlux::Own)  // photons have put lights wherever light can be held
+        return holds_light(seen.segment.point->material) ? 1.0 : 0.0;
     if (seen.shares.count == 0)
         return 0.0;
     if (!settings_.extension)
@@ -63,77 +59,10 @@ double VirtualLights::trust(const Seen& seen, double pdf) const {
     return std::clamp((n - settings_.n_min) / (settings_.n_max - settings_.n_min), 0.0, 1.0);
 }
 
-Rgb VirtualLights::from_chosen_light(const Scatterer& place, Rng& rng) const {
-    const std::optional<LightTree::Choice> choice = choice_.choose(place.lit(), rng.next_double());
-    if (!choice)
-        return Rgb(0.0f);
-    return settings_.kind == VirtualLightKind::Patch ? from_patch(place, *choice, rng)
-                                                     : from_ball_or_point(place, *choice, rng);
-}
-
-// Of the light's own material.
-Rgb VirtualLights::radiance(const VirtualLight& light, const dvec3& toward) const {
-    if (light.profile >= 0)
-        return profiles_.radiance(light, toward);
-    return light.irradiance * light.material.base_colour / std::numbers::pi_v<float>;
-}
-
-// The light's power leaves a ball of its radius (Hasan et al., Virtual Spherical Lights for Many-Light Rendering of
-// Glossy Scenes, 2009) or its middle, seen or not seen as that is.
-Rgb VirtualLights::from_ball_or_point(const Scatterer& place, const LightTree::Choice& choice, Rng& rng) const {
-    const VirtualLight& light = lights_[choice.light];
-    const double clear = 1e-3 * light.radius;
-    double distance = 0.0;
-    const Ray ray = place.toward(light.position + clear * light.frame.normal, distance);
-    const bool ball = settings_.kind == VirtualLightKind::Sphere;
-    const dvec3 direction = ball ? sample_toward(light, place.lit(), rng) : ray.direction;
-    const double cosine = -glm::dot(light.frame.normal, direction);
-    const Rgb scattered = place.at(direction).value;
-    if (!(cosine > 0.0) || !(distance > 0.0) || scattered == Rgb(0.0f) ||
-        scene_.surroundings()->intersector().occluded(ray, distance))
-        return Rgb(0.0f);
-    double seen = std::min(cosine / (distance * distance), settings_.point_bound);
-    if (ball)
-        seen = cosine / (std::numbers::pi * light.radius * light.radius * pdf_toward(light, place.lit(), direction));
-    seen *= scene_.lines().transmittance(ray, distance, rng) * light.area / choice.probability;
-    return scattered * radiance(light, -direction) * float(seen);
-}
-
-Rgb VirtualLights::from_patch(const Scatterer& place, const LightTree::Choice& choice, Rng& rng) const {
-    const VirtualLight& light = lights_[choice.light];
-    const dvec3 direction = sample_toward(light, place.lit(), rng);
-    const Scatterer::Value scattered = place.at(direction);
-    if (scattered.value == Rgb(0.0f))
-        return Rgb(0.0f);
-    // What lies beyond the sphere, or before it, is not the light's.
-    const double distance = glm::length(light.position - place.position());
-    RaySegment segment{place.leaving(direction), 0.0, std::nullopt, std::nullopt};
-    segment.hit = scene_.surroundings()->intersector().first_hit(segment.ray, distance + light.radius);
-    if (!segment.hit || segment.hit->distance < 0.999 * distance - light.radius)
-        return Rgb(0.0f);
-    segment.end = segment.hit->distance;
-    segment.point = surface_point(scene_.surroundings()->scene(), *segment.hit, -direction);
-    const Seen seen = seen_by(segment);
-    for (int i = 0; i < seen.shares.count; ++i) {
-        if (seen.shares.light[i] != choice.light)
-            continue;
-        const double pdf = choice.probability * pdf_toward(light, place.lit(), direction);
-        const bool both =
-            settings_.sampling == LightSampling::Combined || settings_.sampling == LightSampling::CombinedTree;
-        const double density = both ? pdf + scattered.pdf : pdf;
-        const double believed = trust(seen, scattered.pdf);
-        if (!(density > 0.0) || believed == 0.0)
-            break;
-        const double through = scene_.lines().transmittance(segment.ray, segment.end, rng);
-        return scattered.value * reflected(seen, i) * float(believed * through / density);
-    }
-    return Rgb(0.0f);
-}
-
 // All lights that speak for the place where a ray ends which `place` drew: their radiance, each its share.
 Rgb VirtualLights::at_end_of_ray(const Scatterer& place, const Seen& seen, double pdf) const {
     Rgb sum(0.0f);
-    if (settings_.sampling == LightSampling::Power || settings_.sampling == LightSampling::LightTree)
+    if (!draws_rays(settings_.sampling))
         return sum;
     for (int i = 0; i < seen.shares.count; ++i) {
         const std::size_t light = seen.shares.light[i];
@@ -156,8 +85,8 @@ Rgb VirtualLights::shade(const Scatterer& asking, Rng& rng, int* vertices) const
     for (int order = 0; survives(throughput, 1.0f, order > kManyScatterings, rng); ++order) {
         if (vertices)
             ++*vertices;
-        if (choice_.by_lights() && !place.only_delta())
-            sum += throughput * from_chosen_light(place, rng);
+        if (asks_lights() && !place.only_delta())
+            sum += throughput * from_lights(place, rng);
         if (light_lines > 0.0f && (light_lines == 1.0f || rng.next() < light_lines))
             sum += throughput * scene_.from_fire(place, light_lines, rng);
         if (order > 0 && scene_.has_emitters() && !place.only_delta())

@@ -16,8 +16,10 @@ struct VirtualLight {
     int scene_material = 0;
     SurfaceMaterial material;   // at its position
     Rgb irradiance{0.0f};       // mean over its area [W/m^2]
+    dvec3 toward_source{0.0};   // of flux of its own: unit, where that came from
     std::int32_t profile = -1;  // of light reflected, by direction; -1: plain Lambert, `irradiance` is all there is
-    double power = 0.0;         // reflected, luminance [W]
+    Rgb flux{0.0f};             // reflected in all directions [W]
+    double power = 0.0;         // luminance of the flux [W]
     double intensity = 0.0;     // the largest in any direction, luminance [W/sr]
 };
 

@@ -5,7 +5,9 @@
 
 #include "core/error.h"
 #include "core/stopwatch.h"
+#include "virtual_lights/importance.h"
 #include "virtual_lights/own_area.h"
+#include "virtual_lights/photon_lights.h"
 #include "virtual_lights/placement.h"
 
 namespace brisance {
@@ -14,10 +16,28 @@ namespace {
 
 // Fewer candidates than this per light leave elimination little to choose from.
 constexpr double kLeastCandidates = 8.0;
+// Light paths per light, of whose ends those near the camera's candidates are kept.
+constexpr double kPathsToJudge = 32.0;
+// Of the scene's radius, for the sphere of a single light.
+constexpr double kLonelyRadius = 0.1;
 
 void require(bool holds, const char* what) {
     if (!holds)
         throw Error(ExitCode::Usage, std::string("virtual lights: ") + what);
+}
+
+void check_kind(const VirtualLightSettings& s) {
+    require(s.kind == VirtualLightKind::Patch || (!draws_rays(s.sampling) && !s.extension),
+            "kinds sphere and point need sampling power, light_tree, resampled or all, and no extension: no ray finds "
+            "them");
+    require(s.flux == LightFlux::Gathered || s.kind != VirtualLightKind::Patch,
+            "flux own needs kind sphere or point: a patch is lit by all photons that it meets");
+    require(s.flux == LightFlux::Gathered || s.placement == LightPlacement::LightPaths,
+            "flux own needs placement light_paths: nothing arrives elsewhere");
+    require(s.point_bound > 0.0, "point_bound must be above 0");
+    require(s.sphere_neighbours >= 1, "sphere_neighbours must be at least 1");
+    require(s.sphere_samples >= 1, "sphere_samples must be at least 1");
+    require(s.resampling_candidates >= 1, "resampling_candidates must be at least 1");
 }
 
 void check(const VirtualLightSettings& s) {
@@ -27,11 +47,16 @@ void check(const VirtualLightSettings& s) {
     require(s.neighbours >= 1, "neighbours must be at least 1");
     require(s.radius_factor > 0.0 && s.radius_factor <= 10.0, "radius_factor must lie above 0 and not above 10");
     require(s.profile_resolution >= 2 && s.profile_resolution <= 128, "profile_resolution must lie in 2..128");
-    require(s.point_bound > 0.0, "point_bound must be above 0");
-    const bool by_light = s.sampling == LightSampling::Power || s.sampling == LightSampling::LightTree;
-    require(s.kind == VirtualLightKind::Patch || (by_light && !s.extension),
-            "kinds sphere and point need sampling by power or light tree, and no extension: no ray finds them");
     require(s.n_min >= 0.0 && s.n_max >= s.n_min, "n_min must not be negative, and n_max not below it");
+    check_kind(s);
+}
+
+std::vector<LightCandidate> places_of(const PhotonArrivals& photons) {
+    std::vector<LightCandidate> out;
+    out.reserve(photons.arrivals.size());
+    for (const PhotonArrival& arrival : photons.arrivals)
+        out.push_back(arrival.place);
+    return out;
 }
 
 // Seconds since the last call.
@@ -51,7 +76,7 @@ private:
 }  // namespace
 
 VirtualLights::VirtualLights(const DirectLight& scene, const PixelCamera& camera, const VirtualLightSettings& settings)
-    : scene_(scene), settings_(settings), choice_({}, settings.sampling) {
+    : scene_(scene), settings_(settings), choice_({}, settings) {
     check(settings);
     shines_ =
         scene.surroundings() && scene.surroundings()->has_surfaces() && (scene.has_emitters() || !scene.fire().empty());
@@ -60,18 +85,55 @@ VirtualLights::VirtualLights(const DirectLight& scene, const PixelCamera& camera
 }
 
 void VirtualLights::build(const PixelCamera& camera) {
-    Lap lap;
-    const Scene& scene = scene_.surroundings()->scene();
+    if (settings_.flux == LightFlux::Own)
+        build_of_photons();
+    else
+        build_of_places(camera);
+    const Stopwatch watch;
+    if (settings_.kind == VirtualLightKind::Sphere)
+        widen_to_neighbours(lights_, settings_.sphere_neighbours, kLonelyRadius * ball_around(scene_).radius);
+    if (settings_.kind == VirtualLightKind::Point)
+        for (VirtualLight& light : lights_)
+            light.radius = 0.0;
+    choice_ = LightChoice(lights_, settings_);
+    report_.choice_seconds = watch.seconds();
+    report_.lights = lights_.size();
+    report_.bytes = lights_.size() * sizeof(VirtualLight) + cover_.bytes() + profiles_.bytes() + choice_.bytes();
+}
+
+void VirtualLights::build_of_photons() {
+    const Stopwatch watch;
+    PhotonLights photons = lights_at_photons(scene_, settings_.count, settings_.seed);
+    lights_ = std::move(photons.lights);
+    for (const VirtualLight& light : lights_)
+        report_.flux += light.flux;
+    report_.photons = photons.report;
+    report_.photon_seconds = watch.seconds();
+}
+
+std::vector<LightCandidate> VirtualLights::candidates(const PixelCamera& camera) const {
+    const std::size_t least = static_cast<std::size_t>(kLeastCandidates * settings_.count);
+    const auto along_light = [&](double paths_per_light) {
+        return places_of(photon_arrivals(scene_, static_cast<std::size_t>(paths_per_light * settings_.count),
+                                         Stream::LightCandidate, settings_.seed));
+    };
+    if (settings_.placement == LightPlacement::LightPaths)
+        return along_light(kLeastCandidates);
     const double paths =
         std::max(settings_.candidates_per_pixel * camera.width * camera.height, kLeastCandidates * settings_.count);
-    const std::vector<LightCandidate> candidates =
-        settings_.placement == LightPlacement::LightPaths
-            ? light_path_candidates(scene_, static_cast<std::size_t>(kLeastCandidates * settings_.count),
-                                    settings_.seed)
-            : light_candidates(scene_, camera, static_cast<std::size_t>(paths), settings_.seed);
-    report_.candidates = candidates.size();
+    std::vector<LightCandidate> from_camera =
+        light_candidates(scene_, camera, static_cast<std::size_t>(paths), settings_.seed);
+    if (settings_.placement == LightPlacement::RelaxedLightPaths)
+        return kept_by_importance(along_light(kPathsToJudge), from_camera, least, settings_.seed);
+    return from_camera;
+}
+
+void VirtualLights::build_of_places(const PixelCamera& camera) {
+    Lap lap;
+    const std::vector<LightCandidate> places = candidates(camera);
+    report_.candidates = places.size();
     report_.candidate_seconds = lap.take();
-    lights_ = place_lights(scene, candidates, settings_);
+    lights_ = place_lights(scene_.surroundings()->scene(), places, settings_);
     report_.elimination_seconds = lap.take();
 
     measure_lights();
@@ -88,10 +150,6 @@ void VirtualLights::build(const PixelCamera& camera) {
 
     finish_lights(accounts);
     report_.profile_seconds = lap.take();
-    choice_ = LightChoice(lights_, settings_.sampling);
-    report_.choice_seconds = lap.take();
-    report_.lights = lights_.size();
-    report_.bytes = lights_.size() * sizeof(VirtualLight) + cover_.bytes() + profiles_.bytes() + choice_.bytes();
 }
 
 // Lights whose area cannot be told leave their surface to others, or to extended paths.
@@ -115,14 +173,15 @@ void VirtualLights::finish_lights(const LightAccounts& accounts) {
     for (std::size_t i = 0; i < lights_.size(); ++i) {
         VirtualLight& light = lights_[i];
         if (light.profile >= 0) {
-            light.power = luminance(profiles_.exitance(light)) * light.area;
+            light.flux = profiles_.exitance(light) * float(light.area);
             light.intensity = profiles_.brightest(light) * light.area;
         } else {
             light.irradiance = accounts.whole(i) / float(light.area);
-            light.power = luminance(light.irradiance * light.material.base_colour) * light.area;
-            light.intensity = light.power / std::numbers::pi;
+            light.flux = light.irradiance * light.material.base_colour * float(light.area);
+            light.intensity = luminance(light.flux) / std::numbers::pi;
         }
-        report_.flux += flux(light);
+        light.power = luminance(light.flux);
+        report_.flux += light.flux;
     }
 }
 

@@ -48,10 +48,7 @@ public:
 
     const std::vector<VirtualLight>& lights() const { return lights_; }
     // What a light reflects in all directions [W].
-    Rgb flux(const VirtualLight& light) const {
-        return float(light.area) *
-               (light.profile >= 0 ? profiles_.exitance(light) : light.irradiance * light.material.base_colour);
-    }
+    Rgb flux(const VirtualLight& light) const { return light.flux; }
     // What a light of its own surface's colour sends that way [W/(m^2 sr)]. `toward`: unit, world.
     Rgb radiance(const VirtualLight& light, const dvec3& toward) const;
     // How many lights speak for a place where a ray has met a surface, up to LightShares::kMost; 0: paths go on there.
@@ -60,18 +57,39 @@ public:
     const VirtualLightReport& report() const { return report_; }
 
 private:
-    struct Seen;
+    // A surface at the end of a ray, and the lights that speak for it.
+    struct Seen {
+        const RaySegment& segment;
+        LightShares shares;
+    };
+    std::vector<LightCandidate> candidates(const PixelCamera& camera) const;
     void build(const PixelCamera& camera);
+    void build_of_photons();
+    void build_of_places(const PixelCamera& camera);
     void measure_lights();
     void finish_lights(const LightAccounts& accounts);
     LightShares shares_at(const SurfaceHit& hit, const SurfacePoint& point) const;
     Seen seen_by(const RaySegment& segment) const;
     Rgb reflected(const Seen& seen, int share) const;
     double trust(const Seen& seen, double pdf) const;
-    Rgb from_chosen_light(const Scatterer& place, Rng& rng) const;
-    Rgb from_patch(const Scatterer& place, const LightTree::Choice& choice, Rng& rng) const;
-    Rgb from_ball_or_point(const Scatterer& place, const LightTree::Choice& choice, Rng& rng) const;
     Rgb at_end_of_ray(const Scatterer& place, const Seen& seen, double pdf) const;
+
+    // asking.cpp
+    struct Candidate;
+    struct Clearance;
+    bool asks_lights() const { return !lights_.empty() && settings_.sampling != LightSampling::Bsdf; }
+    Rgb from_lights(const Scatterer& place, Rng& rng) const;
+    Rgb from_light(const Scatterer& place, const LightTree::Choice& choice, Rng& rng) const;
+    Rgb from_resampled(const Scatterer& place, Rng& rng) const;
+    Candidate candidate(const Scatterer& place, Rng& rng) const;
+    Rgb from_patch(const Scatterer& place, const LightTree::Choice& choice, Rng& rng) const;
+    Rgb from_sphere(const Scatterer& place, const LightTree::Choice& choice, Rng& rng) const;
+    Rgb from_point(const Scatterer& place, const LightTree::Choice& choice, Rng& rng) const;
+    Rgb along_to_patch(const Scatterer& place, std::size_t light, const dvec3& direction,
+                       const Scatterer::Value& scattered, Rng& rng) const;
+    Rgb sent(const VirtualLight& light, const dvec3& toward) const;
+    Rgb sent_by_point(const VirtualLight& light, const Scatterer& place, const dvec3& direction) const;
+    Clearance clearance(const Scatterer& place, const VirtualLight& light) const;
 
     const DirectLight& scene_;
     VirtualLightSettings settings_;

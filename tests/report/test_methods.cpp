@@ -172,6 +172,35 @@ TEST(Runs, OfEveryBuiltInMethodAreShots) {
     EXPECT_HAS(joined(planned[2].runs[1].settings), "tracing.seconds=none");
 }
 
+TEST(Runs, OfVirtualLightsChangeTheirChoicesAndTheSamples) {
+    Shot base = shot();
+    base.camera.eye = dvec3(0.0, -6.0, 0.0);
+    base.camera_given = true;
+    const std::vector<std::string> names = {"vbnl",      "vbnl_resampled", "vbnl_power", "vbnl_light_tree",
+                                            "vbnl_bsdf", "rich_vsl",       "vsl",        "vpl"};
+    const std::vector<PlannedMethod> planned = plan_runs(base, parse(names, {"rich_vsl:2,4", "4"}));
+    ASSERT_EQ(planned.size(), names.size());
+    std::set<std::string> looks;
+    for (const PlannedMethod& method : planned) {
+        looks.insert(joined(method.runs[0].settings));
+        EXPECT_EQ(method.runs[0].shot.method, RenderMethod::LightingGrid) << method.method.label;
+    }
+    EXPECT_EQ(looks.size(), names.size()) << "no two of them are the same";
+    EXPECT_EQ(planned[0].runs.size(), 4u) << "a budget of paths is not theirs";
+    ASSERT_EQ(planned[5].runs.size(), 2u);
+    EXPECT_EQ(planned[5].runs[0].shot.camera.samples_per_axis, 2) << "also where the camera is given";
+    EXPECT_EQ(planned[5].runs[1].shot.camera.samples_per_axis, 4);
+    EXPECT_EQ(planned[5].runs[1].shot.virtual_lights.kind, VirtualLightKind::Sphere);
+    EXPECT_EQ(planned[7].runs[0].shot.virtual_lights.flux, LightFlux::Own);
+}
+
+TEST(Runs, OfAShotOfSurfacesAloneAreShots) {
+    Shot base = shot();
+    base.volume.file.clear();
+    base.scene.quads.emplace_back();
+    EXPECT_EQ(plan_runs(base, parse({"path", "vbnl"})).size(), 2u);
+}
+
 TEST(Runs, ShareNoSeedWithTheReference) {
     const auto settings = [](const std::set<int>& taken, const std::string& method) {
         return plan_runs(shot(), parse({method}, {}), taken)[0].runs[0];

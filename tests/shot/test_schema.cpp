@@ -111,6 +111,14 @@ TEST(WriteShot, WhatIsWrittenReadsBackTheSame) {
     }
 }
 
+TEST(WriteShot, AShotOfSurfacesAloneReadsBackTheSame) {
+    Shot alone;
+    alone.scene.quads.emplace_back();
+    const std::string written = to_json(alone);
+    EXPECT_EQ(written.find("\"file\": \"\""), std::string::npos);
+    EXPECT_EQ(to_json(parsed(written)), written);
+}
+
 TEST(WriteShot, HashesDifferWithSettingsAndNotWithPlaces) {
     const std::string hash = settings_hash(with({}));
     EXPECT_EQ(hash.size(), 16u);

@@ -10,7 +10,7 @@ namespace {
 using namespace testing;
 
 constexpr LightSampling kOthers[] = {LightSampling::Power, LightSampling::LightTree, LightSampling::Combined,
-                                     LightSampling::CombinedTree};
+                                     LightSampling::CombinedTree, LightSampling::Resampled};
 
 SceneSettings glossy_room() {
     SceneSettings scene = coloured_room();

@@ -229,6 +229,7 @@ int run_report(const ReportOptions& options) {
     write_report(files, report, pictures);
     progress.finish();
     std::fputs(times_table(report).c_str(), stdout);
+    std::fputs(surface_table(report).c_str(), stdout);
     for (const fs::path& file : {files.page, files.measurements, files.times, files.data})
         fmt::print("{}\n", file.string());
     return static_cast<int>(ExitCode::Success);

@@ -15,19 +15,45 @@ namespace {
 
 using Settings = std::vector<std::string>;
 
+// What makes a method better, and dearer: the fineness of its grids, paths, or samples along a pixel's side.
+enum class StepsOf { Grid, Paths, Samples };
+
 struct BuiltIn {
     std::string name;
     Settings settings;
-    bool path = false;
+    StepsOf steps = StepsOf::Grid;
 };
 
+// Virtual blue noise lighting with other choices in some places.
+BuiltIn by_virtual_lights(const std::string& name, const Settings& choices) {
+    BuiltIn method{name, {"method=lighting_grid"}, StepsOf::Samples};
+    for (const std::string& choice : choices)
+        method.settings.push_back("virtual_lights." + choice);
+    return method;
+}
+
+std::vector<BuiltIn> make_built_ins() {
+    return {{"lighting_grid", {"method=lighting_grid"}, StepsOf::Grid},
+            {"path", {"method=path"}, StepsOf::Paths},
+            {"path_plain",
+             {"method=path", "tracing.emission=collision", "tracing.light_sampling=false",
+              "tracing.free_flight=null_collision"},
+             StepsOf::Paths},
+            by_virtual_lights("vbnl", {}),
+            by_virtual_lights("vbnl_resampled", {"sampling=resampled"}),
+            by_virtual_lights("vbnl_power", {"sampling=power"}),
+            by_virtual_lights("vbnl_light_tree", {"sampling=light_tree"}),
+            by_virtual_lights("vbnl_bsdf", {"sampling=bsdf"}),
+            by_virtual_lights("rich_vsl",
+                              {"placement=relaxed_light_paths", "kind=sphere", "sampling=power", "extension=false"}),
+            by_virtual_lights(
+                "vsl", {"placement=light_paths", "flux=own", "kind=sphere", "sampling=power", "extension=false"}),
+            by_virtual_lights(
+                "vpl", {"placement=light_paths", "flux=own", "kind=point", "sampling=power", "extension=false"})};
+}
+
 const std::vector<BuiltIn>& built_ins() {
-    static const std::vector<BuiltIn> all = {{"lighting_grid", {"method=lighting_grid"}, false},
-                                             {"path", {"method=path"}, true},
-                                             {"path_plain",
-                                              {"method=path", "tracing.emission=collision",
-                                               "tracing.light_sampling=false", "tracing.free_flight=null_collision"},
-                                              true}};
+    static const std::vector<BuiltIn> all = make_built_ins();
     return all;
 }
 
@@ -42,6 +68,7 @@ const std::vector<Settings>& grid_ladder() {
 }
 
 const std::vector<std::string> kPathBudgets = {"4", "16", "64", "256"};
+const std::vector<std::string> kSidesOfSamples = {"1", "2", "4", "8"};
 
 [[noreturn]] void refuse(const std::string& line) {
     throw Error(ExitCode::Usage, line);
@@ -94,7 +121,7 @@ Method parse_method(const std::string& text) {
     const std::vector<std::string> parts = split(text);
     const bool named = parts[0].find('=') != std::string::npos;
     const BuiltIn& base = built_in(named ? value_of(parts[0]) : parts[0], text);
-    Method method{named ? key_of(parts[0]) : text, base.name, base.settings, {}, base.path, false};
+    Method method{named ? key_of(parts[0]) : text, base.name, base.settings, {}, base.steps == StepsOf::Paths, false};
     if (method.label.empty() || method.label.find(':') != std::string::npos)
         refuse(fmt::format("--methods {}: a label is not empty and holds no colon", text));
     for (std::size_t i = 1; i < parts.size(); ++i) {
@@ -157,6 +184,14 @@ std::vector<MethodStep> grid_steps(const std::optional<std::vector<std::string>>
                                grid_ladder().size(), text));
         add(number - 1);
     }
+    return steps;
+}
+
+// Samples along a pixel's side.
+std::vector<MethodStep> sample_steps(const std::vector<std::string>& sides) {
+    std::vector<MethodStep> steps(sides.size());
+    for (std::size_t i = 0; i < sides.size(); ++i)
+        steps[i] = {fmt::format("{0} x {0} spp", sides[i]), {"camera.samples_per_axis=" + sides[i]}};
     return steps;
 }
 
@@ -247,6 +282,18 @@ void check_labels(const std::vector<Method>& methods, const Choices& choices) {
         check(label, "--ladder");
 }
 
+std::vector<MethodStep> built_in_steps(const std::optional<std::vector<std::string>>& budgets, const Method& method) {
+    switch (built_in(method.base, method.label).steps) {
+        case StepsOf::Paths:
+            return path_steps(budgets, method);
+        case StepsOf::Samples:
+            return sample_steps(budgets.value_or(kSidesOfSamples));
+        case StepsOf::Grid:
+            break;
+    }
+    return grid_steps(budgets, method);
+}
+
 void add_steps(Method& method, const Choices& choices) {
     const auto ladder = choices.ladders.find(method.label);
     const auto own = choices.budgets.find(method.label), common = choices.budgets.find("");
@@ -258,7 +305,7 @@ void add_steps(Method& method, const Choices& choices) {
     if (ladder != choices.ladders.end())
         method.steps = ladder_steps(ladder->second, method);
     else
-        method.steps = method.unbiased ? path_steps(budgets, method) : grid_steps(budgets, method);
+        method.steps = built_in_steps(budgets, method);
     // More samples, or more time, and nothing else that changes.
     method.averages = method.unbiased && (ladder == choices.ladders.end() ||
                                           std::all_of(ladder->second.begin(), ladder->second.end(),

@@ -115,6 +115,31 @@ std::vector<std::string> table_row(const Report& report, const MethodResult& res
     return row;
 }
 
+// Seconds of the stages of that name [s].
+double seconds_in(const MeasuredRun& run, const std::string& stage) {
+    double seconds = 0.0;
+    for (const StageCost& cost : run.statistics.stages)
+        seconds += cost.name == stage ? cost.seconds : 0.0;
+    return seconds;
+}
+
+std::vector<std::string> surface_row(const Report& report, const MethodResult& result, const MeasuredRun& run) {
+    const auto percent = [&](const std::string& layer) {
+        const std::optional<double> error = headline_error(report, run, layer);
+        return error ? fmt::format("{:.3g} %", 100.0 * *error) : "-";
+    };
+    const auto mean = run.errors.find("SS");
+    return {result.method.label,
+            run.step.label,
+            fmt::format("{:.2f}", seconds_in(run, "virtual lights")),
+            fmt::format("{:.2f}", seconds_in(run, "camera")),
+            fmt::format("{:.2f}", run.cost.wall_seconds),
+            fmt::format("{:.2f}", run.cost.cpu_seconds),
+            percent("SS"),
+            mean == run.errors.end() ? "-" : fmt::format("{:+.2f} %", 100.0 * mean->second.differences.mean),
+            percent("")};
+}
+
 std::string aligned(const std::vector<std::vector<std::string>>& rows) {
     std::vector<std::size_t> widths(rows.front().size());
     for (const auto& row : rows)
@@ -151,6 +176,20 @@ std::string times_csv(const Report& report) {
         for (const Clock clock : {Clock::Wall, Clock::Cpu})
             add_times(report, layer, clock, csv);
     return csv;
+}
+
+std::string surface_table(const Report& report) {
+    if (std::find(report.layers.begin(), report.layers.end(), "SS") == report.layers.end())
+        return "";
+    std::vector<std::vector<std::string>> rows = {
+        {"method", "step", "prepare s", "shade s", "wall s", "CPU s", "SS error", "SS mean", "beauty error"}};
+    for (const MethodResult& result : report.methods)
+        for (const MeasuredRun& run : result.runs)
+            rows.push_back(surface_row(report, result, run));
+    return "light from surfaces on surfaces (SS): rRMSE, and relative error of the mean; prepare: virtual lights; "
+           "shade: "
+           "camera and all cells\n" +
+           aligned(rows);
 }
 
 std::string times_table(const Report& report) {

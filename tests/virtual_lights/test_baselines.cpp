@@ -1,0 +1,323 @@
+// The kinds of virtual lights that others use: what they lose, what they keep, and that all ways of asking agree.
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "room.h"
+
+namespace brisance {
+namespace {
+
+using namespace testing;
+
+constexpr LightSampling kByLights[] = {LightSampling::Power, LightSampling::LightTree, LightSampling::Resampled,
+                                       LightSampling::All};
+
+// Floor and ceiling 2 m apart, without walls, and a lamp under the ceiling that shines down. Whatever surfaces send
+// each other travels 2 m and more: no light is near a place that it lights, the cosine over the squared distance is 1/4
+// per m^2 at most.
+SceneSettings two_plates() {
+    SceneSettings scene = coloured_room();
+    const QuickQuad floor = scene.quads[2], ceiling = scene.quads[3], lamp = scene.quads.back();
+    scene.quads = {floor, ceiling, lamp};
+    return scene;
+}
+
+SceneSettings glossy_room() {
+    SceneSettings scene = coloured_room();
+    scene.quads[2].material = rough_metal(Rgb(0.9f, 0.7f, 0.4f), 0.4f);  // floor
+    return scene;
+}
+
+VirtualLightSettings asked_by(LightSampling sampling, VirtualLightKind kind) {
+    VirtualLightSettings settings = few_lights();
+    settings.sampling = sampling;
+    settings.kind = kind;
+    settings.extension = false;
+    return settings;
+}
+
+VirtualLightSettings of_photons(VirtualLightKind kind, LightSampling sampling = LightSampling::Power) {
+    VirtualLightSettings settings = asked_by(sampling, kind);
+    settings.placement = LightPlacement::LightPaths;
+    settings.flux = LightFlux::Own;
+    return settings;
+}
+
+struct Mean {
+    double value = 0.0, error = 0.0;
+};
+
+Mean by_lights(const Room& room, const VirtualLightSettings& settings, std::uint64_t per_batch) {
+    const VirtualLights lights = room.lights(settings);
+    const Estimate e = estimate(1, per_batch, [&](const dvec3& place, Rng& rng, double* out) {
+        out[0] = luminance(room.by_lights(lights, place.x, place.y, rng));
+    });
+    return {e.mean[0], e.error[0]};
+}
+
+Mean by_paths(const Room& room) {
+    const Estimate e = estimate(1, 512, [&](const dvec3& place, Rng& rng, double* out) {
+        out[0] = luminance(room.by_paths(place.x, place.y, rng));
+    });
+    return {e.mean[0], e.error[0]};
+}
+
+// Over independent sets of lights: their own noise is in the error.
+Mean over_sets_of_lights(const Room& room, VirtualLightSettings settings) {
+    constexpr int kSets = 48, kSamples = 4096;
+    double sum = 0.0, squares = 0.0;
+    for (int set = 0; set < kSets; ++set) {
+        settings.seed = static_cast<std::uint32_t>(set);
+        const VirtualLights lights = room.lights(settings);
+        double mean = 0.0;
+        for (std::uint64_t i = 0; i < kSamples; ++i) {
+            Rng rng(Stream::Path, static_cast<std::uint64_t>(set), i);
+            const double x = rng.next_double(), y = rng.next_double();
+            mean += luminance(room.by_lights(lights, x, y, rng)) / kSamples;
+        }
+        sum += mean;
+        squares += mean * mean;
+    }
+    const double mean = sum / kSets;
+    return {mean, std::sqrt(std::max(0.0, squares / kSets - mean * mean) / (kSets - 1.0))};
+}
+
+void expect_same(const Mean& ours, const Mean& theirs, double allowed, const std::string& what) {
+    EXPECT_NEAR(ours.value, theirs.value, allowed * theirs.value + kSigmas * std::hypot(ours.error, theirs.error))
+        << what;
+    EXPECT_LT(ours.error, 0.03 * theirs.value) << what << ": not sampled enough";
+}
+
+// What a bound that is nowhere reached takes is nothing: instant radiosity is unbiased.
+TEST(PlainPoints, WithoutBoundAreUnbiased) {
+    const Room room(two_plates());
+    VirtualLightSettings settings = of_photons(VirtualLightKind::Point);
+    settings.point_bound = 1e9;
+    expect_same(over_sets_of_lights(room, settings), by_paths(room), 0.0, "points");
+}
+
+// Half of what the nearest lights send may pass: at 2 m a quarter over m^2 is what there is.
+TEST(PlainPoints, LoseWhatTheirBoundTakes) {
+    const Room room(two_plates());
+    VirtualLightSettings settings = of_photons(VirtualLightKind::Point);
+    settings.point_bound = 0.05;
+    const Mean bounded = over_sets_of_lights(room, settings), truth = by_paths(room);
+    EXPECT_LT(bounded.value + kSigmas * bounded.error, 0.8 * truth.value);
+    EXPECT_GT(bounded.value, 0.2 * truth.value);
+}
+
+// In a room with corners the loss is what falls in the last decimetres: less for a larger bound.
+TEST(PlainPoints, LoseLessWithALargerBound) {
+    const Room room(coloured_room());
+    const Mean truth = by_paths(room);
+    double before = 0.0;
+    for (const double bound : {0.3, 3.0, 30.0}) {
+        VirtualLightSettings settings = of_photons(VirtualLightKind::Point);
+        settings.point_bound = bound;
+        const Mean bounded = over_sets_of_lights(room, settings);
+        EXPECT_LT(bounded.value, truth.value + kSigmas * bounded.error) << bound;
+        EXPECT_GT(bounded.value, before) << bound;
+        before = bounded.value;
+    }
+    EXPECT_GT(before, 0.9 * truth.value);
+}
+
+// A ball of 0.15 m spreads what it sends over directions two metres off: about r^2 / d^2, less than 2 %; over the edge
+// of the plate no surface is missing, as it is the sender that is widened.
+TEST(PlainSpheres, KeepTheirEnergy) {
+    const Room room(two_plates());
+    expect_same(over_sets_of_lights(room, of_photons(VirtualLightKind::Sphere)), by_paths(room), 0.02, "spheres");
+}
+
+TEST(PlainLights, AreAboutAsManyAsAsked) {
+    const Room room(coloured_room());
+    const VirtualLights lights = room.lights(of_photons(VirtualLightKind::Point));
+    EXPECT_NEAR(double(lights.lights().size()), 500.0, 75.0);
+    double flux = 0.0;
+    for (const VirtualLight& light : lights.lights())
+        flux += luminance(lights.flux(light));
+    // Reflected is what arrived, times colours between 0.1 and 0.7.
+    EXPECT_GT(flux, 0.1 * lights.report().photons.shared);
+    EXPECT_LT(flux, 0.7 * lights.report().photons.shared);
+}
+
+// All kinds, all places, all ways of asking: the path tracer's mean, with 2 % for blur and 10^5 photons' noise.
+TEST(EveryKind, AgreesWithPathsBetweenPlates) {
+    const Room room(two_plates());
+    const Mean truth = by_paths(room);
+    for (const VirtualLightKind kind : {VirtualLightKind::Patch, VirtualLightKind::Sphere, VirtualLightKind::Point})
+        for (const LightPlacement placement : {LightPlacement::BlueNoise, LightPlacement::Random,
+                                               LightPlacement::LightPaths, LightPlacement::RelaxedLightPaths}) {
+            VirtualLightSettings settings = asked_by(LightSampling::Power, kind);
+            settings.placement = placement;
+            expect_same(by_lights(room, settings, 128), truth, 0.02,
+                        "kind " + std::to_string(int(kind)) + ", placement " + std::to_string(int(placement)));
+        }
+}
+
+// Of one set of lights in a room with corners, so that what agrees is the asking.
+void expect_one_mean(VirtualLightSettings settings, const SceneSettings& scene = glossy_room()) {
+    const Room room(scene);
+    settings.count = 60;
+    settings.sampling = LightSampling::All;
+    settings.point_bound = 3.0;
+    const Mean truth = by_lights(room, settings, 24);
+    for (const LightSampling sampling : kByLights) {
+        settings.sampling = sampling;
+        const bool all = sampling == LightSampling::All;
+        expect_same(by_lights(room, settings, all ? 24 : 256), truth, 0.0,
+                    "sampling " + std::to_string(int(sampling)) + " of kind " + std::to_string(int(settings.kind)));
+    }
+}
+
+TEST(EverySampling, HasOneMeanOfPatches) {
+    expect_one_mean(asked_by(LightSampling::All, VirtualLightKind::Patch), coloured_room());
+}
+
+TEST(EverySampling, HasOneMeanOfRichSpheres) {
+    VirtualLightSettings settings = asked_by(LightSampling::All, VirtualLightKind::Sphere);
+    settings.placement = LightPlacement::RelaxedLightPaths;
+    expect_one_mean(settings);
+}
+
+TEST(EverySampling, HasOneMeanOfRichPoints) {
+    expect_one_mean(asked_by(LightSampling::All, VirtualLightKind::Point));
+}
+
+TEST(EverySampling, HasOneMeanOfPlainSpheres) {
+    expect_one_mean(of_photons(VirtualLightKind::Sphere));
+}
+
+TEST(EverySampling, HasOneMeanOfPlainPoints) {
+    expect_one_mean(of_photons(VirtualLightKind::Point));
+}
+
+// Of one candidate resampling is asking by power; of any number the mean is the same.
+TEST(Resampling, HasOneMeanForAnyNumberOfCandidates) {
+    const Room room(glossy_room());
+    const Mean truth = by_lights(room, asked_by(LightSampling::Power, VirtualLightKind::Patch), 512);
+    for (const int candidates : {1, 2, 8, 64}) {
+        VirtualLightSettings settings = asked_by(LightSampling::Resampled, VirtualLightKind::Patch);
+        settings.resampling_candidates = candidates;
+        expect_same(by_lights(room, settings, candidates > 8 ? 64 : 256), truth, 0.0, std::to_string(candidates));
+    }
+}
+
+TEST(Resampling, OfManyCandidatesHasLessNoise) {
+    const Room room(two_plates());
+    VirtualLightSettings settings = asked_by(LightSampling::Resampled, VirtualLightKind::Sphere);
+    const auto error_of = [&](int candidates) {
+        settings.resampling_candidates = candidates;
+        return by_lights(room, settings, 64).error;
+    };
+    EXPECT_LT(error_of(32), 0.7 * error_of(1));
+}
+
+// One direction is of the cone alone; of sixteen some are of the floor's BSDF and some of a glossy light's.
+TEST(SphereSamples, OfAnyNumberHaveOneMean) {
+    const Room room(glossy_room());
+    for (VirtualLightSettings settings :
+         {of_photons(VirtualLightKind::Sphere), asked_by(LightSampling::Power, VirtualLightKind::Sphere)}) {
+        settings.sphere_samples = 1;
+        const Mean one = by_lights(room, settings, 512);
+        settings.sphere_samples = 16;
+        expect_same(by_lights(room, settings, 256), one, 0.0, std::to_string(int(settings.flux)));
+    }
+}
+
+// The lights and what some rays see of them, to the bit.
+std::vector<float> fingerprint(const VirtualLightSettings& settings, int threads) {
+    const ThreadLimit limit(threads);
+    const Room room(glossy_room());
+    const VirtualLights lights = room.lights(settings);
+    std::vector<float> out;
+    for (const VirtualLight& light : lights.lights())
+        for (const double x : {light.position.x, light.radius, light.area, light.power, light.intensity})
+            out.push_back(static_cast<float>(x));
+    for (std::uint64_t i = 0; i < 200; ++i) {
+        Rng rng(Stream::Path, i);
+        const double x = rng.next_double(), y = rng.next_double();
+        const Rgb seen = room.by_lights(lights, x, y, rng);
+        out.insert(out.end(), {seen.x, seen.y, seen.z});
+    }
+    return out;
+}
+
+TEST(Baselines, AreTheSameBitsOnAnyThreads) {
+    VirtualLightSettings rich = asked_by(LightSampling::Resampled, VirtualLightKind::Sphere);
+    rich.placement = LightPlacement::RelaxedLightPaths;
+    for (const VirtualLightSettings& settings :
+         {rich, of_photons(VirtualLightKind::Sphere, LightSampling::LightTree), of_photons(VirtualLightKind::Point)}) {
+        const std::vector<float> one = fingerprint(settings, 1);
+        EXPECT_GT(one.size(), 2000u);
+        EXPECT_EQ(one, fingerprint(settings, 2));
+        EXPECT_EQ(one, fingerprint(settings, 8));
+    }
+}
+
+// Nobody may take light from nowhere: no particle arrives, no light, no radiance.
+TEST(Baselines, InTheDarkOrWithoutSurfacesAreBlack) {
+    SceneSettings scene;
+    scene.lights.emplace_back();
+    const Room room(scene);
+    EXPECT_TRUE(room.lights(of_photons(VirtualLightKind::Point)).lights().empty());
+    SceneSettings black;
+    add_walls(black, dvec3(-1.0), dvec3(1.0), lambert(Rgb(0.0f)));
+    add_lamp(black, {-0.3, 0.0, -0.3}, {0.3, 0.0, 0.3}, 0.95, Rgb(10.0f));
+    const Room absorbing(black);
+    for (const VirtualLightKind kind : {VirtualLightKind::Point, VirtualLightKind::Sphere}) {
+        const VirtualLights lights = absorbing.lights(of_photons(kind, LightSampling::Resampled));
+        EXPECT_TRUE(lights.lights().empty());
+        Rng rng(Stream::Path, 0);
+        EXPECT_EQ(absorbing.by_lights(lights, 0.5, 0.5, rng), Rgb(0.0f));
+    }
+}
+
+TEST(Baselines, OfOneLightAreFinite) {
+    const Room room(coloured_room());
+    for (const LightSampling sampling : kByLights) {
+        VirtualLightSettings settings = asked_by(sampling, VirtualLightKind::Sphere);
+        settings.count = 1;
+        const VirtualLights lights = room.lights(settings);
+        for (const VirtualLight& light : lights.lights())
+            EXPECT_GT(light.radius, 0.0);
+        Rng rng(Stream::Path, 0);
+        EXPECT_TRUE(std::isfinite(room.by_lights(lights, 0.5, 0.9, rng).x));
+    }
+}
+
+TEST(Baselines, SaysWhatDoesNotGoTogether) {
+    const Room room(coloured_room());
+    const auto refused = [&](VirtualLightSettings settings, auto change, const std::string& word) {
+        change(settings);
+        try {
+            room.lights(settings);
+            ADD_FAILURE() << word;
+        } catch (const Error& error) {
+            const std::string line = error.what();
+            EXPECT_NE(line.find(word), std::string::npos) << line;
+            EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+        }
+    };
+    using S = VirtualLightSettings;
+    const S plain = of_photons(VirtualLightKind::Point),
+            rich = asked_by(LightSampling::Power, VirtualLightKind::Sphere);
+    refused(
+        plain, [](S& s) { s.placement = LightPlacement::BlueNoise; }, "light_paths");
+    refused(
+        plain, [](S& s) { s.kind = VirtualLightKind::Patch; }, "flux own");
+    refused(
+        plain, [](S& s) { s.sampling = LightSampling::Combined; }, "sampling");
+    refused(
+        rich, [](S& s) { s.extension = true; }, "extension");
+    refused(
+        rich, [](S& s) { s.sphere_neighbours = 0; }, "sphere_neighbours");
+    refused(
+        rich, [](S& s) { s.sphere_samples = 0; }, "sphere_samples");
+    refused(
+        rich, [](S& s) { s.resampling_candidates = 0; }, "resampling_candidates");
+}
+
+}  // namespace
+}  // namespace brisance
