@@ -18,7 +18,11 @@ enum class Stream : std::uint32_t {
     Points,
     LightCandidate,
     LightArea,
-    Photon
+    Photon,
+    RayLight,
+    RayLightRoulette,
+    RayLightPair,
+    RayLightSurface
 };
 
 // SplitMix64 (Steele, Lea, Flood 2014), keyed by identity.
