@@ -22,31 +22,23 @@ bool finite(const Rgb& c) {
     return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);
 }
 
-// Particles by number. Those of the fire come first.
+// Particles by number.
 class PhotonPaths {
 public:
     PhotonPaths(const DirectLight& scene, const BoundingBall& ball, std::size_t total, Stream stream,
                 std::uint32_t seed)
-        : scene_(scene), ball_(ball), stream_(stream), seed_(seed), total_(total) {
-        const double fire = scene.fire().empty() ? 0.0 : scene.fire().power(), all = emitted_power(scene, ball);
-        if (fire > 0.0 && fire == all)
-            from_fire_ = total_;
-        else if (fire > 0.0 && total_ > 1)
-            from_fire_ = std::clamp<std::uint64_t>(std::llround(fire / all * double(total_)), 1, total_ - 1);
-    }
+        : scene_(scene), particles_(scene, ball, total), stream_(stream), seed_(seed) {}
 
     // Calls meet(segment, power) wherever the particle meets a surface.
     template <class Meet>
     void trace(std::uint64_t index, PhotonReport& report, const Meet& meet) const {
         Rng rng(stream_, index, seed_);
-        const bool fire = index < from_fire_;
-        report.from_fire += fire;
+        report.from_fire += particles_.from_fire(index);
         ++report.photons;
-        const std::optional<EmittedParticle> particle =
-            fire ? scene_.fire().emit(rng) : scene_.surroundings()->emitters().emit(ball_.centre, ball_.radius, rng);
+        const std::optional<EmittedParticle> particle = particles_.emit(index, rng);
         if (!particle)
             return;
-        const Rgb power = particle->power / float(fire ? from_fire_ : total_ - from_fire_);
+        const Rgb power = particle->power;
         if (!finite(power) || !(largest(power) > 0.0f)) {
             report.not_finite += !finite(power);
             return;
@@ -84,10 +76,9 @@ private:
     }
 
     const DirectLight& scene_;
-    BoundingBall ball_;
+    Particles particles_;
     Stream stream_;
     std::uint32_t seed_;
-    std::uint64_t total_, from_fire_ = 0;
 };
 
 int material_of(const DirectLight& scene, const RaySegment& segment) {
@@ -149,33 +140,6 @@ void LightAccounts::add(std::size_t light, const dvec3& toward_source, const Rgb
 Rgb LightAccounts::read(std::size_t record) const {
     const std::int64_t* const sum = sums_.data() + 3 * record;
     return {float(double(sum[0]) * unit_), float(double(sum[1]) * unit_), float(double(sum[2]) * unit_)};
-}
-
-BoundingBall ball_around(const DirectLight& scene) {
-    dvec3 low(1e300), high(-1e300);
-    const auto include = [&](const dvec3& p) {
-        low = glm::min(low, p);
-        high = glm::max(high, p);
-    };
-    if (scene.surroundings())
-        for (const SceneMesh& mesh : scene.surroundings()->scene().meshes)
-            for (const vec3& p : mesh.positions)
-                include(dvec3(p));
-    const Medium& medium = scene.field().medium();
-    const BrickLattice& bricks = scene.field().bricks();
-    for (int corner = 0; corner < 8 && !bricks.empty(); ++corner) {
-        const ivec3 brick =
-            bricks.min_brick() + bricks.brick_extent() * ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
-        include(dvec3(medium.local_of_node(brick * BrickLattice::kSize)));
-    }
-    if (!(low.x <= high.x))
-        return {};
-    return {0.5 * (low + high), 0.5 * glm::length(high - low)};
-}
-
-double emitted_power(const DirectLight& scene, const BoundingBall& ball) {
-    return (scene.fire().empty() ? 0.0 : scene.fire().power()) +
-           (scene.has_emitters() ? scene.surroundings()->emitters().power(ball.radius) : 0.0);
 }
 
 PhotonArrivals photon_arrivals(const DirectLight& scene, std::size_t paths, Stream stream, std::uint32_t seed) {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "tracing/direct_light.h"
+#include "tracing/particles.h"
 #include "virtual_lights/candidates.h"
 #include "virtual_lights/cover.h"
 
@@ -45,16 +45,6 @@ private:
     std::vector<std::size_t> first_;  // record of a light: three sums each
     std::vector<std::int64_t> sums_;
 };
-
-// Where particles from infinity are aimed at.
-struct BoundingBall {
-    dvec3 centre{0.0};
-    double radius = 0.0;
-};
-BoundingBall ball_around(const DirectLight& scene);
-
-// Power that particles carry, luminance [W].
-double emitted_power(const DirectLight& scene, const BoundingBall& ball);
 
 // A particle on a surface that holds light.
 struct PhotonArrival {

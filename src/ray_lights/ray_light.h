@@ -1,0 +1,24 @@
+// A virtual ray light: a flight of a particle through the medium, whose light scatters all along it.
+#pragma once
+
+#include "ray_lights/pair_sampling.h"
+
+namespace brisance {
+
+struct RayLight {
+    Segment segment;
+    Rgb power{0.0f};         // at its start, over the number of particles [W]
+    bool dimmed = false;     // long: what arrives at v passed the smoke before it
+    double scattered = 0.0;  // luminance [W] that scatters along it, about: the optical depth times its power
+};
+
+// Who is lit: a ray of the camera through the medium, or a point of a surface.
+struct RayLightReceiver {
+    bool is_ray = true;
+    Segment ray;  // the part that is mostly seen
+    dvec3 point{0.0}, normal{0.0};
+    static RayLightReceiver along(const Segment& seen) { return {true, seen, {}, {}}; }
+    static RayLightReceiver at(const dvec3& point, const dvec3& normal) { return {false, {}, point, normal}; }
+};
+
+}  // namespace brisance

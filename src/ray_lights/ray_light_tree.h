@@ -1,0 +1,54 @@
+// A binary tree over ray lights that picks one of them for a camera ray or a surface point, about in proportion to what
+// it may send there, at a cost that grows like the logarithm of their number.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "ray_lights/ray_light.h"
+
+namespace brisance {
+
+// A box of ray lights, and the power that scatters in it.
+struct RayLightBounds {
+    dvec3 low{0.0}, high{0.0};
+    double scattered = 0.0;
+};
+RayLightBounds bounds_of(const RayLight& light);
+
+// About what the lights in the box send to the receiver: above zero wherever their power is. The ray's part is the
+// integral of the inverse square distance along it, kept finite by the size of the box.
+double importance(const RayLightBounds& box, const RayLightReceiver& receiver);
+
+class RayLightTree {
+public:
+    explicit RayLightTree(std::span<const RayLight> lights);
+    bool empty() const { return nodes_.empty(); }
+
+    struct Choice {
+        std::size_t light;
+        double probability;
+        int visited;  // nodes whose importance was asked
+    };
+    // From a number in [0, 1): neighbouring numbers choose neighbouring lights, so that they may be stratified.
+    std::optional<Choice> choose(const RayLightReceiver& receiver, double u) const;
+    // With which choose() picks that light.
+    double probability(const RayLightReceiver& receiver, std::size_t light) const;
+
+    std::uint64_t bytes() const { return nodes_.size() * sizeof(Node) + leaf_of_.size() * sizeof(std::uint32_t); }
+
+private:
+    struct Node {
+        RayLightBounds bounds;
+        std::uint32_t parent = 0, left = 0, right = 0;  // left == 0: a leaf of the light `right`
+    };
+    std::uint32_t build(std::span<const RayLightBounds> lights, std::span<std::uint32_t> order, std::uint32_t parent);
+    double share_of_left(const Node& node, const RayLightReceiver& receiver) const;
+
+    std::vector<Node> nodes_;
+    std::vector<std::uint32_t> leaf_of_;
+};
+
+}  // namespace brisance

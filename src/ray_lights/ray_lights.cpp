@@ -1,0 +1,157 @@
+#include "ray_lights/ray_lights.h"
+
+#include <cmath>
+
+namespace brisance {
+
+namespace {
+
+constexpr double kMostlySeen = 0.9;
+
+}  // namespace
+
+RayLightReceiver receiver_along(const SeenMedium& seen) {
+    Segment part = seen.segment();
+    part.length = seen.sample_flight(kMostlySeen);
+    return RayLightReceiver::along(part);
+}
+
+RayLights::RayLights(const DirectLight& scene, const RayLightSettings& settings, int bounces,
+                     std::span<const RayLightReceiver> receivers)
+    : scene_(scene),
+      settings_(settings),
+      lights_(keep_important(trace_ray_lights(scene, settings, bounces, report_), receivers,
+                             static_cast<std::size_t>(settings.count), settings.seed)),
+      tree_(lights_) {
+    report_.lights = lights_.size();
+}
+
+double RayLights::reaches_along(const RayLight& light, double v, Rng& rng) const {
+    return light.dimmed ? scene_.lines().transmittance({light.segment.start, light.segment.direction}, v, rng) : 1.0;
+}
+
+bool RayLights::occluded(const Ray& ray, double end) const {
+    return scene_.surroundings() && scene_.surroundings()->intersector().occluded(ray, end);
+}
+
+Rgb RayLights::pair(const SeenMedium& seen, const RayLight& light, Rng& rng) const {
+    const Segment& camera = seen.segment();
+    const double g = scene_.field().mean_cosine();
+    const PairDensity joint(camera, light.segment, g);
+    PairSample s;
+    if (rng.next_double() < 0.5) {
+        const std::optional<PairSample> drawn = joint.sample(rng);
+        if (!drawn)
+            return Rgb(0.0f);
+        s = *drawn;
+        s.pdf += seen.pdf_of_flight(s.u) * joint.on_light(s.u).pdf(s.v);
+    } else {
+        s.u = seen.sample_flight(rng.next_double());
+        const AngularDensity on_light = joint.on_light(s.u);
+        s.v = on_light.sample(rng);
+        s.pdf = joint.pdf(s.u, s.v) + seen.pdf_of_flight(s.u) * on_light.pdf(s.v);
+    }
+    s.pdf *= 0.5;
+    const Coefficients at_u = seen.coefficients(s.u);
+    const Coefficients at_v = RayProbe(scene_.field(), {light.segment.start, light.segment.direction}).at(s.v);
+    if (at_u.scattering == Rgb(0.0f) || at_v.scattering == Rgb(0.0f))
+        return Rgb(0.0f);
+    const dvec3 from = light.segment.at(s.v), way = camera.at(s.u) - from;
+    const double w = glm::length(way);
+    if (!(w > 0.0) || !(s.pdf > 0.0))
+        return Rgb(0.0f);
+    const Ray between{from, way / w};
+    if (occluded(between, w))
+        return Rgb(0.0f);
+    const double phases = phase_about(light.segment.direction, between.direction, g) *
+                          phase_about(between.direction, -camera.direction, g);
+    const double through =
+        seen.transmittance(s.u) * reaches_along(light, s.v, rng) * scene_.lines().transmittance(between, w, rng);
+    return light.power * at_u.scattering * at_v.scattering * float(phases * through / (w * w * s.pdf));
+}
+
+Rgb RayLights::to_surface(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer,
+                          const RayLight& light, Rng& rng) const {
+    const double g = scene_.field().mean_cosine();
+    const AngularDensity density(point.position, light.segment, {{-light.segment.direction, g}});
+    const double v = density.sample(rng);
+    const Coefficients at_v = RayProbe(scene_.field(), {light.segment.start, light.segment.direction}).at(v);
+    if (at_v.scattering == Rgb(0.0f))
+        return Rgb(0.0f);
+    const dvec3 place = light.segment.at(v), start = point.start_toward(place), way = place - start;
+    const double w = glm::length(way);
+    if (!(w > 0.0))
+        return Rgb(0.0f);
+    const Ray ray{start, way / w};
+    // Interpolated normals must not let light through the surface itself.
+    const auto same_side = [&](const dvec3& n) {
+        return glm::dot(n, ray.direction) * glm::dot(n, toward_viewer) > 0.0;
+    };
+    if (same_side(point.frame.normal) != same_side(point.geometric_normal))
+        return Rgb(0.0f);
+    const Rgb scattered = bsdf.evaluate(toward_viewer, ray.direction);
+    if (scattered == Rgb(0.0f) || occluded(ray, w))
+        return Rgb(0.0f);
+    const double through = reaches_along(light, v, rng) * scene_.lines().transmittance(ray, w, rng);
+    const double phase = phase_about(light.segment.direction, -ray.direction, g);
+    return light.power * at_v.scattering * scattered * float(phase * through / (w * w * density.pdf(v)));
+}
+
+Rgb RayLights::along_ray(const SeenMedium& seen, Rng& rng, RayLightCost* cost) const {
+    if (seen.empty() || tree_.empty())
+        return Rgb(0.0f);
+    const RayLightReceiver receiver = receiver_along(seen);
+    const double shift = rng.next_double();
+    Rgb sum(0.0f);
+    for (int i = 0; i < settings_.samples; ++i) {
+        const auto choice = tree_.choose(receiver, (i + shift) / settings_.samples);
+        if (!choice)
+            break;
+        sum += pair(seen, lights_[choice->light], rng) / float(choice->probability * settings_.samples);
+        if (cost) {
+            ++cost->pairs;
+            cost->visited += static_cast<std::uint64_t>(choice->visited);
+        }
+    }
+    return sum;
+}
+
+Rgb RayLights::at_surface(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer, Rng& rng,
+                          RayLightCost* cost) const {
+    if (tree_.empty())
+        return Rgb(0.0f);
+    const bool above = glm::dot(point.frame.normal, toward_viewer) >= 0.0;
+    const auto receiver = RayLightReceiver::at(point.position, above ? point.frame.normal : -point.frame.normal);
+    const double shift = rng.next_double();
+    Rgb sum(0.0f);
+    for (int i = 0; i < settings_.samples; ++i) {
+        const auto choice = tree_.choose(receiver, (i + shift) / settings_.samples);
+        if (!choice)
+            break;
+        sum += to_surface(point, bsdf, toward_viewer, lights_[choice->light], rng) /
+               float(choice->probability * settings_.samples);
+        if (cost) {
+            ++cost->pairs;
+            cost->visited += static_cast<std::uint64_t>(choice->visited);
+        }
+    }
+    return sum;
+}
+
+Rgb RayLights::along_ray_from_all(const SeenMedium& seen, Rng& rng) const {
+    Rgb sum(0.0f);
+    for (const RayLight& light : lights_)
+        if (!seen.empty())
+            sum += pair(seen, light, rng);
+    return sum;
+}
+
+Rgb RayLights::at_surface_from_all(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer,
+                                   Rng& rng) const {
+    Rgb sum(0.0f);
+    for (const RayLight& light : lights_)
+        sum += to_surface(point, bsdf, toward_viewer, light, rng);
+    return sum;
+}
+
+}  // namespace brisance

@@ -1,0 +1,65 @@
+// Virtual ray lights of a frame, and what they send along a ray of the camera and to a point of a surface (Novak,
+// Nowrouzezahrai, Dachsbacher, Jarosz, SIGGRAPH 2012): the cells MM and SM, unbiased, of surfaces what their BSDFs
+// without delta lobes scatter.
+//
+// Sent along a camera ray by one light of power P, with points u on the ray and v on the light, w apart:
+//   P * integral over u and v of  sigma_s(u) sigma_s(v) p(u) p(v) T(0, u) T(0, v) T(u, v) V(u, v) / w^2     [W/(m^2
+//   sr)]
+// T(0, v) is 1 for short lights, which end where their particle collided. One pair estimates it, drawn by one of two
+// densities which share it by the balance heuristic: the inverse square with both phase functions, and a flight along
+// the camera's ray with the same seen from where it collides.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "ray_lights/ray_light_tree.h"
+#include "ray_lights/seen_medium.h"
+#include "ray_lights/trace_ray_lights.h"
+
+namespace brisance {
+
+struct RayLightCost {
+    std::uint64_t pairs = 0;    // lights that were asked
+    std::uint64_t visited = 0;  // nodes of the tree
+};
+
+class RayLights {
+public:
+    // Traces, thins out and sorts the lights. Keeps a reference to the scene. `receivers`: what stands for all that the
+    // camera sees, for the roulette. `bounces` as of trace_ray_lights().
+    RayLights(const DirectLight& scene, const RayLightSettings& settings, int bounces,
+              std::span<const RayLightReceiver> receivers);
+
+    // MM along a ray of the camera whose medium was looked at [W/(m^2 sr)].
+    Rgb along_ray(const SeenMedium& seen, Rng& rng, RayLightCost* cost = nullptr) const;
+    // SM at a point of a surface by these of its lobes, in the direction of the viewer (unit) [W/(m^2 sr)].
+    Rgb at_surface(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer, Rng& rng,
+                   RayLightCost* cost = nullptr) const;
+
+    // The same from every light, one pair each: the check.
+    Rgb along_ray_from_all(const SeenMedium& seen, Rng& rng) const;
+    Rgb at_surface_from_all(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer, Rng& rng) const;
+
+    std::span<const RayLight> lights() const { return lights_; }
+    const RayLightReport& report() const { return report_; }
+    std::uint64_t bytes() const { return lights_.size() * sizeof(RayLight) + tree_.bytes(); }
+
+private:
+    Rgb pair(const SeenMedium& seen, const RayLight& light, Rng& rng) const;
+    Rgb to_surface(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer, const RayLight& light,
+                   Rng& rng) const;
+    double reaches_along(const RayLight& light, double v, Rng& rng) const;
+    bool occluded(const Ray& ray, double end) const;
+
+    const DirectLight& scene_;
+    RayLightSettings settings_;
+    RayLightReport report_;
+    std::vector<RayLight> lights_;
+    RayLightTree tree_;
+};
+
+// The part of a ray that shows nine tenths of what is seen of its medium.
+RayLightReceiver receiver_along(const SeenMedium& seen);
+
+}  // namespace brisance
