@@ -1,4 +1,4 @@
-// A virtual ray light: a flight of a particle through the medium, whose light scatters all along it.
+// A virtual ray light: a flight of a particle through the medium, or a piece of one, whose light scatters all along it.
 #pragma once
 
 #include "ray_lights/pair_sampling.h"
@@ -7,8 +7,8 @@ namespace brisance {
 
 struct RayLight {
     Segment segment;
-    Rgb power{0.0f};         // at its start, over the number of particles [W]
-    bool dimmed = false;     // long: what arrives at v passed the smoke before it
+    Rgb power{0.0f};         // that arrives at its start, over the number of particles [W]
+    bool dimmed = false;     // of a long flight: what arrives at v passed the smoke from the start to there
     double scattered = 0.0;  // luminance [W] that scatters along it, about: the optical depth times its power
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace brisance {
 
@@ -11,37 +12,77 @@ dvec3 middle(const RayLightBounds& b) {
     return 0.5 * (b.low + b.high);
 }
 
-// The integral of 1 / (distance^2 + size^2) along the segment, as seen from a point.
-double seen_along(const Segment& ray, const dvec3& from, double size) {
-    const dvec3 way = from - ray.start;
-    const double along = glm::dot(way, ray.direction);
-    const double height = std::sqrt(std::max(glm::dot(way, way) - along * along, 0.0) + size * size);
-    const double h = std::max(height, 1e-12 * std::max(ray.length, 1e-280));
-    return std::atan2(h * ray.length, h * h + along * (along - ray.length)) / h;
-}
-
 // Lights below the horizon of the box's middle may still be above that of the surface: they keep a part.
 constexpr double kBelowHorizon = 0.05;
+// Boxes are no sharper than this in their directions, so that none is left out that might shine after all.
+constexpr double kSharpest = 0.9;
+// Directions from a box to a ray at which the phase functions are asked.
+constexpr int kDirections = 4;
+
+// The phase function of a box's lights toward a direction, where the box is seen under an angle whose half has that
+// cosine. The mean cosine of light that was turned twice is the product of both.
+double blurred_phase(const RayLightBounds& box, const dvec3& toward, double g, double half_angle_cosine) {
+    const double length = glm::length(box.heading);
+    if (!(length > 0.0))
+        return 1.0 / (4.0 * std::numbers::pi);
+    return phase_about(box.heading / length, toward, std::clamp(g * length * half_angle_cosine, -kSharpest, kSharpest));
+}
+
+double along_ray(const RayLightBounds& box, const Segment& ray, double g) {
+    const dvec3 from = middle(box), way = ray.start - from;
+    const double size = 0.25 * glm::length(box.high - box.low), begin = glm::dot(way, ray.direction);
+    const dvec3 across = way - begin * ray.direction;
+    const double floor = 1e-12 * std::max(ray.length, 1e-280);
+    const double height = std::max(std::sqrt(glm::dot(across, across) + size * size), floor);
+    // The integral of 1 / (distance^2 + size^2) is an angle over the height.
+    const double angle = std::atan2(height * ray.length, height * height + begin * (begin + ray.length));
+    if (g == 0.0)
+        return angle / height;
+    const double first = std::atan2(begin, height), half_angle_cosine = std::sqrt(1.0 - std::pow(size / height, 2));
+    const dvec3 up = across / height;
+    double phases = 0.0;
+    for (int i = 0; i < kDirections; ++i) {
+        const double a = first + (i + 0.5) / kDirections * angle;
+        dvec3 toward = std::cos(a) * up + std::sin(a) * ray.direction;
+        const double length = glm::length(toward);
+        toward = length > 0.0 ? toward / length : -ray.direction;
+        const double at_u = std::clamp(g * half_angle_cosine, -kSharpest, kSharpest);
+        phases += blurred_phase(box, toward, g, half_angle_cosine) * phase_about(toward, -ray.direction, at_u);
+    }
+    return phases / kDirections * angle / height;
+}
+
+double at_point(const RayLightBounds& box, const dvec3& point, const dvec3& normal, double g) {
+    const dvec3 way = middle(box) - point;
+    const double radius = 0.5 * glm::length(box.high - box.low), distance2 = glm::dot(way, way);
+    const double softened2 = std::max(distance2 + 0.25 * radius * radius, 1e-280);
+    const double cosine = std::clamp((glm::dot(way, normal) + radius) / std::sqrt(softened2), kBelowHorizon, 1.0);
+    double phase = 1.0;
+    if (g != 0.0 && distance2 > 0.0)
+        phase = blurred_phase(box, -way / std::sqrt(distance2), g, std::sqrt(distance2 / softened2));
+    return phase * cosine / softened2;
+}
 
 }  // namespace
 
 RayLightBounds bounds_of(const RayLight& light) {
     const dvec3 a = light.segment.start, b = light.segment.at(light.segment.length);
-    return {glm::min(a, b), glm::max(a, b), light.scattered};
+    return {glm::min(a, b), glm::max(a, b), light.scattered, light.segment.direction};
 }
 
-double importance(const RayLightBounds& box, const RayLightReceiver& receiver) {
-    const dvec3 centre = middle(box);
-    const double radius = 0.5 * glm::length(box.high - box.low);
-    if (receiver.is_ray)
-        return box.scattered * seen_along(receiver.ray, centre, 0.5 * radius);
-    const dvec3 way = centre - receiver.point;
-    const double distance2 = std::max({glm::dot(way, way), 0.25 * radius * radius, 1e-280});
-    const double cosine = (glm::dot(way, receiver.normal) + radius) / std::sqrt(distance2);
-    return box.scattered * std::clamp(cosine, kBelowHorizon, 1.0) / distance2;
+RayLightBounds united(const RayLightBounds& a, const RayLightBounds& b) {
+    const double all = a.scattered + b.scattered;
+    const dvec3 heading = all > 0.0 ? (a.scattered / all) * a.heading + (b.scattered / all) * b.heading : dvec3(0.0);
+    return {glm::min(a.low, b.low), glm::max(a.high, b.high), all, heading};
 }
 
-RayLightTree::RayLightTree(std::span<const RayLight> lights) : leaf_of_(lights.size()) {
+double importance(const RayLightBounds& box, const RayLightReceiver& receiver, double g) {
+    return box.scattered *
+           (receiver.is_ray ? along_ray(box, receiver.ray, g) : at_point(box, receiver.point, receiver.normal, g));
+}
+
+RayLightTree::RayLightTree(std::span<const RayLight> lights, double mean_cosine)
+    : mean_cosine_(mean_cosine), leaf_of_(lights.size()) {
     if (lights.empty())
         return;
     std::vector<RayLightBounds> bounds;
@@ -67,8 +108,7 @@ std::uint32_t RayLightTree::build(std::span<const RayLightBounds> lights, std::s
     RayLightBounds all = lights[order[0]];
     dvec3 low = middle(all), high = low;
     for (const std::uint32_t i : order.subspan(1)) {
-        all = {glm::min(all.low, lights[i].low), glm::max(all.high, lights[i].high),
-               all.scattered + lights[i].scattered};
+        all = united(all, lights[i]);
         low = glm::min(low, middle(lights[i]));
         high = glm::max(high, middle(lights[i]));
     }
@@ -90,8 +130,8 @@ std::uint32_t RayLightTree::build(std::span<const RayLightBounds> lights, std::s
 
 // Below 0: there is no light.
 double RayLightTree::share_of_left(const Node& node, const RayLightReceiver& receiver) const {
-    const double left = importance(nodes_[node.left].bounds, receiver);
-    const double right = importance(nodes_[node.right].bounds, receiver);
+    const double left = importance(nodes_[node.left].bounds, receiver, mean_cosine_);
+    const double right = importance(nodes_[node.right].bounds, receiver, mean_cosine_);
     return left + right > 0.0 ? left / (left + right) : -1.0;
 }
 

@@ -11,20 +11,23 @@
 
 namespace brisance {
 
-// A box of ray lights, and the power that scatters in it.
+// A box of ray lights, the power that scatters in it, and where it goes.
 struct RayLightBounds {
     dvec3 low{0.0}, high{0.0};
     double scattered = 0.0;
+    dvec3 heading{0.0};  // mean of the lights' directions by power, between 0 (all over) and 1 long
 };
 RayLightBounds bounds_of(const RayLight& light);
+RayLightBounds united(const RayLightBounds& a, const RayLightBounds& b);
 
 // About what the lights in the box send to the receiver: above zero wherever their power is. The ray's part is the
-// integral of the inverse square distance along it, kept finite by the size of the box.
-double importance(const RayLightBounds& box, const RayLightReceiver& receiver);
+// integral of the inverse square distance along it, kept finite by the size of the box. Phase functions count by their
+// value for the mean heading, blurred by the spread of headings and by the size of the box.
+double importance(const RayLightBounds& box, const RayLightReceiver& receiver, double mean_cosine);
 
 class RayLightTree {
 public:
-    explicit RayLightTree(std::span<const RayLight> lights);
+    RayLightTree(std::span<const RayLight> lights, double mean_cosine);
     bool empty() const { return nodes_.empty(); }
 
     struct Choice {
@@ -47,6 +50,7 @@ private:
     std::uint32_t build(std::span<const RayLightBounds> lights, std::span<std::uint32_t> order, std::uint32_t parent);
     double share_of_left(const Node& node, const RayLightReceiver& receiver) const;
 
+    double mean_cosine_;
     std::vector<Node> nodes_;
     std::vector<std::uint32_t> leaf_of_;
 };

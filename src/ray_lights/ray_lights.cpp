@@ -21,8 +21,8 @@ RayLights::RayLights(const DirectLight& scene, const RayLightSettings& settings,
     : scene_(scene),
       settings_(settings),
       lights_(keep_important(trace_ray_lights(scene, settings, bounces, report_), receivers,
-                             static_cast<std::size_t>(settings.count), settings.seed)),
-      tree_(lights_) {
+                             static_cast<std::size_t>(settings.count), scene.field().mean_cosine(), settings.seed)),
+      tree_(lights_, scene.field().mean_cosine()) {
     report_.lights = lights_.size();
 }
 

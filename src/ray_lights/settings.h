@@ -15,9 +15,9 @@ enum class RayLength {
 
 struct RayLightSettings {
     ScatteringMethod method = ScatteringMethod::LightingGrid;
-    int paths = 16384;  // particles that are followed
-    int count = 16384;  // lights that are kept, on average
-    int samples = 4;    // lights that a camera ray, or a point of a surface, asks
+    int paths = 16384;   // particles that are followed
+    int count = 131072;  // pieces of rays that are kept, on average
+    int samples = 4;     // lights that a camera ray, or a point of a surface, asks
     RayLength length = RayLength::Short;
     std::uint32_t seed = 0;
 };

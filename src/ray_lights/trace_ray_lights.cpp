@@ -18,31 +18,70 @@ bool finite(const Rgb& c) {
     return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);
 }
 
-// The light of a flight from the ray's origin to `end`, or as far as the medium goes.
-void leave_light(const DirectLight& scene, const Ray& ray, double end, const Rgb& power, bool dimmed,
-                 std::vector<RayLight>& lights) {
-    const LatticeRay inside = scene.field().enter(ray, end);
-    if (inside.empty())
-        return;
-    RayLight light;
-    light.segment = {ray.origin + inside.begin * ray.direction, ray.direction, inside.end - inside.begin};
-    const double depth = optical_depth(scene.field(), {light.segment.start, ray.direction}, light.segment.length);
-    light.power = power;
-    light.dimmed = dimmed;
-    light.scattered = luminance(power) * (dimmed ? -std::expm1(-depth) : depth);
-    if (light.scattered > 0.0)
-        lights.push_back(light);
-}
+// Lights are cut into pieces of this part of the medium's diagonal: a long one would be near every receiver, and the
+// tree could not tell who asks for which of its ends. Pieces of a ray light are ray lights.
+constexpr double kLongestPiece = 1.0 / 24.0;
+
+class Flights {
+public:
+    Flights(const DirectLight& scene, RayLength length) : scene_(scene), long_(length == RayLength::Long) {
+        const Medium& medium = scene.field().medium();
+        const dvec3 nodes(scene.field().bricks().brick_extent() * BrickLattice::kSize);
+        longest_ = kLongestPiece * glm::length(dmat3(medium.world_from_index) * nodes);
+    }
+    bool are_long() const { return long_; }
+
+    // The light of a flight from the ray's origin to `end`, where there is smoke.
+    void leave_light(const Ray& ray, double end, const Rgb& power, std::vector<RayLight>& lights) const {
+        double depth = 0.0, from = 0.0, to = -1.0;
+        const auto leave = [&] {
+            const int pieces = std::max(1, static_cast<int>(std::ceil((to - from) / longest_)));
+            for (int i = 0; to > from && i < pieces; ++i)
+                leave_piece(ray, std::lerp(from, to, double(i) / pieces), std::lerp(from, to, (i + 1.0) / pieces),
+                            power, depth, lights);
+        };
+        walk_bricks(scene_.field().bricks(), scene_.field().enter(ray, end), [&](const CellSegment& brick) {
+            if (scene_.field().majorant(brick.brick) <= 0.0f)
+                return true;
+            if (to < brick.begin * (1.0 - 1e-12)) {
+                leave();
+                from = brick.begin;
+            }
+            to = brick.end;
+            return true;
+        });
+        leave();
+    }
+
+private:
+    void leave_piece(const Ray& ray, double from, double to, const Rgb& power, double& depth,
+                     std::vector<RayLight>& lights) const {
+        RayLight light;
+        light.segment = {ray.origin + from * ray.direction, ray.direction, to - from};
+        const double own = optical_depth(scene_.field(), {light.segment.start, ray.direction}, light.segment.length);
+        light.power = long_ ? power * float(std::exp(-depth)) : power;
+        light.dimmed = long_;
+        light.scattered = luminance(light.power) * (long_ ? -std::expm1(-own) : own);
+        depth += own;
+        if (light.scattered > 0.0)
+            lights.push_back(light);
+    }
+
+    const DirectLight& scene_;
+    bool long_;
+    double longest_ = 0.0;  // piece [m]
+};
 
 // One particle. What is absorbed ends the path by roulette: powers stay about equal.
-void follow(const DirectLight& scene, Ray ray, Rgb power, RayLength length, int bounces, Rng& rng,
-            std::vector<RayLight>& lights) {
+void follow(const DirectLight& scene, const Flights& flights, Ray ray, Rgb power, int bounces, Rng& rng,
+            std::uint64_t& count, std::vector<RayLight>& lights) {
     // Scatterings before this flight; there are two more after it.
     for (int before = 0; bounces < 0 || before + 2 <= bounces; ++before) {
         const RaySegment segment = scene.segment_along(ray);
         const std::optional<Collision> collision = null_collision_flight(scene.field(), ray, segment.end, rng);
-        const bool ends = collision && length == RayLength::Short;
-        leave_light(scene, ray, ends ? collision->distance : segment.end, power, length == RayLength::Long, lights);
+        const bool ends = collision && !flights.are_long();
+        flights.leave_light(ray, ends ? collision->distance : segment.end, power, lights);
+        ++count;
         if (!collision && !segment.point)
             return;
         const Scatterer place = collision ? scene.in_smoke(ray, *collision) : Scatterer(*segment.point, ray.direction);
@@ -61,6 +100,7 @@ void follow(const DirectLight& scene, Ray ray, Rgb power, RayLength length, int 
 
 void add(RayLightReport& to, const RayLightReport& r) {
     to.paths += r.paths;
+    to.flights += r.flights;
     to.not_finite += r.not_finite;
     to.emitted += r.emitted;
 }
@@ -87,6 +127,7 @@ std::vector<RayLight> trace_ray_lights(const DirectLight& scene, const RayLightS
                                        RayLightReport& report) {
     const auto total = static_cast<std::size_t>(settings.paths);
     const Particles particles(scene, ball_around(scene), total);
+    const Flights flights(scene, settings.length);
     struct Part {
         std::vector<RayLight> lights;
         RayLightReport report;
@@ -105,7 +146,7 @@ std::vector<RayLight> trace_ray_lights(const DirectLight& scene, const RayLightS
                 continue;
             }
             part.report.emitted += luminance(particle->power);
-            follow(scene, particle->ray, particle->power, settings.length, bounces, rng, part.lights);
+            follow(scene, flights, particle->ray, particle->power, bounces, rng, part.report.flights, part.lights);
         }
     });
     std::vector<RayLight> lights;
@@ -113,12 +154,12 @@ std::vector<RayLight> trace_ray_lights(const DirectLight& scene, const RayLightS
         lights.insert(lights.end(), part.lights.begin(), part.lights.end());
         add(report, part.report);
     }
-    report.flights = report.lights = lights.size();
+    report.pieces = report.lights = lights.size();
     return lights;
 }
 
 std::vector<RayLight> keep_important(std::vector<RayLight> lights, std::span<const RayLightReceiver> receivers,
-                                     std::size_t count, std::uint32_t seed) {
+                                     std::size_t count, double mean_cosine, std::uint32_t seed) {
     if (lights.size() <= count)
         return lights;
     std::vector<double> arriving(lights.size(), 0.0);
@@ -127,7 +168,7 @@ std::vector<RayLight> keep_important(std::vector<RayLight> lights, std::span<con
         [&](std::size_t i) {
             const RayLightBounds box = bounds_of(lights[i]);
             for (const RayLightReceiver& receiver : receivers)
-                arriving[i] += importance(box, receiver);
+                arriving[i] += importance(box, receiver, mean_cosine);
         },
         kBlock);
     double all_arriving = 0.0, all_power = 0.0;

@@ -17,9 +17,10 @@
 namespace brisance {
 
 struct RayLightReport {
-    std::uint64_t paths = 0, flights = 0, lights = 0;  // particles; their flights through the medium; those kept
-    std::uint64_t not_finite = 0;                      // left out
-    double emitted = 0.0;                              // by the particles that were drawn, luminance [W]
+    std::uint64_t paths = 0, flights = 0;  // particles, and their flights
+    std::uint64_t pieces = 0, lights = 0;  // ray lights they were cut into, and those kept
+    std::uint64_t not_finite = 0;          // left out
+    double emitted = 0.0;                  // by the particles that were drawn, luminance [W]
 };
 
 // `bounces`: the most scatterings of a path, the one where the ray's light arrives among them; -1: all.
@@ -31,6 +32,6 @@ std::vector<RayLight> trace_ray_lights(const DirectLight& scene, const RayLightS
 // Iterative Importance Sampling of Virtual Point Lights, Eurographics 2010). A tenth of the probability is by power
 // alone, for what no receiver stands for. Nothing to do where there are no more than `count`.
 std::vector<RayLight> keep_important(std::vector<RayLight> lights, std::span<const RayLightReceiver> receivers,
-                                     std::size_t count, std::uint32_t seed);
+                                     std::size_t count, double mean_cosine, std::uint32_t seed);
 
 }  // namespace brisance
