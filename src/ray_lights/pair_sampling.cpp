@@ -120,8 +120,7 @@ InverseDistanceDensity::InverseDistanceDensity(const Segment& ray, const Segment
     uniform_ = !(range_ >= kUniformRange);
 }
 
-double InverseDistanceDensity::sample(Rng& rng) const {
-    const double xi = rng.next_double();
+double InverseDistanceDensity::place(double xi) const {
     if (uniform_)
         return xi * length_;
     return std::clamp(closest_ + height_ * std::sinh(begin_ + xi * range_) / sine_, 0.0, length_);

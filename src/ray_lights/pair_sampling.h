@@ -69,7 +69,8 @@ private:
 class InverseDistanceDensity {
 public:
     InverseDistanceDensity(const Segment& ray, const Segment& other);
-    double sample(Rng& rng) const;
+    double place(double xi) const;  // where that part of the density lies before [m]
+    double sample(Rng& rng) const { return place(rng.next_double()); }
     double pdf(double t) const;
 
 private:

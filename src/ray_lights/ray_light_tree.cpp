@@ -17,7 +17,7 @@ constexpr double kBelowHorizon = 0.05;
 // Boxes are no sharper than this in their directions, so that none is left out that might shine after all.
 constexpr double kSharpest = 0.9;
 // Directions from a box to a ray at which the phase functions are asked.
-constexpr int kDirections = 4;
+constexpr int kDirections = 2;
 
 // The phase function of a box's lights toward a direction, where the box is seen under an angle whose half has that
 // cosine. The mean cosine of light that was turned twice is the product of both.

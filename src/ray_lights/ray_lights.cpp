@@ -1,12 +1,17 @@
 #include "ray_lights/ray_lights.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace brisance {
 
 namespace {
 
-constexpr double kMostlySeen = 0.9;
+constexpr double kMostlySeen = 0.99;
+// Lights that the tree proposes for one that is asked.
+constexpr int kCandidates = 8;
+// What its few places may miss, a light is wanted for by its box.
+constexpr double kByItsBox = 0.1;
 
 }  // namespace
 
@@ -97,44 +102,100 @@ Rgb RayLights::to_surface(const SurfacePoint& point, const Bsdf& bsdf, const dve
     return light.power * at_v.scattering * scattered * float(phase * through / (w * w * density.pdf(v)));
 }
 
+// The double integral of a pair by a few of its places, smoke between the rays left out.
+double RayLights::wanted_along(const SeenMedium& seen, const RayLight& light) const {
+    constexpr int kPlaces = 3, kAngles = 4;
+    const Segment& ray = seen.segment();
+    const double g = scene_.field().mean_cosine(), tiny = 1e-9 * ray.length;
+    const InverseDistanceDensity near(light.segment, ray);
+    double sum = 0.0;
+    for (int i = 0; i < kPlaces; ++i) {
+        const double v = near.place((i + 0.5) / kPlaces);
+        const dvec3 way = ray.start - light.segment.at(v);
+        const double begin = glm::dot(way, ray.direction);
+        const dvec3 across = way - begin * ray.direction;
+        const double height = std::max(glm::length(across), tiny), first = std::atan2(begin, height);
+        const double angle = std::atan2(height * ray.length, height * height + begin * (begin + ray.length));
+        double shown = 0.0;
+        for (int k = 0; k < kAngles; ++k) {
+            const double a = first + (k + 0.5) / kAngles * angle, cosine = std::max(std::cos(a), 1e-12);
+            const double u = std::clamp(height * std::sin(a) / cosine - begin, 0.0, ray.length);
+            double here = seen.transmittance(u);
+            if (g != 0.0) {
+                const dvec3 toward = cosine / height * across + std::sin(a) * ray.direction;
+                here *= phase_about(light.segment.direction, toward, g) * phase_about(toward, -ray.direction, g);
+            }
+            shown += here;
+        }
+        sum += shown * angle / (height * near.pdf(v));
+    }
+    return sum * light.scattered / (kPlaces * kAngles * light.segment.length);
+}
+
+// By its middle, as the tree sees it.
+double RayLights::wanted_at(const dvec3& point, const dvec3& normal, const RayLight& light) const {
+    return importance(bounds_of(light), RayLightReceiver::at(point, normal), scene_.field().mean_cosine());
+}
+
+// Candidates are stratified over the tree; those of one sample lie apart.
+template <class Wanted>
+void RayLights::choose(const RayLightReceiver& receiver, const Wanted& wanted_of, Rng& rng, RayLightCost* cost,
+                       std::vector<Choice>& choices) const {
+    choices.clear();
+    if (tree_.empty())
+        return;
+    const int samples = settings_.samples, candidates = samples * kCandidates;
+    const double shift = rng.next_double();
+    for (int i = 0; i < samples; ++i) {
+        double sum = 0.0, target = 0.0;
+        const RayLight* chosen = nullptr;
+        for (int k = 0; k < kCandidates; ++k) {
+            const auto proposed = tree_.choose(receiver, (i + samples * k + shift) / candidates);
+            if (!proposed)
+                continue;
+            const RayLight& light = lights_[proposed->light];
+            const double wanted = wanted_of(light), weight = wanted / proposed->probability;
+            sum += weight;
+            if (weight > 0.0 && rng.next_double() * sum < weight) {
+                chosen = &light;
+                target = wanted;
+            }
+            if (cost)
+                cost->visited += static_cast<std::uint64_t>(proposed->visited);
+        }
+        if (chosen)
+            choices.push_back({chosen, sum / (target * kCandidates * samples)});
+    }
+    if (cost)
+        cost->pairs += choices.size();
+}
+
 Rgb RayLights::along_ray(const SeenMedium& seen, Rng& rng, RayLightCost* cost) const {
-    if (seen.empty() || tree_.empty())
+    thread_local std::vector<Choice> choices;
+    if (seen.empty())
         return Rgb(0.0f);
     const RayLightReceiver receiver = receiver_along(seen);
-    const double shift = rng.next_double();
+    const double g = scene_.field().mean_cosine();
+    const auto wanted = [&](const RayLight& light) {
+        return wanted_along(seen, light) + kByItsBox * importance(bounds_of(light), receiver, g);
+    };
+    choose(receiver, wanted, rng, cost, choices);
     Rgb sum(0.0f);
-    for (int i = 0; i < settings_.samples; ++i) {
-        const auto choice = tree_.choose(receiver, (i + shift) / settings_.samples);
-        if (!choice)
-            break;
-        sum += pair(seen, lights_[choice->light], rng) / float(choice->probability * settings_.samples);
-        if (cost) {
-            ++cost->pairs;
-            cost->visited += static_cast<std::uint64_t>(choice->visited);
-        }
-    }
+    for (const Choice& c : choices)
+        sum += float(c.weight) * pair(seen, *c.light, rng);
     return sum;
 }
 
 Rgb RayLights::at_surface(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer, Rng& rng,
                           RayLightCost* cost) const {
-    if (tree_.empty())
-        return Rgb(0.0f);
+    thread_local std::vector<Choice> choices;
     const bool above = glm::dot(point.frame.normal, toward_viewer) >= 0.0;
-    const auto receiver = RayLightReceiver::at(point.position, above ? point.frame.normal : -point.frame.normal);
-    const double shift = rng.next_double();
+    const dvec3 normal = above ? point.frame.normal : -point.frame.normal;
+    const auto wanted = [&](const RayLight& light) { return wanted_at(point.position, normal, light); };
+    choose(RayLightReceiver::at(point.position, normal), wanted, rng, cost, choices);
     Rgb sum(0.0f);
-    for (int i = 0; i < settings_.samples; ++i) {
-        const auto choice = tree_.choose(receiver, (i + shift) / settings_.samples);
-        if (!choice)
-            break;
-        sum += to_surface(point, bsdf, toward_viewer, lights_[choice->light], rng) /
-               float(choice->probability * settings_.samples);
-        if (cost) {
-            ++cost->pairs;
-            cost->visited += static_cast<std::uint64_t>(choice->visited);
-        }
-    }
+    for (const Choice& c : choices)
+        sum += float(c.weight) * to_surface(point, bsdf, toward_viewer, *c.light, rng);
     return sum;
 }
 

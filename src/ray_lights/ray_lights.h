@@ -8,6 +8,9 @@
 // T(0, v) is 1 for short lights, which end where their particle collided. One pair estimates it, drawn by one of two
 // densities which share it by the balance heuristic: the inverse square with both phase functions, and a flight along
 // the camera's ray with the same seen from where it collides.
+// Which lights are asked: the tree, whose boxes cannot know which of their lights almost touches the ray, proposes a
+// few for every one that is asked, and one of them is resampled by its own place (Talbot, Cline, Egbert, Importance
+// Resampling for Global Illumination, EGSR 2005).
 #pragma once
 
 #include <span>
@@ -46,6 +49,16 @@ public:
     std::uint64_t bytes() const { return lights_.size() * sizeof(RayLight) + tree_.bytes(); }
 
 private:
+    struct Choice {
+        const RayLight* light;
+        double weight;  // over the number of samples
+    };
+    // `wanted`: about what a light sends, for resampling.
+    template <class Wanted>
+    void choose(const RayLightReceiver& receiver, const Wanted& wanted, Rng& rng, RayLightCost* cost,
+                std::vector<Choice>& choices) const;
+    double wanted_along(const SeenMedium& seen, const RayLight& light) const;
+    double wanted_at(const dvec3& point, const dvec3& normal, const RayLight& light) const;
     Rgb pair(const SeenMedium& seen, const RayLight& light, Rng& rng) const;
     Rgb to_surface(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer, const RayLight& light,
                    Rng& rng) const;
@@ -59,7 +72,7 @@ private:
     RayLightTree tree_;
 };
 
-// The part of a ray that shows nine tenths of what is seen of its medium.
+// The part of a ray that shows almost all that is seen of its medium.
 RayLightReceiver receiver_along(const SeenMedium& seen);
 
 }  // namespace brisance
