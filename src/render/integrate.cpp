@@ -238,16 +238,23 @@ struct FoundSurface {
 
 RaySum look(const CellField& field, const Ray& ray, const PictureSettings& settings, SurfaceSample sample, float weight,
             std::vector<FoundSurface>& found) {
+    const auto integrated = [&](double end) {
+        RaySum sum = integrate(field, ray, settings.parts, end);
+        if (settings.light_rays)
+            sum.cells.at(Cell::MM) += settings.light_rays({sample.pixel, sample.number, ray}, end);
+        return sum;
+    };
+    constexpr double kNowhere = std::numeric_limits<double>::infinity();
     if (!settings.surroundings)
-        return integrate(field, ray, settings.parts);
+        return integrated(kNowhere);
     const Surroundings& set = *settings.surroundings;
     const std::optional<SurfaceHit> hit = set.intersector().first_hit(ray);
     if (!hit) {
-        RaySum sum = integrate(field, ray, settings.parts);
+        RaySum sum = integrated(kNowhere);
         sum.cells.at(Cell::A) += std::exp(-sum.depth) * set.emitters().background(ray.direction);
         return sum;
     }
-    RaySum sum = integrate(field, ray, settings.parts, hit->distance);
+    RaySum sum = integrated(hit->distance);
     const float through = std::exp(-sum.depth);
     const SurfacePoint point = surface_point(set.scene(), *hit, -ray.direction);
     sum.cells.at(Cell::A) += through * point.emission;

@@ -33,12 +33,23 @@ struct PointLighting {
 };
 using LightPoints = std::function<void(const std::vector<MarchPoint>& points, std::vector<PointLighting>& lighting)>;
 
+// A camera ray of a pixel.
+struct PixelRay {
+    std::uint32_t pixel;
+    std::uint32_t number;  // of the ray in its pixel
+    Ray ray;
+};
+
+// MM along a ray up to `end` [m], where the field holds none.
+using LightRays = std::function<Rgb(const PixelRay& ray, double end)>;
+
 struct PictureSettings {
     int samples_per_axis = 1;                                // anti-aliasing, along a pixel's side
     int parts = 2;                                           // of a cell's segment
     bool cells = true;                                       // layers per ledger cell, ...
     std::array<bool, kCells> layers = layers_of({Cell::V});  // ... of these cells
     const Surroundings* surroundings = nullptr;              // rays end at its surfaces
+    LightRays light_rays = {};                               // empty: the field holds MM
 
     static constexpr std::array<bool, kCells> layers_of(std::initializer_list<Cell> cells) {
         std::array<bool, kCells> layers{};

@@ -2,6 +2,35 @@
 
 namespace brisance {
 
+namespace {
+
+void add_ray_light_keys(std::vector<Key>& keys) {
+    keys.push_back(make_key(
+        "scattering.method",
+        "lighting_grid: hierarchies of scattered light; ray_lights: virtual ray lights, unbiased and noisy",
+        choice<ScatteringMethod>(
+            {{"lighting_grid", ScatteringMethod::LightingGrid}, {"ray_lights", ScatteringMethod::RayLights}}),
+        [](Shot & s) -> auto& { return s.ray_lights.method; }));
+    keys.push_back(make_key(
+        "ray_lights.paths", "particles whose flights through the smoke become ray lights", whole(1, 100000000),
+        [](Shot & s) -> auto& { return s.ray_lights.paths; }));
+    keys.push_back(make_key(
+        "ray_lights.count", "pieces of their flights that are kept, on average: the important ones",
+        whole(1, 100000000), [](Shot & s) -> auto& { return s.ray_lights.count; }));
+    keys.push_back(make_key(
+        "ray_lights.samples", "ray lights asked by every ray of the camera, and by every surface it meets",
+        whole(1, 65536), [](Shot & s) -> auto& { return s.ray_lights.samples; }));
+    keys.push_back(make_key(
+        "ray_lights.length", "short: to the particle's next collision; long: to where the smoke or a surface ends it",
+        choice<RayLength>({{"short", RayLength::Short}, {"long", RayLength::Long}}),
+        [](Shot & s) -> auto& { return s.ray_lights.length; }));
+    keys.push_back(make_key(
+        "ray_lights.seed", "another number gives other rays", whole(0, 2147483647),
+        [](Shot & s) -> auto& { return s.ray_lights.seed; }));
+}
+
+}  // namespace
+
 void add_lighting_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "lighting.alpha", "a light of level l serves up to about alpha spacings of its level: larger is more exact",
@@ -43,6 +72,7 @@ void add_lighting_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "scattering.alpha", "as lighting.alpha, for scattered light", real_float({1.0, 64.0}),
         [](Shot & s) -> auto& { return s.scattering.alpha; }));
+    add_ray_light_keys(keys);
 }
 
 }  // namespace brisance

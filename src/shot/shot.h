@@ -7,6 +7,7 @@
 #include "film/settings.h"
 #include "gathering/settings.h"
 #include "medium/settings.h"
+#include "ray_lights/settings.h"
 #include "render/camera_settings.h"
 #include "render/certify_settings.h"
 #include "scene/settings.h"
@@ -33,6 +34,7 @@ struct Shot {
     RenderMethod method = RenderMethod::LightingGrid;
     LightingSettings lighting;
     ScatteringSettings scattering;
+    RayLightSettings ray_lights;
     VirtualLightSettings virtual_lights;
     TracingSettings tracing;
     CertifySettings certify;
