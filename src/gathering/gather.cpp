@@ -128,7 +128,7 @@ public:
             Stopwatch watch;
             if (maps && !made)
                 build_shadow_maps(*field_.pyramid, level, *field_.weight, field_.escape, layout, first, count,
-                                  transmittance);
+                                  transmittance, field_.occluders);
             cost.map_seconds += watch.seconds();
             watch = Stopwatch();
             cost.evaluations += gather_batch(level, top, layout, first, count, transmittance.data());

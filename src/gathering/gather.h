@@ -45,7 +45,8 @@ struct LightField {
     const std::vector<float>* weight;       // per node: what the grid's centres are weighted by
     float alpha;
     LightingSettings settings;
-    ShadowMapCache* cache = nullptr;  // used by levels that fit the memory limit as a whole
+    ShadowMapCache* cache = nullptr;       // used by levels that fit the memory limit as a whole
+    const Occluders* occluders = nullptr;  // surfaces between lights and receivers
     // For receivers outside of the medium: per node, how likely its light is to get there. Null: receivers are inside.
     const std::vector<float>* escape = nullptr;
 };

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "medium/medium.h"
+#include "medium/occluders.h"
 
 namespace brisance {
 
@@ -36,6 +37,10 @@ public:
     const Medium& medium() const { return *medium_; }
     std::uint64_t bytes() const;
 
+    // Surfaces that stand in the medium and hold its light up; null (the default): none. Kept.
+    void set_occluders(const Occluders* occluders) { occluders_ = occluders; }
+    const Occluders* occluders() const { return occluders_; }
+
     // Optical depth between two local points [m], sampled on level 0 at steps of about half a voxel. Scalar; for checks
     // and few rays.
     float optical_depth(const vec3& from, const vec3& to) const;
@@ -52,6 +57,7 @@ private:
     static Packed pack(const BrickLattice& lattice, const std::vector<float>& nodes, const ivec3& reference_brick);
 
     const Medium* medium_;
+    const Occluders* occluders_ = nullptr;
     std::vector<BrickLattice> lattices_;
     std::vector<std::vector<float>> nodes_;
     std::vector<Packed> packed_;

@@ -1,6 +1,7 @@
 // One frame's participating medium: optical coefficients on one lattice, made for sampling.
 //
-// Everything lies on the lattice of the finest grid used; grids on other lattices are resampled onto it. Between nodes
+// Everything lies on the lattice of the finest grid used; grids on other lattices, and those of further volumes, are
+// resampled onto it. Between nodes
 // fields are trilinear, outside every brick they are zero. Two products make the light:
 //   emitted    j(x)   = extinction(x) * source(x) + emission(x)     [W/(m^3 sr)]
 //   scattered  s(x)   = extinction(x) * (albedo * fluence / 4 pi)(x)
@@ -13,6 +14,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -58,8 +60,17 @@ struct Medium {
     std::uint64_t bytes() const;
 };
 
-// Builds the medium of one frame. Grids that are present but empty, or cannot contribute, are reported through
-// `progress`; negative density and emission count as zero.
+// One volume of a frame. Keeps references.
+struct MediumPart {
+    const MediumGrids& grids;
+    const MediumSettings& settings;
+    bool half_voxel_shift = false;
+};
+
+// Builds the medium of one frame: the sum of all parts' coefficients, at least one of them, with the first one's phase
+// function. Grids that are present but empty, or cannot contribute, are reported through `progress`; negative density
+// and emission count as zero. Throws Error BadData without any grid, Temporary where lattices are too different.
+Medium build_medium(std::span<const MediumPart> parts, Progress& progress);
 Medium build_medium(const MediumGrids& grids, const MediumSettings& settings, bool half_voxel_shift,
                     Progress& progress);
 

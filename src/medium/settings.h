@@ -1,6 +1,7 @@
 // From grid values to optical coefficients.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -52,5 +53,17 @@ struct MediumSettings {
     FireSettings fire;
     ColourRole colour_role = ColourRole::Albedo;
 };
+
+// What a further volume has otherwise than the shot; its phase function is the shot's.
+struct MediumChanges {
+    std::optional<float> extinction_per_metre;
+    std::optional<Rgb> albedo;
+    std::optional<FireModel> model;
+    std::optional<float> strength, threshold;
+    std::optional<Rgb> colour;
+    std::optional<std::vector<RampStop>> ramp;
+};
+
+MediumSettings changed(MediumSettings settings, const MediumChanges& changes);
 
 }  // namespace brisance

@@ -103,7 +103,7 @@ FrameInput load_frame(const Shot& shot, const std::filesystem::path& volume, int
     std::optional<SceneCamera> of_file;
     if (!shot.camera_given && !shot.scene.files.empty())
         of_file = camera_of_files(shot, seconds);
-    if (volume.empty()) {
+    if (volume.empty() && shot.volumes.empty()) {
         dvec3 eye(0.0);
         if (shot.camera_given)
             eye = shot.camera.world_from_camera ? dvec3((*shot.camera.world_from_camera)[3]) : shot.camera.eye;
@@ -111,7 +111,7 @@ FrameInput load_frame(const Shot& shot, const std::filesystem::path& volume, int
             eye = dvec3(of_file->world_from_camera[3]);
         input.medium = empty_medium(eye);
     } else {
-        input.medium = load_medium(shot, volume, statistics, progress);
+        input.medium = load_medium(shot, volume, frame, statistics, progress);
     }
     if (!shot.scene.empty())
         input.surroundings = load_surroundings(shot, seconds, origin_of(input.medium), statistics, progress);

@@ -8,6 +8,7 @@
 #include "lights/voxel_lights.h"
 #include "medium/phase.h"
 #include "render/emitter_gather.h"
+#include "render/surface_occluders.h"
 
 namespace brisance {
 
@@ -94,6 +95,11 @@ Lighting::Lighting(const Shot& shot, const Plan& plan, const Medium& medium, con
       pyramid_(medium, ExtinctionPyramid::kMaxLevels),
       needed_(nodes_beside_extinction(medium)),
       depths_(pyramid_, kAimLevel) {
+    if (surroundings && surroundings->has_surfaces()) {
+        surfaces_ = std::make_unique<SurfaceOccluders>(surroundings->intersector());
+        if (surfaces_reach_into(surroundings->scene(), medium))
+            pyramid_.set_occluders(surfaces_.get());
+    }
     if (plan.directional)
         toward_camera_ = directions_to(medium, vec3(camera.eye_local()));
     Gathered first;
@@ -126,7 +132,8 @@ Gathered Lighting::light_from_surfaces(const PointLights& reflecting) {
     const LightingGrid grid = build_point_grid(medium_, reflecting, shot_.lighting.alpha);
     // Lights outside stand for themselves: no voxel has a share in them.
     const std::vector<float> no_weight(needed_.size(), 0.0f);
-    const LightField field{&pyramid_, nullptr, nullptr, &grid, &no_weight, shot_.lighting.alpha, shot_.lighting};
+    const LightField field{&pyramid_,      nullptr, nullptr,        &grid, &no_weight, shot_.lighting.alpha,
+                           shot_.lighting, nullptr, surfaces_.get()};
     std::vector<LevelCost> costs;
     Gathered g = gather_from_outside(field, request(), costs, progress_);
     prepare_interpolation(medium_.lattice, needed_, g);

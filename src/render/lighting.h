@@ -66,6 +66,7 @@ private:
     const Medium& medium_;
     Statistics& statistics_;
     Progress& progress_;
+    std::unique_ptr<Occluders> surfaces_;  // none: no surfaces
     ExtinctionPyramid pyramid_;
     std::vector<std::uint8_t> needed_;
     std::vector<vec3> toward_camera_;

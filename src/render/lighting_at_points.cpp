@@ -86,8 +86,10 @@ void Lighting::keep(KeptLights& lights, float alpha) {
         serve_outside(lights.lights, medium_, lights.escape);
     }
     lights.field = lights.lights.field(pyramid_, alpha, shot_.lighting, &lights.maps);
-    if (!marching())
+    if (!marching()) {
         lights.field.escape = &lights.escape;
+        lights.field.occluders = nullptr;  // surfaces aim at the lights themselves
+    }
     lights.bottom = bottom_level(lights.field);
     if (!lights_surfaces())
         return;

@@ -1,6 +1,7 @@
 #include "render/load_medium.h"
 
 #include "core/stopwatch.h"
+#include "volume/frame_path.h"
 #include "volume/mapping.h"
 
 namespace brisance {
@@ -9,48 +10,86 @@ namespace {
 
 constexpr std::uint64_t kGridMemory = std::uint64_t{16} << 30;
 
-MediumGrids read_grids(const Shot& shot, const std::filesystem::path& volume, const GridMapping& mapping,
-                       Progress& progress) {
-    const FireModel fire = shot.medium.fire.model;
-    const bool black_body = fire == FireModel::Blackbody || fire == FireModel::NormalizedBlackbody;
+// One file, and what the shot says of it.
+struct VolumePart {
+    std::filesystem::path file;
+    VolumeSettings settings;
+    MediumSettings look;
+    MediumGrids grids;
+};
+
+std::vector<VolumePart> parts_of(const Shot& shot, const std::filesystem::path& volume, int frame) {
+    std::vector<VolumePart> parts;
+    if (!volume.empty())
+        parts.push_back({volume, shot.volume, shot.medium, {}});
+    const std::vector<std::filesystem::path> files = further_files(shot, frame);
+    for (std::size_t i = 0; i < files.size(); ++i)
+        parts.push_back({files[i], shot.volumes[i].volume, changed(shot.medium, shot.volumes[i].changes), {}});
+    return parts;
+}
+
+MediumGrids read_grids(const VolumePart& part, const GridMapping& mapping, Progress& progress) {
+    const FireSettings& fire = part.look.fire;
+    const bool black_body = fire.model == FireModel::Blackbody || fire.model == FireModel::NormalizedBlackbody;
+    const dmat4 world_from_file = placement(part.settings, part.file.string());
     const auto read = [&](const std::optional<GridChoice>& choice, bool used) -> std::optional<BlockGrid> {
         if (!choice || !used)
             return std::nullopt;
-        return read_grid(volume, choice->name, choice->index, kGridMemory);
+        BlockGrid grid = read_grid(part.file, choice->name, choice->index, kGridMemory);
+        grid.info.world_from_index = world_from_file * grid.info.world_from_index;
+        return grid;
     };
     MediumGrids grids;
     grids.density = read(mapping.density, true);
     grids.temperature = read(mapping.temperature, black_body);
-    grids.flame = read(mapping.flame, fire == FireModel::Flame || (black_body && shot.medium.fire.modulate_by_flame));
+    grids.flame = read(mapping.flame, fire.model == FireModel::Flame || (black_body && fire.modulate_by_flame));
     grids.colour = read(mapping.colour, true);
     if (!mapping.density)
         progress.notice("no density grid: nothing absorbs or scatters");
     if (black_body && !mapping.temperature)
         progress.warning("no-temperature", "fire.model asks for a temperature grid and none is mapped: nothing emits");
-    if (fire == FireModel::Flame && !mapping.flame)
+    if (fire.model == FireModel::Flame && !mapping.flame)
         progress.warning("no-flame", "fire.model is flame and no flame grid is mapped: nothing emits");
     return grids;
 }
 
-}  // namespace
-
-Medium load_medium(const Shot& shot, const std::filesystem::path& volume, Statistics& statistics, Progress& progress) {
-    progress.stage("reading " + volume.filename().string());
-    Stopwatch watch;
-    const GridMapping mapping = map_grids(list_grids(volume), shot.volume, volume.string());
+void read_part(VolumePart& part, Statistics& statistics, Progress& progress) {
+    progress.stage("reading " + part.file.filename().string());
+    const Stopwatch watch;
+    const GridMapping mapping = map_grids(list_grids(part.file), part.settings, part.file.string());
     progress.notice("grids: " + mapping.describe());
     for (const std::string& note : mapping.notes)
         progress.notice(note);
-    const MediumGrids grids = read_grids(shot, volume, mapping, progress);
+    part.grids = read_grids(part, mapping, progress);
     std::uint64_t bytes = 0;
-    for (const auto* g : {&grids.density, &grids.temperature, &grids.flame, &grids.colour})
+    for (const auto* g : {&part.grids.density, &part.grids.temperature, &part.grids.flame, &part.grids.colour})
         bytes += *g ? (*g)->values.size() * sizeof(float) : 0;
     statistics.stages.push_back(
-        {"reading", watch.seconds(), bytes, {{"file", volume.string()}, {"mapping", mapping.describe()}}});
+        {"reading", watch.seconds(), bytes, {{"file", part.file.string()}, {"mapping", mapping.describe()}}});
+}
 
+}  // namespace
+
+std::vector<std::filesystem::path> further_files(const Shot& shot, int frame) {
+    std::vector<std::filesystem::path> files;
+    for (const FurtherVolume& v : shot.volumes) {
+        const std::string pattern = (shot.folder / v.volume.file).string();
+        files.push_back(has_frame_token(pattern) ? resolve_frame(pattern, frame) : std::filesystem::path(pattern));
+    }
+    return files;
+}
+
+Medium load_medium(const Shot& shot, const std::filesystem::path& volume, int frame, Statistics& statistics,
+                   Progress& progress) {
+    std::vector<VolumePart> parts = parts_of(shot, volume, frame);
+    std::vector<MediumPart> media;
+    for (VolumePart& part : parts) {
+        read_part(part, statistics, progress);
+        media.push_back({part.grids, part.look, part.settings.half_voxel_shift});
+    }
     progress.stage("medium");
-    watch = Stopwatch();
-    Medium medium = build_medium(grids, shot.medium, shot.volume.half_voxel_shift, progress);
+    const Stopwatch watch;
+    Medium medium = build_medium(media, progress);
     std::size_t nodes = 0;
     for (float e : medium.extinction)
         nodes += e > 0.0f;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "core/progress.h"
 #include "medium/medium.h"
@@ -10,7 +11,12 @@
 
 namespace brisance {
 
-// Reads the grids that the shot needs, and no others. Throws Error.
-Medium load_medium(const Shot& shot, const std::filesystem::path& volume, Statistics& statistics, Progress& progress);
+// Where the shot's further volumes are for a frame, in their order. Throws Error MissingInput for a missing frame.
+std::vector<std::filesystem::path> further_files(const Shot& shot, int frame);
+
+// Reads the grids that the shot needs, and no others; `volume` may be empty, then there are only further volumes.
+// Throws Error.
+Medium load_medium(const Shot& shot, const std::filesystem::path& volume, int frame, Statistics& statistics,
+                   Progress& progress);
 
 }  // namespace brisance

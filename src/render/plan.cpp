@@ -60,7 +60,7 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
         skip("row S, column S", "no surfaces in the shot");
     if (!plan.emitters)
         skip("column A", "no analytic lights in the shot");
-    if (medium.lattice.empty() && shot.volume.file.empty()) {
+    if (medium.lattice.empty() && shot.volume.file.empty() && shot.volumes.empty()) {
         skip("column V, row M, column M", "no volume in the shot");
         return plan;
     }

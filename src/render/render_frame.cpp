@@ -14,6 +14,7 @@
 #include "render/frame_input.h"
 #include "render/integrate.h"
 #include "render/lighting.h"
+#include "render/load_medium.h"
 #include "render/plan.h"
 #include "render/reflected_lights.h"
 #include "render/surface_shader.h"
@@ -276,6 +277,8 @@ std::string checkpoint_key(Shot shot, const std::filesystem::path& volume, int f
         return std::to_string(std::filesystem::file_size(file, ignored));
     };
     std::string key = to_json(shot) + volume.filename().string() + " " + size_of(volume) + " " + std::to_string(frame);
+    for (const std::filesystem::path& file : further_files(shot, frame))
+        key.append(" ").append(size_of(file));
     for (const SceneFile& file : shot.scene.files)
         key.append(" ").append(size_of(shot.folder / file.file));
     return key;

@@ -48,8 +48,12 @@ float exit_distance(const NodeBox& box, const vec3& p, const vec3& direction) {
 // Rays to the edge of the medium, packed for the marching kernel.
 class ExitRays {
 public:
-    ExitRays(const ExtinctionPyramid& pyramid, std::size_t count)
-        : pyramid_(pyramid), box_(bounding_box(pyramid.medium())), padded_((count + 15) / 16 * 16) {
+    // `occluders`: where rays end too, or null.
+    ExitRays(const ExtinctionPyramid& pyramid, const Occluders* occluders, std::size_t count)
+        : pyramid_(pyramid),
+          occluders_(occluders),
+          box_(bounding_box(pyramid.medium())),
+          padded_((count + 15) / 16 * 16) {
         for (auto* a : {&begin_, &end_})
             for (auto& v : *a)
                 v.assign(padded_, 0.0f);
@@ -59,6 +63,9 @@ public:
     void set(std::size_t i, const vec3& from_nodes, const vec3& direction_local) {
         const vec3 nodes = pyramid_.medium().index_from_local * direction_local;
         metres_[i] = exit_distance(box_, from_nodes, nodes);
+        if (occluders_)
+            metres_[i] =
+                occluders_->first_hit(pyramid_.medium().local_from_index * from_nodes, direction_local, metres_[i]);
         for (int a = 0; a < 3; ++a) {
             begin_[a][i] = from_nodes[a];
             end_[a][i] = from_nodes[a] + nodes[a] * metres_[i];
@@ -81,6 +88,7 @@ public:
 
 private:
     const ExtinctionPyramid& pyramid_;
+    const Occluders* occluders_;
     NodeBox box_;
     std::size_t padded_;
     std::vector<float> begin_[3], end_[3], metres_;
@@ -125,10 +133,11 @@ Rgb directional_part(const float* coefficients, const std::array<float, kShMomen
     return sum;
 }
 
-// One ray from each of the picked nodes to the edge of the medium: the part that collides.
-std::vector<float> collisions_from(const ExtinctionPyramid& pyramid, const std::vector<std::size_t>& picks) {
+// One ray from each of the picked nodes to the edge of the medium or a surface: the part that collides.
+std::vector<float> collisions_from(const ExtinctionPyramid& pyramid, const Occluders* occluders,
+                                   const std::vector<std::size_t>& picks) {
     const Medium& medium = pyramid.medium();
-    ExitRays exits(pyramid, picks.size());
+    ExitRays exits(pyramid, occluders, picks.size());
     parallel_for(
         picks.size(),
         [&](std::size_t r) {
@@ -157,7 +166,7 @@ CollisionEstimate estimate_collisions(const ExtinctionPyramid& pyramid, const st
     const std::vector<std::size_t> picks = pick_nodes(luminances(intensity), rays);
     if (picks.empty())
         return estimate;
-    const std::vector<float> collided = collisions_from(pyramid, picks);
+    const std::vector<float> collided = collisions_from(pyramid, pyramid.occluders(), picks);
     dvec3 hit[kBatches] = {}, emitted[kBatches] = {};
     for (std::size_t r = 0; r < picks.size(); ++r) {
         const std::size_t i = picks[r];
@@ -199,7 +208,7 @@ EscapeEstimate estimate_escape(const ExtinctionPyramid& pyramid, const std::vect
     const std::vector<std::size_t> picks = pick_nodes(density, rays);
     if (picks.size() < kBatches)
         return {};
-    const std::vector<float> collided = collisions_from(pyramid, picks);
+    const std::vector<float> collided = collisions_from(pyramid, nullptr, picks);
     dvec3 batches[kBatches] = {};
     for (std::size_t r = 0; r < picks.size(); ++r) {
         const double ray_stands_for = all / density[picks[r]] / double(picks.size());
@@ -228,7 +237,7 @@ std::vector<float> collision_probabilities(const ExtinctionPyramid& pyramid, con
     const auto start_of = [](std::size_t d, std::size_t starts) { return d * 27 % starts; };
     for (std::size_t first = 0; first < vertices.size(); first += batch) {
         const std::size_t count = std::min(batch, vertices.size() - first);
-        ExitRays exits(pyramid, count * directions);
+        ExitRays exits(pyramid, pyramid.occluders(), count * directions);
         std::vector<vec3> way(count * directions);
         parallel_blocks(count, 256, [&](std::size_t begin, std::size_t end) {
             FootprintPicker picker(medium, medium.extinction, level);

@@ -23,9 +23,9 @@ struct CollisionEstimate {
 CollisionEstimate estimate_collisions(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& intensity,
                                       std::span<const float> directional, std::size_t rays);
 
-// Power that leaves the medium, over 4 pi [W/sr], by as many rays, which start more often where `likelihood` (per node,
-// any positive guess of how much escapes there) is high: where all but little is swallowed, the estimate above knows
-// the little badly.
+// Power that would leave the medium without surfaces, over 4 pi [W/sr], by as many rays, which start more often where
+// `likelihood` (per node, any positive guess of how much escapes there) is high: where all but little is swallowed, the
+// estimate above knows the little badly.
 struct EscapeEstimate {
     dvec3 power{0.0};
     double standard_error = 0.0;  // of the luminance's, relative

@@ -154,6 +154,7 @@ ScatteredLight scattered_light(const Medium& medium, const Gathered& arriving, c
 CoarseOperator::CoarseOperator(const ExtinctionPyramid& fine, int level, const LightingSettings& lighting, float alpha)
     : level_(level), medium_(coarse_medium(fine, level)), lighting_(lighting), alpha_(alpha) {
     pyramid_ = std::make_unique<ExtinctionPyramid>(medium_, ExtinctionPyramid::kMaxLevels);
+    pyramid_->set_occluders(fine.occluders());
     unit_ = project_extinction_times(medium_, std::vector<Rgb>(medium_.extinction.size(), Rgb(1.0f)));
     weight_.resize(unit_.size());
     least_weight_.resize(unit_.size());
@@ -226,7 +227,8 @@ Gathered CoarseOperator::gather(const ScatteredLight& lights, std::vector<LevelC
                            &weight_,
                            alpha_,
                            lighting_,
-                           &maps_};
+                           &maps_,
+                           pyramid_->occluders()};
     std::vector<LevelCost> these;
     Gathered out = gather_at_nodes(field, {&mask_, nullptr, directional, medium_.mean_cosine}, these, progress);
     if (costs.empty())

@@ -224,7 +224,8 @@ LightField HierarchyLights::field(const ExtinctionPyramid& pyramid, float alpha,
             &weight,
             alpha,
             settings,
-            cache};
+            cache,
+            pyramid.occluders()};
 }
 
 HierarchyLights build_hierarchy(const Medium& medium, ScatteredLight light, int levels) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/up_axis.h"
 #include "scene/gltf_cameras.h"
 #include "scene/gltf_meshes.h"
 #include "scene/quick_shapes.h"
@@ -38,10 +39,7 @@ private:
 dmat4 world_from_gltf(const SceneFile& file) {
     if (file.up != 'y' && file.up != 'z')
         throw Error(ExitCode::Usage, fmt::format("{}: up is '{}', it may be y or z", file.file, file.up));
-    dmat4 up(1.0);
-    if (file.up == 'z')
-        up = dmat4({1.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 1.0, 0.0}, {0.0, -1.0, 0.0, 0.0}, {0.0, 0.0, 0.0, 1.0});
-    return file.world_from_file * up;
+    return file.world_from_file * turned_up(file.up);
 }
 
 // One file and where its nodes are.

@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "shadows/octahedral.h"
 #include "shadows/shadow_kernels.h"
+#include "shadows/surface_shadows.h"
 
 namespace brisance {
 
@@ -69,6 +70,7 @@ TexelTable texel_table(const Medium& medium, int resolution) {
 struct Starts {
     std::array<std::vector<float>, 3> offset;
     std::vector<float> weight;
+    bool picked = false;
 
     Starts() : weight(kStarts + 16, 1.0f) {
         for (auto& o : offset)
@@ -79,6 +81,14 @@ struct Starts {
         for (int a = 0; a < 3; ++a)
             offset[a][place] = way[a];
         weight[place] = w;
+        picked = true;
+    }
+    // Those of the light's voxels that were picked, local [m].
+    std::vector<vec3> places(const Medium& medium, const vec3& centre) const {
+        std::vector<vec3> out;
+        for (std::size_t k = 0; k < (picked ? kStarts : 0); ++k)
+            out.push_back(centre + medium.local_from_index * vec3(offset[0][k], offset[1][k], offset[2][k]));
+        return out;
     }
     void repeat_first() {
         for (auto* list : {&offset[0], &offset[1], &offset[2], &weight})
@@ -127,7 +137,7 @@ void place_with_border(const std::uint16_t* interior, const ShadowMapLayout& lay
 
 void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const NodeWeights& weights,
                        const NodeWeights* escape, const ShadowMapLayout& layout, std::size_t first, std::size_t count,
-                       std::vector<std::uint16_t>& maps) {
+                       std::vector<std::uint16_t>& maps, const Occluders* occluders) {
     const Medium& medium = pyramid.medium();
     const float far = layout.far_distance;
     std::vector<ShadowStep> near_steps, steps;
@@ -158,6 +168,9 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
                                     65535.0f / layout.range, interior.data());
             else
                 march_shadow_rays(mips.data(), near_steps, steps, centre, rays, layout.distances, interior.data());
+            if (occluders)
+                cut_at_surfaces(*occluders, {level.position[light], starts.places(medium, level.position[light])},
+                                layout, interior);
             place_with_border(interior.data(), layout, &maps[k * layout.stride()]);
         }
     });

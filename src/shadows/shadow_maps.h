@@ -41,9 +41,10 @@ struct ShadowMapLayout {
 
 // The maps of the lights [first, first + count) of `level`, one after another in `maps` (transmittance over range times
 // 65535). `weights`: of the voxels that a light stands for, per node of the medium's lattice. `escape`: where
-// layout.for_outside, how likely light from a node is to leave the medium.
+// layout.for_outside, how likely light from a node is to leave the medium. `occluders`: surfaces that light does not
+// pass, or null.
 void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const NodeWeights& weights,
                        const NodeWeights* escape, const ShadowMapLayout& layout, std::size_t first, std::size_t count,
-                       std::vector<std::uint16_t>& maps);
+                       std::vector<std::uint16_t>& maps, const Occluders* occluders = nullptr);
 
 }  // namespace brisance

@@ -85,7 +85,7 @@ void check_lights(const Given& given, const SceneSettings& scene) {
 }  // namespace
 
 void check_shot(const Shot& shot, const Given& given, const std::string& source) {
-    if (shot.volume.file.empty() && shot.scene.empty())
+    if (shot.volume.file.empty() && shot.volumes.empty() && shot.scene.empty())
         throw Error(ExitCode::Usage,
                     fmt::format("{}: volume.file is missing, and so is a scene: which file to render", source));
     check_lights(given, shot.scene);

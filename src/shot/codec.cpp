@@ -225,6 +225,17 @@ Codec<dmat4> matrix() {
             }};
 }
 
+Codec<char> up_axis() {
+    return choice<char>({{"y", 'y'}, {"z", 'z'}});
+}
+
+Codec<FireModel> fire_model() {
+    return choice<FireModel>({{"none", FireModel::None},
+                              {"flame", FireModel::Flame},
+                              {"blackbody", FireModel::Blackbody},
+                              {"blackbody_normalized", FireModel::NormalizedBlackbody}});
+}
+
 Codec<std::vector<RampStop>> ramp() {
     const Json stop = {{"type", "array"},
                        {"prefixItems", Json::array({number_schema(any_number()), rgb_schema(at_least(0.0))})},

@@ -60,6 +60,25 @@ Codec<vec2> pair_of(const Range& range);
 Codec<dmat4> matrix();                // 16 numbers, row after row
 Codec<std::vector<RampStop>> ramp();  // [[value, [r, g, b]], ...], values rising
 
+Codec<char> up_axis();  // 'y' or 'z'
+Codec<FireModel> fire_model();
+
+// A value that may be left open: null.
+template <class T>
+Codec<std::optional<T>> if_given(const Codec<T>& codec) {
+    Codec<std::optional<T>> result;
+    result.expected = codec.expected + ", or null";
+    result.schema = {{"anyOf", Json::array({codec.schema, Json{{"type", "null"}}})}};
+    result.read = [codec](const Json& json) -> std::optional<std::optional<T>> {
+        if (json.is_null())
+            return std::optional<T>();
+        std::optional<T> value = codec.read(json);
+        return value ? std::optional<std::optional<T>>(std::move(value)) : std::nullopt;
+    };
+    result.write = [codec](const std::optional<T>& value) -> Json { return value ? codec.write(*value) : Json(); };
+    return result;
+}
+
 // A float as the shortest decimal that means it, not as the double next to it.
 double plain(float value);
 

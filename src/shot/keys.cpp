@@ -54,7 +54,7 @@ const std::vector<Key>& shot_keys() {
 
 const std::vector<std::pair<std::string, std::string>>& shot_sections() {
     static const std::vector<std::pair<std::string, std::string>> sections = {
-        {"volume", "the OpenVDB file and its grids"},
+        {"volume", "the OpenVDB file, its grids and its place"},
         {"volume.grids", "which grid plays which role: \"name\" or \"name[index]\", null for automatic, \"\" for none"},
         {"smoke", "from density to optical coefficients"},
         {"fire", "what glows"},
@@ -70,38 +70,6 @@ const std::vector<std::pair<std::string, std::string>>& shot_sections() {
         {"output.layers", "layers of the EXR besides the beauty"},
     };
     return sections;
-}
-
-void add_volume_keys(std::vector<Key>& keys) {
-    keys.push_back(make_key(
-        "volume.file", "the .vdb file, relative to the shot's folder; frame tokens: ####, @@@, %04d, $F4, <frame04>",
-        text(false), [](Shot & s) -> auto& { return s.volume.file; }));
-    // A shot of surfaces alone, written down, must be read again.
-    keys.back().get = [get = keys.back().get](const Shot& shot) {
-        return shot.volume.file.empty() ? std::nullopt : get(shot);
-    };
-    keys.push_back(make_key(
-        "volume.preset", "how grids are recognised by name",
-        choice<MappingPreset>({{"auto", MappingPreset::Automatic},
-                               {"automatic", MappingPreset::Automatic},
-                               {"houdini", MappingPreset::Houdini},
-                               {"embergen", MappingPreset::EmberGen},
-                               {"mantaflow", MappingPreset::Mantaflow}}),
-        [](Shot & s) -> auto& { return s.volume.preset; }));
-    keys.push_back(make_key(
-        "volume.grids.density", "smoke", optional_text(), [](Shot & s) -> auto& { return s.volume.grids.density; }));
-    keys.push_back(make_key(
-        "volume.grids.temperature", "of black-body fire, mapped to kelvin by fire.temperature_*", optional_text(),
-        [](Shot & s) -> auto& { return s.volume.grids.temperature; }));
-    keys.push_back(make_key(
-        "volume.grids.flame", "intensity of the fire", optional_text(),
-        [](Shot & s) -> auto& { return s.volume.grids.flame; }));
-    keys.push_back(make_key(
-        "volume.grids.colour", "three channels; colour_role says of what", optional_text(),
-        [](Shot & s) -> auto& { return s.volume.grids.colour; }));
-    keys.push_back(make_key(
-        "volume.half_voxel_shift", "true: the sample of index i lies at i + 1/2 (Blender means this) instead of at i",
-        flag(), [](Shot & s) -> auto& { return s.volume.half_voxel_shift; }));
 }
 
 }  // namespace brisance

@@ -18,11 +18,7 @@ void add_smoke_keys(std::vector<Key>& keys) {
 void add_fire_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "fire.model", "flame: strength * (flame - threshold) * ramp; blackbody: Planck [W/(m^2 sr)]",
-        choice<FireModel>({{"none", FireModel::None},
-                           {"flame", FireModel::Flame},
-                           {"blackbody", FireModel::Blackbody},
-                           {"blackbody_normalized", FireModel::NormalizedBlackbody}}),
-        [](Shot & s) -> auto& { return s.medium.fire.model; }));
+        fire_model(), [](Shot & s) -> auto& { return s.medium.fire.model; }));
     keys.push_back(make_key(
         "fire.convention",
         "times_absorption: emission per metre is radiance times absorption; direct: whatever the density",

@@ -6,10 +6,6 @@ namespace {
 
 const Range kUnit{0.0, 1.0};
 
-Codec<char> up_axis() {
-    return choice<char>({{"y", 'y'}, {"z", 'z'}});
-}
-
 Codec<std::array<dvec3, 4>> corners() {
     const Codec<dvec3> corner = point();
     Codec<std::array<dvec3, 4>> codec;

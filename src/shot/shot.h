@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "film/settings.h"
 #include "gathering/settings.h"
@@ -22,10 +23,17 @@ enum class RenderMethod {
     Path           // the reference path tracer
 };
 
+// Its coefficients add to those of the shot's own volume.
+struct FurtherVolume {
+    VolumeSettings volume;
+    MediumChanges changes;
+};
+
 struct Shot {
     std::string name;
     std::filesystem::path folder;  // relative files of the shot are relative to this folder
     VolumeSettings volume;
+    std::vector<FurtherVolume> volumes;
     MediumSettings medium;
     SceneSettings scene;
     CameraSettings camera;

@@ -4,6 +4,8 @@
 #include <optional>
 #include <string>
 
+#include "core/vec.h"
+
 namespace brisance {
 
 enum class MappingPreset { Automatic, Houdini, EmberGen, Mantaflow };
@@ -21,6 +23,11 @@ struct VolumeSettings {
     MappingPreset preset = MappingPreset::Automatic;
     GridRoles grids;
     bool half_voxel_shift = false;  // true: the sample of index i lies at i + 1/2 (what Blender means)
+    char up = 'y';  // the world's axis that the file's y becomes: 'y' as it is, 'z': (x, y, z) -> (x, -z, y)
+    dmat4 world_from_file{1.0};  // affine; applied after `up`
 };
+
+// Both of them in one. Throws Error Usage, beginning with `where`, when the matrix is not affine or cannot be inverted.
+dmat4 placement(const VolumeSettings& settings, const std::string& where);
 
 }  // namespace brisance

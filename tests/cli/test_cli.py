@@ -178,6 +178,12 @@ class Volumes(Case):
             self.expect(65, "inspect", name, says=name)
         self.assertEqual(self.names(), ["a.json", "empty.vdb", "text.vdb"])
 
+    def test_further_volumes_are_found_missing_before_rendering(self):
+        self.write("a.json", json.dumps({"scene": {"spheres": [{"centre": [0, 0, 0], "radius": 1}]},
+                                         "volumes": [{"file": "dust_####.vdb"}]}))
+        self.expect(66, "render", "a.json", "-f", "1-2", says="dust_0001.vdb")
+        self.assertEqual(self.names(), ["a.json"])
+
     def test_folder_in_place_of_a_volume(self):
         (self.folder / "a.vdb").mkdir()
         self.assertIn(self.run_program("render", "a.vdb").returncode, (65, 66))

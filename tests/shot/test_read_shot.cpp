@@ -18,6 +18,27 @@ using testing::complaint_about;
 using testing::parsed;
 using testing::with;
 
+TEST(ReadShot, FurtherVolumesSayWhatIsOtherThanTheShot) {
+    const Shot shot = parsed(R"({
+        "volume": {"file": "burst.vdb", "up": "z"},
+        "smoke": {"extinction_per_metre": 20, "albedo": 0.5, "mean_cosine": 0.2},
+        "volumes": [{"file": "dust_####.vdb", "albedo": 0.9, "fire_model": "none", "grids": {"density": "dust"},
+                     "world_from_file": [1, 0, 0, 7, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}]
+    })");
+    EXPECT_EQ(shot.volume.up, 'z');
+    ASSERT_EQ(shot.volumes.size(), 1u);
+    const FurtherVolume& dust = shot.volumes[0];
+    EXPECT_EQ(dust.volume.file, "dust_####.vdb");
+    EXPECT_EQ(dust.volume.up, 'y');
+    EXPECT_EQ(dust.volume.grids.density, "dust");
+    EXPECT_EQ(dvec3(dust.volume.world_from_file[3]), dvec3(7, 0, 0));
+    const MediumSettings look = changed(shot.medium, dust.changes);
+    EXPECT_EQ(look.smoke.albedo, Rgb(0.9f));
+    EXPECT_EQ(look.smoke.extinction_per_metre, 20.0f);
+    EXPECT_EQ(look.fire.model, FireModel::None);
+    EXPECT_EQ(parsed(to_json(shot)).volumes[0].changes.albedo, Rgb(0.9f)) << "survives writing";
+}
+
 TEST(ReadShot, EveryKindOfValueArrives) {
     const Shot shot = parsed(R"({
         // a comment

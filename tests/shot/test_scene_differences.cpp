@@ -80,7 +80,7 @@ TEST(SceneDifferences, DamagedShotsAreAnError) {
 TEST(SceneDifferences, EveryKeyIsOfThePictureOrOfTheMethod) {
     for (const Key& key : shot_keys()) {
         const std::string section = key.path.substr(0, key.path.find('.'));
-        const bool picture = section == "volume" || section == "scene" || section == "smoke" || section == "fire" ||
+        const bool picture = section == "volume" || section == "volumes" || section == "scene" || section == "smoke" || section == "fire" ||
                              section == "colour_role" || key.path == "scattering.bounces" ||
                              (section == "camera" && key.path != "camera.samples_per_axis");
         EXPECT_EQ(key.affects == Affects::Picture, picture) << key.path;

@@ -10,6 +10,8 @@
 
 #include "core/error.h"
 #include "inspect.h"
+#include "render/load_medium.h"
+#include "volume/vdb_header.h"
 
 namespace brisance {
 namespace {
@@ -81,11 +83,15 @@ std::string volume_pattern(const Shot& shot) {
 }
 
 std::vector<FrameFile> resolve_frames(const Shot& shot, const std::optional<std::vector<int>>& asked) {
-    if (!shot.volume.file.empty())
-        return resolve_sequence(volume_pattern(shot), asked);
     std::vector<FrameFile> frames;
-    for (const int frame : asked.value_or(std::vector<int>{1}))
-        frames.push_back({frame, {}});
+    if (!shot.volume.file.empty())
+        frames = resolve_sequence(volume_pattern(shot), asked);
+    else
+        for (const int frame : asked.value_or(std::vector<int>{1}))
+            frames.push_back({frame, {}});
+    for (const FrameFile& frame : frames)
+        for (const fs::path& file : further_files(shot, frame.frame))
+            read_vdb_header(file);
     return frames;
 }
 

@@ -1,0 +1,22 @@
+// Surfaces that stand in a medium, as its light meets them.
+#pragma once
+
+#include "core/vec.h"
+
+namespace brisance {
+
+class Occluders {
+public:
+    virtual ~Occluders() = default;
+
+    // From `from` along unit `direction` to the first surface, or `far` where none is nearer; local [m].
+    virtual float first_hit(const vec3& from, const vec3& direction, float far) const = 0;
+
+    bool visible(const vec3& from, const vec3& to) const {
+        const vec3 way = to - from;
+        const float distance = glm::length(way);
+        return !(distance > 0.0f) || first_hit(from, way / distance, distance) >= distance;
+    }
+};
+
+}  // namespace brisance

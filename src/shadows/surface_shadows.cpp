@@ -1,0 +1,45 @@
+#include "shadows/surface_shadows.h"
+
+#include <cmath>
+
+#include "shadows/octahedral.h"
+
+namespace brisance {
+
+namespace {
+
+constexpr std::size_t kParts = 2;  // asked for each texel
+
+float visible_share(const Occluders& occluders, const MappedLight& light, std::size_t texel, const vec3& to) {
+    if (light.parts.empty())
+        return occluders.visible(glm::mix(light.centre, to, 0.5f), to) ? 1.0f : 0.0f;
+    float seen = 0.0f;
+    for (std::size_t k = 0; k < kParts; ++k) {
+        const std::size_t part = (texel * 5 + k * light.parts.size() / kParts) % light.parts.size();
+        seen += occluders.visible(light.parts[part], to) ? 1.0f / kParts : 0.0f;
+    }
+    return seen;
+}
+
+}  // namespace
+
+void cut_at_surfaces(const Occluders& occluders, const MappedLight& light, const ShadowMapLayout& layout,
+                     std::span<std::uint16_t> interior) {
+    const int r = layout.resolution;
+    const float step = layout.distances > 1 ? (layout.far_distance - layout.near_distance) / (layout.distances - 1) : 0;
+    for (int i = 0; i < r * r; ++i) {
+        std::uint16_t* const samples = &interior[std::size_t(i) * layout.distances];
+        if (samples[0] == 0)
+            continue;
+        const vec3 direction =
+            octahedral_direction((2.0f * (i / r) + 1.0f) / r - 1.0f, (2.0f * (i % r) + 1.0f) / r - 1.0f);
+        const vec3 near = light.centre + layout.near_distance * direction;
+        const float share = visible_share(occluders, light, i, near);
+        const float beyond = layout.far_distance - layout.near_distance;
+        const float hit = share > 0.0f ? occluders.first_hit(near, direction, beyond) : 0.0f;
+        for (int k = 0; k < layout.distances; ++k)
+            samples[k] = float(k) * step <= hit ? std::uint16_t(std::lround(share * samples[k])) : 0;
+    }
+}
+
+}  // namespace brisance
