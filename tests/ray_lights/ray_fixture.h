@@ -39,7 +39,7 @@ private:
 
 // The same mean of both, within three standard errors, for the three channels of MM and SM.
 void expect_same_light(const Stage& stage, const RayLightSettings& settings, const char* what,
-                       std::uint64_t path_samples = 2000, std::uint64_t light_sets = 2);
+                       std::uint64_t path_samples = 400, std::uint64_t light_sets = 1);
 
 // Glowing balls of radius 1 m around the origin, `nodes` nodes to a radius.
 Recipe coloured_ball(int nodes, float optical_radius, float mean_cosine);

@@ -53,6 +53,9 @@ TEST(AgainstPaths, ALampOutsideOverAFloor) {
     dark.flame = {};
     const Stage stage(dark, floor_below(0.7f), {lamp()});
     expect_same_light(stage, few(), "lamp");
+    RayLightSettings thinned = few();
+    thinned.count = 1000;
+    expect_same_light(stage, thinned, "lamp, most lights left out");
 }
 
 TEST(AgainstPaths, BouncesEndWhereTheyAreAskedTo) {

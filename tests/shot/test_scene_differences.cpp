@@ -37,11 +37,12 @@ TEST(SceneDifferences, AllAreTold) {
 }
 
 TEST(SceneDifferences, AreNotInTheMethodNorInWhatIsWritten) {
-    EXPECT_EQ(differences(
-                  {"name=other", "lighting.alpha=3", "lighting.shadows=exact", "scattering.remainder=0.1",
-                   "scattering.alpha=4", "camera.samples_per_axis=2", "output.png=false", "output.layers.bounces=true",
-                   "output.virtual_lights=true", "output.exposure_stops=1", "$schema=x.json"},
-                  {}),
+    EXPECT_EQ(differences({"name=other", "lighting.alpha=3", "lighting.shadows=exact", "scattering.remainder=0.1",
+                           "scattering.alpha=4", "scattering.method=ray_lights", "ray_lights.samples=9",
+                           "ray_lights.length=long", "camera.samples_per_axis=2", "output.png=false",
+                           "output.layers.bounces=true", "output.virtual_lights=true", "output.exposure_stops=1",
+                           "$schema=x.json"},
+                          {}),
               Lines{});
 }
 
@@ -80,8 +81,8 @@ TEST(SceneDifferences, DamagedShotsAreAnError) {
 TEST(SceneDifferences, EveryKeyIsOfThePictureOrOfTheMethod) {
     for (const Key& key : shot_keys()) {
         const std::string section = key.path.substr(0, key.path.find('.'));
-        const bool picture = section == "volume" || section == "volumes" || section == "scene" || section == "smoke" || section == "fire" ||
-                             section == "colour_role" || key.path == "scattering.bounces" ||
+        const bool picture = section == "volume" || section == "volumes" || section == "scene" || section == "smoke" ||
+                             section == "fire" || section == "colour_role" || key.path == "scattering.bounces" ||
                              (section == "camera" && key.path != "camera.samples_per_axis");
         EXPECT_EQ(key.affects == Affects::Picture, picture) << key.path;
     }
