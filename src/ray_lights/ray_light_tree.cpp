@@ -14,52 +14,67 @@ dvec3 middle(const RayLightBounds& b) {
 
 // Lights below the horizon of the box's middle may still be above that of the surface: they keep a part.
 constexpr double kBelowHorizon = 0.05;
-// Boxes are no sharper than this in their directions, so that none is left out that might shine after all.
-constexpr double kSharpest = 0.9;
+// Phase functions are no sharper than this, so that none of a box is left out that might shine after all.
+constexpr double kSharpest = 0.8;
 // Directions from a box to a ray at which the phase functions are asked.
 constexpr int kDirections = 2;
 
-// The phase function of a box's lights toward a direction, where the box is seen under an angle whose half has that
-// cosine. The mean cosine of light that was turned twice is the product of both.
-double blurred_phase(const RayLightBounds& box, const dvec3& toward, double g, double half_angle_cosine) {
+// A box as it is seen from a place: the angle around the direction to its middle.
+struct Width {
+    double sine, cosine;
+    Width(double radius, double distance)
+        : sine(distance > radius ? radius / distance : 1.0), cosine(std::sqrt((1.0 - sine) * (1.0 + sine))) {}
+};
+
+// The phase function for the angle nearest to its peak among all directions within the width; where the box holds the
+// place itself, its peak. A box that is near has lights that shine at the place and others that shine away from it,
+// and an underestimate costs more than the opposite.
+double phase_within(double cosine, double g, const Width& width) {
+    const double a = std::min(std::abs(g), kSharpest), c = std::clamp(g < 0.0 ? -cosine : cosine, -1.0, 1.0);
+    double nearest = 1.0;
+    if (width.sine < 1.0 && c < width.cosine)
+        nearest = c * width.cosine + std::sqrt((1.0 - c) * (1.0 + c)) * width.sine;
+    const double d = (1.0 - a) * (1.0 - a) + 2.0 * a * (1.0 - nearest);
+    return (1.0 - a) * (1.0 + a) / (4.0 * std::numbers::pi * d * std::sqrt(d));
+}
+
+// For lights of several headings: the mean cosine of light that was turned twice is the product of both.
+double phase_of(const RayLightBounds& box, const dvec3& toward, double g, const Width& width) {
     const double length = glm::length(box.heading);
-    if (!(length > 0.0))
-        return 1.0 / (4.0 * std::numbers::pi);
-    return phase_about(box.heading / length, toward, std::clamp(g * length * half_angle_cosine, -kSharpest, kSharpest));
+    const double cosine = length > 0.0 ? glm::dot(box.heading, toward) / length : 0.0;
+    return phase_within(cosine, g * length, width);
 }
 
 double along_ray(const RayLightBounds& box, const Segment& ray, double g) {
     const dvec3 from = middle(box), way = ray.start - from;
-    const double size = 0.25 * glm::length(box.high - box.low), begin = glm::dot(way, ray.direction);
+    const double radius = 0.5 * glm::length(box.high - box.low), begin = glm::dot(way, ray.direction);
     const dvec3 across = way - begin * ray.direction;
     const double floor = 1e-12 * std::max(ray.length, 1e-280);
-    const double height = std::max(std::sqrt(glm::dot(across, across) + size * size), floor);
-    // The integral of 1 / (distance^2 + size^2) is an angle over the height.
+    const double height = std::max(std::sqrt(glm::dot(across, across) + 0.25 * radius * radius), floor);
+    // The integral of 1 / (distance^2 + radius^2 / 4) is an angle over the height.
     const double angle = std::atan2(height * ray.length, height * height + begin * (begin + ray.length));
     if (g == 0.0)
         return angle / height;
-    const double first = std::atan2(begin, height), half_angle_cosine = std::sqrt(1.0 - std::pow(size / height, 2));
-    const dvec3 up = across / height;
+    const double first = std::atan2(begin, height);
     double phases = 0.0;
     for (int i = 0; i < kDirections; ++i) {
         const double a = first + (i + 0.5) / kDirections * angle;
-        dvec3 toward = std::cos(a) * up + std::sin(a) * ray.direction;
-        const double length = glm::length(toward);
-        toward = length > 0.0 ? toward / length : -ray.direction;
-        const double at_u = std::clamp(g * half_angle_cosine, -kSharpest, kSharpest);
-        phases += blurred_phase(box, toward, g, half_angle_cosine) * phase_about(toward, -ray.direction, at_u);
+        const dvec3 to_ray = across + height * std::tan(a) * ray.direction;
+        const double distance = glm::length(to_ray);
+        const dvec3 toward = distance > 0.0 ? to_ray / distance : ray.direction;
+        const Width width(radius, distance);
+        phases += phase_of(box, toward, g, width) * phase_within(-glm::dot(toward, ray.direction), g, width);
     }
     return phases / kDirections * angle / height;
 }
 
 double at_point(const RayLightBounds& box, const dvec3& point, const dvec3& normal, double g) {
     const dvec3 way = middle(box) - point;
-    const double radius = 0.5 * glm::length(box.high - box.low), distance2 = glm::dot(way, way);
-    const double softened2 = std::max(distance2 + 0.25 * radius * radius, 1e-280);
+    const double radius = 0.5 * glm::length(box.high - box.low), distance = glm::length(way);
+    const double softened2 = std::max(distance * distance + 0.25 * radius * radius, 1e-280);
     const double cosine = std::clamp((glm::dot(way, normal) + radius) / std::sqrt(softened2), kBelowHorizon, 1.0);
-    double phase = 1.0;
-    if (g != 0.0 && distance2 > 0.0)
-        phase = blurred_phase(box, -way / std::sqrt(distance2), g, std::sqrt(distance2 / softened2));
+    const dvec3 toward = distance > 0.0 ? -way / distance : normal;
+    const double phase = g != 0.0 ? phase_of(box, toward, g, Width(radius, distance)) : 1.0;
     return phase * cosine / softened2;
 }
 

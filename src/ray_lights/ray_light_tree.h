@@ -22,7 +22,7 @@ RayLightBounds united(const RayLightBounds& a, const RayLightBounds& b);
 
 // About what the lights in the box send to the receiver: above zero wherever their power is. The ray's part is the
 // integral of the inverse square distance along it, kept finite by the size of the box. Phase functions count by their
-// value for the mean heading, blurred by the spread of headings and by the size of the box.
+// largest value for the mean heading and any place in the box.
 double importance(const RayLightBounds& box, const RayLightReceiver& receiver, double mean_cosine);
 
 class RayLightTree {
