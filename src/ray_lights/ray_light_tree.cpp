@@ -53,8 +53,10 @@ double along_ray(const RayLightBounds& box, const Segment& ray, double g) {
     const double height = std::max(std::sqrt(glm::dot(across, across) + 0.25 * radius * radius), floor);
     // The integral of 1 / (distance^2 + radius^2 / 4) is an angle over the height.
     const double angle = std::atan2(height * ray.length, height * height + begin * (begin + ray.length));
+    const double nearest = glm::length(way + std::clamp(-begin, 0.0, ray.length) * ray.direction);
+    const double seen = guessed_transmittance(box.extinction * std::max(0.0, nearest - radius)) * angle / height;
     if (g == 0.0)
-        return angle / height;
+        return seen;
     const double first = std::atan2(begin, height);
     double phases = 0.0;
     for (int i = 0; i < kDirections; ++i) {
@@ -65,7 +67,7 @@ double along_ray(const RayLightBounds& box, const Segment& ray, double g) {
         const Width width(radius, distance);
         phases += phase_of(box, toward, g, width) * phase_within(-glm::dot(toward, ray.direction), g, width);
     }
-    return phases / kDirections * angle / height;
+    return phases / kDirections * seen;
 }
 
 double at_point(const RayLightBounds& box, const dvec3& point, const dvec3& normal, double g) {
@@ -75,20 +77,22 @@ double at_point(const RayLightBounds& box, const dvec3& point, const dvec3& norm
     const double cosine = std::clamp((glm::dot(way, normal) + radius) / std::sqrt(softened2), kBelowHorizon, 1.0);
     const dvec3 toward = distance > 0.0 ? -way / distance : normal;
     const double phase = g != 0.0 ? phase_of(box, toward, g, Width(radius, distance)) : 1.0;
-    return phase * cosine / softened2;
+    return guessed_transmittance(box.extinction * std::max(0.0, distance - radius)) * phase * cosine / softened2;
 }
 
 }  // namespace
 
 RayLightBounds bounds_of(const RayLight& light) {
     const dvec3 a = light.segment.start, b = light.segment.at(light.segment.length);
-    return {glm::min(a, b), glm::max(a, b), light.scattered, light.segment.direction};
+    return {glm::min(a, b), glm::max(a, b), light.scattered, light.extinction, light.segment.direction};
 }
 
 RayLightBounds united(const RayLightBounds& a, const RayLightBounds& b) {
     const double all = a.scattered + b.scattered;
-    const dvec3 heading = all > 0.0 ? (a.scattered / all) * a.heading + (b.scattered / all) * b.heading : dvec3(0.0);
-    return {glm::min(a.low, b.low), glm::max(a.high, b.high), all, heading};
+    const double part = all > 0.0 ? a.scattered / all : 0.5;
+    const dvec3 heading = part * a.heading + (1.0 - part) * b.heading;
+    const double extinction = std::lerp(b.extinction, a.extinction, part);
+    return {glm::min(a.low, b.low), glm::max(a.high, b.high), all, extinction, heading};
 }
 
 double importance(const RayLightBounds& box, const RayLightReceiver& receiver, double g) {

@@ -15,14 +15,20 @@ namespace brisance {
 struct RayLightBounds {
     dvec3 low{0.0}, high{0.0};
     double scattered = 0.0;
-    dvec3 heading{0.0};  // mean of the lights' directions by power, between 0 (all over) and 1 long
+    double extinction = 0.0;  // mean around the lights, by power [1/m]
+    dvec3 heading{0.0};       // mean of the lights' directions by power, between 0 (all over) and 1 long
 };
 RayLightBounds bounds_of(const RayLight& light);
+// What is left of light after an optical depth that is only guessed: more than exp(-depth), as guesses may be wrong.
+inline double guessed_transmittance(double depth) {
+    return 1.0 / (1.0 + depth * (1.0 + 0.5 * depth));
+}
 RayLightBounds united(const RayLightBounds& a, const RayLightBounds& b);
 
 // About what the lights in the box send to the receiver: above zero wherever their power is. The ray's part is the
 // integral of the inverse square distance along it, kept finite by the size of the box. Phase functions count by their
-// largest value for the mean heading and any place in the box.
+// largest value for the mean heading and any place in the box, smoke as if it were everywhere as it is around the
+// lights.
 double importance(const RayLightBounds& box, const RayLightReceiver& receiver, double mean_cosine);
 
 class RayLightTree {

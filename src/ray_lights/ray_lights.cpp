@@ -102,7 +102,7 @@ Rgb RayLights::to_surface(const SurfacePoint& point, const Bsdf& bsdf, const dve
     return light.power * at_v.scattering * scattered * float(phase * through / (w * w * density.pdf(v)));
 }
 
-// The double integral of a pair by a few of its places, smoke between the rays left out.
+// The double integral of a pair by a few of its places.
 double RayLights::wanted_along(const SeenMedium& seen, const RayLight& light) const {
     constexpr int kPlaces = 3, kAngles = 4;
     const Segment& ray = seen.segment();
@@ -120,7 +120,7 @@ double RayLights::wanted_along(const SeenMedium& seen, const RayLight& light) co
         for (int k = 0; k < kAngles; ++k) {
             const double a = first + (k + 0.5) / kAngles * angle, cosine = std::max(std::cos(a), 1e-12);
             const double u = std::clamp(height * std::sin(a) / cosine - begin, 0.0, ray.length);
-            double here = seen.transmittance(u);
+            double here = seen.transmittance(u) * guessed_transmittance(light.extinction * height / cosine);
             if (g != 0.0) {
                 const dvec3 toward = cosine / height * across + std::sin(a) * ray.direction;
                 here *= phase_about(light.segment.direction, toward, g) * phase_about(toward, -ray.direction, g);

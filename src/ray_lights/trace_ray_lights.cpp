@@ -61,6 +61,7 @@ private:
         const double own = optical_depth(scene_.field(), {light.segment.start, ray.direction}, light.segment.length);
         light.power = long_ ? power * float(std::exp(-depth)) : power;
         light.dimmed = long_;
+        light.extinction = own / light.segment.length;
         light.scattered = luminance(light.power) * (long_ ? -std::expm1(-own) : own);
         depth += own;
         if (light.scattered > 0.0)

@@ -21,6 +21,7 @@ std::vector<RayLight> random_lights(std::size_t count) {
         const double u = rng.next_double();
         light.segment = {start, uniform_direction(u, rng.next_double()), 0.2 * rng.next_double()};
         light.scattered = std::exp(4.0 * rng.next_double());
+        light.extinction = 10.0 * rng.next_double();
     }
     return lights;
 }
