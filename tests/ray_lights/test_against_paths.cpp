@@ -45,7 +45,7 @@ TEST(AgainstPaths, ForwardScatteringOverAFloor) {
 
 TEST(AgainstPaths, BackwardScattering) {
     const Stage stage(coloured_ball(8, 2.0f, -0.7f), {});
-    expect_same_light(stage, few(), "ball, g -0.7");
+    expect_same_light(stage, few(), "ball, g -0.7", 400, 3);
 }
 
 TEST(AgainstPaths, ALampOutsideOverAFloor) {

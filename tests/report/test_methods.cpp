@@ -176,8 +176,8 @@ TEST(Runs, OfVirtualLightsChangeTheirChoicesAndTheSamples) {
     Shot base = shot();
     base.camera.eye = dvec3(0.0, -6.0, 0.0);
     base.camera_given = true;
-    const std::vector<std::string> names = {"vbnl",      "vbnl_resampled", "vbnl_power", "vbnl_light_tree",
-                                            "vbnl_bsdf", "rich_vsl",       "vsl",        "vpl"};
+    const std::vector<std::string> names = {
+        "vbnl", "vbnl_resampled", "vbnl_power", "vbnl_light_tree", "vbnl_bsdf", "rich_vsl", "vsl", "vpl", "ray_lights"};
     const std::vector<PlannedMethod> planned = plan_runs(base, parse(names, {"rich_vsl:2,4", "4"}));
     ASSERT_EQ(planned.size(), names.size());
     std::set<std::string> looks;
