@@ -11,6 +11,9 @@ namespace {
 // Voxels along a cell's side: the tree chooses between cells by their distance, inside all voxels count alike.
 constexpr int kCellShift = 3;
 
+// Of draws that do not follow the likelihood of escape.
+constexpr float kEvenShare = 0.25f;
+
 std::uint64_t key_of(const ivec3& node) {
     const auto part = [](int i) { return static_cast<std::uint64_t>((i >> kCellShift) + (1 << 20)); };
     return part(node.x) << 42 | part(node.y) << 21 | part(node.z);
@@ -21,42 +24,60 @@ ivec3 node_at(const Medium& medium, std::size_t i) {
            BrickLattice::node_in_brick(static_cast<int>(i % BrickLattice::kNodes));
 }
 
+// 1 where nothing escapes: any number will do.
+float weighted_mean(const NodeWeights& values, const std::vector<Rgb>& weights) {
+    double sum = 0.0, weight = 0.0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const double y = std::max(0.0f, luminance(weights[i]));
+        sum += y * values[i];
+        weight += y;
+    }
+    return sum > 0.0 ? float(sum / weight) : 1.0f;
+}
+
 }  // namespace
 
-ExtendedLight::ExtendedLight(const Medium& medium, const PointDepths& depths, const std::vector<Rgb>& intensity)
+ExtendedLight::ExtendedLight(const Medium& medium, const PointDepths& depths, const std::vector<Rgb>& intensity,
+                             const NodeWeights& escape)
     : medium_(medium), depths_(depths), tree_({}) {
     std::vector<std::pair<std::uint64_t, std::uint32_t>> lit;
     for (std::size_t i = 0; i < intensity.size(); ++i)
         if (luminance(intensity[i]) > 0.0f)
             lit.emplace_back(key_of(node_at(medium, i)), static_cast<std::uint32_t>(i));
     std::sort(lit.begin(), lit.end());
+    const float mean_escape = weighted_mean(escape, intensity);
     std::vector<LightBounds> bounds;
     for (std::size_t i = 0; i < lit.size(); ++i) {
         const std::uint32_t node = lit[i].second;
         const dvec3 p(medium.local_of_node(node_at(medium, node)));
-        const float y = luminance(intensity[node]);
+        const float per_intensity = kEvenShare + (1.0f - kEvenShare) * escape[node] / mean_escape;
+        const float weight = luminance(intensity[node]) * per_intensity;
         if (i == 0 || lit[i].first != lit[i - 1].first) {
             cells_.push_back({static_cast<std::uint32_t>(i), 0.0f});
             bounds.push_back({p, p, {0, 0, 1}, std::numbers::pi, 0.5 * std::numbers::pi, 0.0, false});
         }
         bounds.back().low = glm::min(bounds.back().low, p);
         bounds.back().high = glm::max(bounds.back().high, p);
-        bounds.back().intensity += y;
-        cells_.back().sum += y;
+        bounds.back().intensity += weight;
+        cells_.back().sum += weight;
         nodes_.push_back(node);
         passed_.push_back(cells_.back().sum);
+        per_weight_.push_back(1.0f / per_intensity);
     }
     cells_.push_back({static_cast<std::uint32_t>(lit.size()), 0.0f});
     tree_ = LightTree(bounds);
 }
 
-// A voxel in proportion to its intensity, and anywhere in it.
-vec3 ExtendedLight::place_in(std::size_t cell, Rng& rng) const {
+// A voxel in proportion to its weight.
+std::size_t ExtendedLight::voxel_in(std::size_t cell, Rng& rng) const {
     const auto begin = passed_.begin() + cells_[cell].first, end = passed_.begin() + cells_[cell + 1].first;
     const auto found = std::min(std::upper_bound(begin, end, rng.next() * cells_[cell].sum), end - 1);
-    const std::uint32_t node = nodes_[static_cast<std::size_t>(found - passed_.begin())];
+    return static_cast<std::size_t>(found - passed_.begin());
+}
+
+vec3 ExtendedLight::place_in(std::size_t voxel, Rng& rng) const {
     const float x = rng.next(), y = rng.next(), z = rng.next();
-    return medium_.local_of_node(node_at(medium_, node)) + medium_.local_from_index * (vec3(x, y, z) - 0.5f);
+    return medium_.local_of_node(node_at(medium_, nodes_[voxel])) + medium_.local_from_index * (vec3(x, y, z) - 0.5f);
 }
 
 bool ExtendedLight::draw(const LitPoint& point, Rng& rng, std::array<Draw, kDraws>& draws) const {
@@ -67,8 +88,12 @@ bool ExtendedLight::draw(const LitPoint& point, Rng& rng, std::array<Draw, kDraw
     const double shift = rng.next_double();
     for (int k = 0; k < kDraws; ++k) {
         const auto choice = tree_.choose(point, (k + shift) / kDraws);
-        places[k] = choice ? place_in(choice->light, rng) : vec3(point.position);
-        share[k] = choice ? cells_[choice->light].sum / float(choice->probability) : 0.0f;
+        places[k] = vec3(point.position);
+        if (!choice)
+            continue;
+        const std::size_t voxel = voxel_in(choice->light, rng);
+        places[k] = place_in(voxel, rng);
+        share[k] = cells_[choice->light].sum * per_weight_[voxel] / float(choice->probability);
     }
     const vec3 from(point.position);
     std::array<float, kDraws> depth;
@@ -84,7 +109,7 @@ bool ExtendedLight::draw(const LitPoint& point, Rng& rng, std::array<Draw, kDraw
 }
 
 std::uint64_t ExtendedLight::bytes() const {
-    return nodes_.size() * 8 + cells_.size() * sizeof(Cell) + tree_.bytes();
+    return nodes_.size() * 12 + cells_.size() * sizeof(Cell) + tree_.bytes();
 }
 
 }  // namespace brisance

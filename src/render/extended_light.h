@@ -12,6 +12,7 @@
 #include "core/rng.h"
 #include "emitters/light_tree.h"
 #include "gathering/point_depths.h"
+#include "lights/footprint.h"
 #include "medium/medium.h"
 
 namespace brisance {
@@ -20,8 +21,11 @@ class ExtendedLight {
 public:
     static constexpr int kDraws = PointDepths::kRays;
 
-    // `intensity`: of the voxels, per node of the medium's lattice [W/sr]. Keeps references to medium and depths.
-    ExtendedLight(const Medium& medium, const PointDepths& depths, const std::vector<Rgb>& intensity);
+    // `intensity`: of the voxels, per node of the medium's lattice [W/sr]; `escape`: how likely their light is to leave
+    // the medium (gathering/escape.h), so that in dense smoke the voxels of its skin are drawn. Keeps references to
+    // medium and depths.
+    ExtendedLight(const Medium& medium, const PointDepths& depths, const std::vector<Rgb>& intensity,
+                  const NodeWeights& escape);
     bool empty() const { return tree_.empty(); }
 
     struct Draw {
@@ -37,14 +41,16 @@ public:
 private:
     struct Cell {
         std::uint32_t first = 0;  // of its voxels
-        float sum = 0.0f;         // of their intensities
+        float sum = 0.0f;         // of their weights
     };
-    vec3 place_in(std::size_t cell, Rng& rng) const;
+    std::size_t voxel_in(std::size_t cell, Rng& rng) const;
+    vec3 place_in(std::size_t voxel, Rng& rng) const;
 
     const Medium& medium_;
     const PointDepths& depths_;
     std::vector<std::uint32_t> nodes_;  // that glow, cell by cell
-    std::vector<float> passed_;         // running sum within the cell
+    std::vector<float> passed_;         // running sum of weights within the cell
+    std::vector<float> per_weight_;     // luminance of the intensity over the weight
     std::vector<Cell> cells_;           // one more than there are, as an end
     LightTree tree_;
 };

@@ -93,7 +93,7 @@ void Lighting::keep(KeptLights& lights, float alpha) {
     lights.bottom = bottom_level(lights.field);
     if (!lights_surfaces())
         return;
-    lights.aim = std::make_unique<ExtendedLight>(medium_, depths_, lights.lights.light.intensity);
+    lights.aim = std::make_unique<ExtendedLight>(medium_, depths_, lights.lights.light.intensity, lights.escape);
     if (shot_.lighting.energy_balance)
         balance_escape(lights);
 }

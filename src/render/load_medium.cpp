@@ -1,6 +1,7 @@
 #include "render/load_medium.h"
 
 #include "core/stopwatch.h"
+#include "volume/fog_box.h"
 #include "volume/frame_path.h"
 #include "volume/mapping.h"
 
@@ -23,8 +24,11 @@ std::vector<VolumePart> parts_of(const Shot& shot, const std::filesystem::path& 
     if (!volume.empty())
         parts.push_back({volume, shot.volume, shot.medium, {}});
     const std::vector<std::filesystem::path> files = further_files(shot, frame);
-    for (std::size_t i = 0; i < files.size(); ++i)
+    for (std::size_t i = 0; i < files.size(); ++i) {
         parts.push_back({files[i], shot.volumes[i].volume, changed(shot.medium, shot.volumes[i].changes), {}});
+        if (shot.volumes[i].volume.box)
+            parts.back().look.fire.model = FireModel::None;
+    }
     return parts;
 }
 
@@ -53,7 +57,15 @@ MediumGrids read_grids(const VolumePart& part, const GridMapping& mapping, Progr
     return grids;
 }
 
+void make_box(VolumePart& part) {
+    part.grids.density = fog_grid(*part.settings.box, kGridMemory, "volumes");
+    dmat4& transform = part.grids.density->info.world_from_index;
+    transform = placement(part.settings, "volumes") * transform;
+}
+
 void read_part(VolumePart& part, Statistics& statistics, Progress& progress) {
+    if (part.settings.box)
+        return make_box(part);
     progress.stage("reading " + part.file.filename().string());
     const Stopwatch watch;
     const GridMapping mapping = map_grids(list_grids(part.file), part.settings, part.file.string());
@@ -73,7 +85,7 @@ void read_part(VolumePart& part, Statistics& statistics, Progress& progress) {
 std::vector<std::filesystem::path> further_files(const Shot& shot, int frame) {
     std::vector<std::filesystem::path> files;
     for (const FurtherVolume& v : shot.volumes) {
-        const std::string pattern = (shot.folder / v.volume.file).string();
+        const std::string pattern = v.volume.box ? "" : (shot.folder / v.volume.file).string();
         files.push_back(has_frame_token(pattern) ? resolve_frame(pattern, frame) : std::filesystem::path(pattern));
     }
     return files;

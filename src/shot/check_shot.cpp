@@ -82,6 +82,21 @@ void check_lights(const Given& given, const SceneSettings& scene) {
     }
 }
 
+void check_volumes(const Given& given, const std::vector<FurtherVolume>& volumes) {
+    for (std::size_t i = 0; i < volumes.size(); ++i) {
+        const VolumeSettings& v = volumes[i].volume;
+        const auto refuse = [&](const std::string& why) {
+            reject(given, "volumes", fmt::format("volume [{}] {}", i, why));
+        };
+        if (v.box.has_value() == !v.file.empty())
+            refuse("needs either a file or a box");
+        if (v.box && !glm::all(glm::lessThan(v.box->low, v.box->high)))
+            refuse("is a box whose low is not below its high on every axis");
+        if (v.box && volumes[i].changes.model.value_or(FireModel::None) != FireModel::None)
+            refuse("is a box of haze, which does not burn");
+    }
+}
+
 }  // namespace
 
 void check_shot(const Shot& shot, const Given& given, const std::string& source) {
@@ -89,6 +104,7 @@ void check_shot(const Shot& shot, const Given& given, const std::string& source)
         throw Error(ExitCode::Usage,
                     fmt::format("{}: volume.file is missing, and so is a scene: which file to render", source));
     check_lights(given, shot.scene);
+    check_volumes(given, shot.volumes);
     if (shot.camera.world_from_camera)
         check_matrix(given, *shot.camera.world_from_camera);
     else

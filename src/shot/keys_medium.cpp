@@ -17,8 +17,8 @@ void add_smoke_keys(std::vector<Key>& keys) {
 
 void add_fire_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
-        "fire.model", "flame: strength * (flame - threshold) * ramp; blackbody: Planck [W/(m^2 sr)]",
-        fire_model(), [](Shot & s) -> auto& { return s.medium.fire.model; }));
+        "fire.model", "flame: strength * (flame - threshold) * ramp; blackbody: Planck [W/(m^2 sr)]", fire_model(),
+        [](Shot & s) -> auto& { return s.medium.fire.model; }));
     keys.push_back(make_key(
         "fire.convention",
         "times_absorption: emission per metre is radiance times absorption; direct: whatever the density",

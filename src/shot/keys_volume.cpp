@@ -25,12 +25,25 @@ Codec<GridRoles> roles() {
                              "colour", optional_text(), [](T & t) -> auto& { return t.colour; })});
 }
 
+Codec<FogBox> fog_box() {
+    using T = FogBox;
+    return object_of<T>("a box of haze {\"low\": [x, y, z], \"high\": [x, y, z]}",
+                        {member<T>(
+                             "low", point(), [](T & t) -> auto& { return t.low; }, true),
+                         member<T>(
+                             "high", point(), [](T & t) -> auto& { return t.high; }, true),
+                         member<T>(
+                             "voxel_metres", real(at_least(0.0)), [](T & t) -> auto& { return t.voxel_metres; })});
+}
+
 Codec<FurtherVolume> further_volume() {
     using T = FurtherVolume;
     return object_of<T>(
-        "a volume {\"file\": ..., \"world_from_file\": 16 numbers, \"albedo\": ..., ...}",
+        "a volume {\"file\" or \"box\": ..., \"world_from_file\": 16 numbers, \"albedo\": ..., ...}",
         {member<T>(
-             "file", text(false), [](T & t) -> auto& { return t.volume.file; }, true),
+             "file", text(false), [](T & t) -> auto& { return t.volume.file; }),
+         member<T>(
+             "box", if_given(fog_box()), [](T & t) -> auto& { return t.volume.box; }),
          member<T>(
              "preset", mapping_preset(), [](T & t) -> auto& { return t.volume.preset; }),
          member<T>(
@@ -93,7 +106,8 @@ void add_volume_keys(std::vector<Key>& keys) {
         [](Shot & s) -> auto& { return s.volume.world_from_file; }));
     keys.push_back(make_key(
         "volumes", "further volumes, whose coefficients add; what they do not say of smoke and fire is the shot's",
-        list_of("a list of volumes [{\"file\": ...}]", further_volume()), [](Shot & s) -> auto& { return s.volumes; }));
+        list_of("a list of volumes [{\"file\" or \"box\": ...}]", further_volume()),
+        [](Shot & s) -> auto& { return s.volumes; }));
 }
 
 }  // namespace brisance

@@ -18,8 +18,15 @@ struct GridRoles {
     std::optional<std::string> colour;
 };
 
+// Even haze of density 1 in place of a file.
+struct FogBox {
+    dvec3 low{0.0}, high{0.0};  // [m], in the file's place: `up` and `world_from_file` move it
+    double voxel_metres = 0.0;  // 0: a 32nd of its longest side
+};
+
 struct VolumeSettings {
-    std::string file;  // may hold a frame token: ####, @@@, %04d, $F4, $F, <frame04>
+    std::optional<FogBox> box;  // of further volumes
+    std::string file;           // may hold a frame token: ####, @@@, %04d, $F4, $F, <frame04>
     MappingPreset preset = MappingPreset::Automatic;
     GridRoles grids;
     bool half_voxel_shift = false;  // true: the sample of index i lies at i + 1/2 (what Blender means)

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "fixtures/media.h"
 #include "lights/voxel_lights.h"
+#include "volume/fog_box.h"
 #include "volume/settings.h"
 
 namespace brisance {
@@ -141,6 +142,30 @@ TEST(SeveralVolumes, LatticesTooDifferentAreRefusedBeforeMemoryIsTaken) {
         EXPECT_EQ(e.code(), ExitCode::Temporary);
         EXPECT_NE(std::string(e.what()).find("similar size"), std::string::npos) << e.what();
     }
+}
+
+// Optical depth along each axis: the box itself, and half a voxel on either side where it fades.
+TEST(FogBoxes, AreAsThickAsTheyAreLong) {
+    const FogBox box{{-1.0, 2.0, 0.0}, {3.0, 2.5, 7.0}, 0.1};
+    Volume fog;
+    fog.grids.density = fog_grid(box, 1 << 30, "fog");
+    fog.settings.smoke.extinction_per_metre = 0.25f;
+    const Medium medium = sum_of({fog});
+    const ExtinctionPyramid pyramid(medium, 1);
+    const dvec3 middle = 0.5 * (box.low + box.high);
+    for (int a = 0; a < 3; ++a) {
+        dvec3 from = middle, to = middle;
+        from[a] = box.low[a] - 1.0;
+        to[a] = box.high[a] + 1.0;
+        const double length = box.high[a] - box.low[a] + 0.1;
+        EXPECT_NEAR(pyramid.optical_depth(medium.local_of_world(from), medium.local_of_world(to)), 0.25 * length,
+                    0.002 * length);
+    }
+}
+
+TEST(FogBoxes, TooFineOnesAreRefusedBeforeMemoryIsTaken) {
+    const FogBox box{dvec3(0.0), dvec3(1000.0), 0.01};
+    EXPECT_THROW(fog_grid(box, 1 << 30, "fog"), Error);
 }
 
 TEST(VolumePlacement, ZUpStandsAYUpFileUp) {

@@ -242,6 +242,19 @@ TEST(ReadShot, MistakesInListsNameTheirPlace) {
               "a.json:1: scene.quads: expected a list of quads [{\"corners\": ...}], got {} (an object)");
 }
 
+TEST(ReadShot, VolumesThatCannotBeAreFound) {
+    const auto told = [](const std::string& v) { return complaint(R"({"volumes": [)" + v + "]}"); };
+    EXPECT_EQ(told("{}"), "a.json:1: volumes: volume [0] needs either a file or a box");
+    EXPECT_EQ(told(R"({"file": "a.vdb", "box": {"low": [0, 0, 0], "high": [1, 1, 1]}})"),
+              "a.json:1: volumes: volume [0] needs either a file or a box");
+    EXPECT_EQ(told(R"({"box": {"low": [0, 0, 0], "high": [1, 0, 1]}})"),
+              "a.json:1: volumes: volume [0] is a box whose low is not below its high on every axis");
+    EXPECT_EQ(told(R"({"box": {"low": [0, 0, 0], "high": [1, 1, 1]}, "fire_model": "flame"})"),
+              "a.json:1: volumes: volume [0] is a box of haze, which does not burn");
+    EXPECT_EQ(told(R"({"file": "a.vdb", "albdo": 1})"),
+              "a.json:1: volumes[0]: expected keys it knows, such as \"albedo\", got \"albdo\" (text)");
+}
+
 TEST(ReadShot, LightsThatCannotBeAreFound) {
     const auto told = [](const std::string& light) { return complaint(R"({"scene": {"lights": [)" + light + "]}}"); };
     EXPECT_EQ(told(R"({"kind": "sun", "direction": [0, 0, 0]})"),

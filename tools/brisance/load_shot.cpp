@@ -91,7 +91,8 @@ std::vector<FrameFile> resolve_frames(const Shot& shot, const std::optional<std:
             frames.push_back({frame, {}});
     for (const FrameFile& frame : frames)
         for (const fs::path& file : further_files(shot, frame.frame))
-            read_vdb_header(file);
+            if (!file.empty())
+                read_vdb_header(file);
     return frames;
 }
 
