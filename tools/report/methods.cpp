@@ -34,12 +34,12 @@ BuiltIn by_virtual_lights(const std::string& name, const Settings& choices) {
 
 std::vector<BuiltIn> make_built_ins() {
     return {{"lighting_grid", {"method=lighting_grid"}, StepsOf::Grid},
-            {"ray_lights", {"method=lighting_grid", "scattering.method=ray_lights"}, StepsOf::Samples},
             {"path", {"method=path"}, StepsOf::Paths},
             {"path_plain",
              {"method=path", "tracing.emission=collision", "tracing.light_sampling=false",
               "tracing.free_flight=null_collision"},
              StepsOf::Paths},
+            {"ray_lights", {"method=lighting_grid", "scattering.method=ray_lights"}, StepsOf::Samples},
             by_virtual_lights("vbnl", {}),
             by_virtual_lights("vbnl_resampled", {"sampling=resampled"}),
             by_virtual_lights("vbnl_power", {"sampling=power"}),
