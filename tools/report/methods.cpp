@@ -33,7 +33,7 @@ BuiltIn by_virtual_lights(const std::string& name, const Settings& choices) {
 }
 
 std::vector<BuiltIn> make_built_ins() {
-    return {{"lighting_grid", {"method=lighting_grid"}, StepsOf::Grid},
+    return {{"lighting_grid", {"method=lighting_grid", "scattering.method=lighting_grid"}, StepsOf::Grid},
             {"path", {"method=path"}, StepsOf::Paths},
             {"path_plain",
              {"method=path", "tracing.emission=collision", "tracing.light_sampling=false",
