@@ -11,7 +11,8 @@
 
 namespace brisance {
 
-// Where the shot's further volumes are for a frame, in their order; empty for boxes. Throws Error MissingInput for a missing frame.
+// Where the shot's further volumes are for a frame, in their order; empty for boxes. Throws Error MissingInput for a
+// missing frame.
 std::vector<std::filesystem::path> further_files(const Shot& shot, int frame);
 
 // Reads the grids that the shot needs, and no others; `volume` may be empty, then there are only further volumes.
