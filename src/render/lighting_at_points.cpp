@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/stopwatch.h"
 #include "gathering/escape.h"
 #include "lights/voxel_lights.h"
 #include "medium/local_bounds.h"
@@ -81,6 +82,7 @@ Receivers point_receivers(const Medium& medium, const std::vector<MarchPoint>& p
 
 // Makes what gathering at points asks for, from lights that have found their place.
 void Lighting::keep(KeptLights& lights, float alpha) {
+    const Stopwatch watch;
     if (!marching()) {
         lights.escape = escape_likelihood(medium_, depths_, lights.lights.light.intensity);
         serve_outside(lights.lights, medium_, lights.escape);
@@ -96,6 +98,10 @@ void Lighting::keep(KeptLights& lights, float alpha) {
     lights.aim = std::make_unique<ExtendedLight>(medium_, depths_, lights.lights.light.intensity, lights.escape);
     if (shot_.lighting.energy_balance)
         balance_escape(lights);
+    statistics_.stages.push_back({"lights for surfaces",
+                                  watch.seconds(),
+                                  lights.lights.grid.bytes() + lights.aim->bytes(),
+                                  {{"coarsest_level_lights", lights.lights.grid.levels.back().size()}}});
 }
 
 // What passes through the sphere around the medium must be what rays say escapes.
