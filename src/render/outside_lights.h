@@ -4,8 +4,8 @@
 // smoke itself serves surfaces badly: centres lie deep inside, and lights that stand for many voxels average over rays
 // of which hardly any leaves. For surfaces, lights lie at the middle of what they send to the outside, those that send
 // nothing are left out, and the coarsest level is finer, since light comes to surfaces through all the smoke around it,
-// which differs from voxel to voxel. On the built-in explosion these bring the error of single points from 20 % of what
-// arrives to 1 % far away and 4 % right beside the smoke.
+// which differs from voxel to voxel. On the built-in explosion these bring the error of its light on a floor from 23 to
+// 5 %; of single points, against the sum over all voxels, 1 % is left far away and 4 % right beside the smoke.
 #pragma once
 
 #include "lights/footprint.h"
