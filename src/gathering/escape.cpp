@@ -1,5 +1,6 @@
 #include "gathering/escape.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -47,6 +48,20 @@ NodeWeights escape_likelihood(const Medium& medium, const PointDepths& depths, c
         },
         4);
     return likelihood;
+}
+
+NodeWeights escape_density(const std::vector<Rgb>& intensity, const NodeWeights& likelihood) {
+    NodeWeights density;
+    double all = 0.0, out = 0.0;
+    for (std::size_t i = 0; i < intensity.size(); ++i) {
+        density.push_back(std::max(0.0f, luminance(intensity[i])));
+        all += density.back();
+        out += double(density.back()) * likelihood[i];
+    }
+    constexpr float even = FootprintPicker::kLeastShare;
+    for (std::size_t i = 0; i < density.size() && out > 0.0; ++i)
+        density[i] *= even + (1.0f - even) * float(likelihood[i] * all / out);
+    return density;
 }
 
 }  // namespace brisance

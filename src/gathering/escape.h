@@ -12,4 +12,8 @@ namespace brisance {
 // directions, 0 for others: an importance, not an estimate.
 NodeWeights escape_likelihood(const Medium& medium, const PointDepths& depths, const std::vector<Rgb>& intensity);
 
+// Where to ask for what escapes: luminance of the intensity, times the likelihood over its mean but for the share
+// FootprintPicker::kLeastShare, which does not follow it. The sum is that of the luminances.
+NodeWeights escape_density(const std::vector<Rgb>& intensity, const NodeWeights& likelihood);
+
 }  // namespace brisance

@@ -4,15 +4,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "gathering/escape.h"
+
 namespace brisance {
 
 namespace {
 
 // Voxels along a cell's side: the tree chooses between cells by their distance, inside all voxels count alike.
 constexpr int kCellShift = 3;
-
-// Of draws that do not follow the likelihood of escape.
-constexpr float kEvenShare = 0.25f;
 
 std::uint64_t key_of(const ivec3& node) {
     const auto part = [](int i) { return static_cast<std::uint64_t>((i >> kCellShift) + (1 << 20)); };
@@ -22,17 +21,6 @@ std::uint64_t key_of(const ivec3& node) {
 ivec3 node_at(const Medium& medium, std::size_t i) {
     return medium.lattice.first_node(i / BrickLattice::kNodes) +
            BrickLattice::node_in_brick(static_cast<int>(i % BrickLattice::kNodes));
-}
-
-// 1 where nothing escapes: any number will do.
-float weighted_mean(const NodeWeights& values, const std::vector<Rgb>& weights) {
-    double sum = 0.0, weight = 0.0;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        const double y = std::max(0.0f, luminance(weights[i]));
-        sum += y * values[i];
-        weight += y;
-    }
-    return sum > 0.0 ? float(sum / weight) : 1.0f;
 }
 
 }  // namespace
@@ -45,13 +33,12 @@ ExtendedLight::ExtendedLight(const Medium& medium, const PointDepths& depths, co
         if (luminance(intensity[i]) > 0.0f)
             lit.emplace_back(key_of(node_at(medium, i)), static_cast<std::uint32_t>(i));
     std::sort(lit.begin(), lit.end());
-    const float mean_escape = weighted_mean(escape, intensity);
+    const NodeWeights density = escape_density(intensity, escape);
     std::vector<LightBounds> bounds;
     for (std::size_t i = 0; i < lit.size(); ++i) {
         const std::uint32_t node = lit[i].second;
         const dvec3 p(medium.local_of_node(node_at(medium, node)));
-        const float per_intensity = kEvenShare + (1.0f - kEvenShare) * escape[node] / mean_escape;
-        const float weight = luminance(intensity[node]) * per_intensity;
+        const float weight = density[node];
         if (i == 0 || lit[i].first != lit[i - 1].first) {
             cells_.push_back({static_cast<std::uint32_t>(i), 0.0f});
             bounds.push_back({p, p, {0, 0, 1}, std::numbers::pi, 0.5 * std::numbers::pi, 0.0, false});
@@ -62,7 +49,7 @@ ExtendedLight::ExtendedLight(const Medium& medium, const PointDepths& depths, co
         cells_.back().sum += weight;
         nodes_.push_back(node);
         passed_.push_back(cells_.back().sum);
-        per_weight_.push_back(1.0f / per_intensity);
+        per_weight_.push_back(luminance(intensity[node]) / weight);
     }
     cells_.push_back({static_cast<std::uint32_t>(lit.size()), 0.0f});
     tree_ = LightTree(bounds);

@@ -4,6 +4,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "gathering/escape.h"
+
 namespace brisance {
 
 namespace {
@@ -22,17 +24,7 @@ void drop_coarse_levels(LightingGrid& grid) {
 
 // Lights at the middle of what they send to the outside, not of all they send.
 void move_to_skin(HierarchyLights& lights, const Medium& medium, const NodeWeights& escape) {
-    double all = 0.0, out = 0.0;
-    for (std::size_t i = 0; i < escape.size(); ++i) {
-        all += lights.weight[i];
-        out += double(lights.weight[i]) * escape[i];
-    }
-    if (!(out > 0.0))
-        return;
-    NodeWeights weight = lights.weight;
-    const float scale = (1.0f - FootprintPicker::kLeastShare) * float(all / out);
-    for (std::size_t i = 0; i < escape.size(); ++i)
-        weight[i] *= FootprintPicker::kLeastShare + scale * escape[i];
+    const NodeWeights weight = escape_density(lights.light.intensity, escape);
     const int levels = static_cast<int>(lights.grid.levels.size());
     lights.grid = build_lighting_grid(medium, lights.light.intensity, &weight, levels);
     if (!lights.light.directional.empty())

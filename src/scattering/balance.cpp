@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "core/rng.h"
+#include "gathering/escape.h"
 #include "lights/footprint.h"
 #include "lights/voxel_lights.h"
 #include "medium/phase.h"
@@ -16,7 +17,6 @@ namespace brisance {
 namespace {
 
 constexpr std::size_t kBatches = 16;
-constexpr float kEvenShare = 0.25f;  // of rays that do not follow the likelihood of escape
 constexpr double kGoldenRatio = 0.61803398874989484820;
 
 vec3 sphere_direction(double u, double v) {
@@ -197,14 +197,8 @@ CollisionEstimate estimate_collisions(const ExtinctionPyramid& pyramid, const st
 EscapeEstimate estimate_escape(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& intensity,
                                std::span<const float> directional, const std::vector<float>& likelihood,
                                std::size_t rays) {
-    std::vector<float> density = luminances(intensity);
-    double all = 0.0, out = 0.0;
-    for (std::size_t i = 0; i < density.size(); ++i) {
-        all += density[i];
-        out += double(density[i]) * likelihood[i];
-    }
-    for (std::size_t i = 0; i < density.size() && out > 0.0; ++i)
-        density[i] *= kEvenShare + (1.0f - kEvenShare) * float(likelihood[i] * all / out);
+    const NodeWeights density = escape_density(intensity, likelihood);
+    const double all = std::accumulate(density.begin(), density.end(), 0.0);
     const std::vector<std::size_t> picks = pick_nodes(density, rays);
     if (picks.size() < kBatches)
         return {};
