@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "emitters/tree_descent.h"
+
 namespace brisance {
 
 namespace {
@@ -190,37 +192,17 @@ double LightTree::share_of_left(const Node& node, const LitPoint& point) const {
 std::optional<LightTree::Choice> LightTree::choose(const LitPoint& point, double u) const {
     if (nodes_.empty())
         return std::nullopt;
-    std::uint32_t at = 0;
-    double probability = 1.0;
-    while (nodes_[at].left != 0) {
-        const double left = share_of_left(nodes_[at], point);
-        if (left < 0.0)
-            return std::nullopt;
-        const bool goes_left = u < left;
-        const double share = goes_left ? left : 1.0 - left;
-        u = std::min((goes_left ? u : u - left) / share, 1.0 - 0x1p-53);
-        probability *= share;
-        at = goes_left ? nodes_[at].left : nodes_[at].right;
-    }
-    if (!(importance(nodes_[at].bounds, point) > 0.0))
+    const auto found = descend(nodes_, u, [&](const Node& n) { return share_of_left(n, point); });
+    if (!found || !(importance(nodes_[found->leaf].bounds, point) > 0.0))
         return std::nullopt;
-    return Choice{nodes_[at].right, probability};
+    return Choice{nodes_[found->leaf].right, found->probability};
 }
 
 double LightTree::probability(const LitPoint& point, std::size_t light) const {
-    std::uint32_t at = leaf_of_[light];
-    if (!(importance(nodes_[at].bounds, point) > 0.0))
+    const std::uint32_t leaf = leaf_of_[light];
+    if (!(importance(nodes_[leaf].bounds, point) > 0.0))
         return 0.0;
-    double probability = 1.0;
-    while (at != 0) {
-        const std::uint32_t parent = nodes_[at].parent;
-        const double left = share_of_left(nodes_[parent], point);
-        if (left < 0.0)
-            return 0.0;
-        probability *= nodes_[parent].left == at ? left : 1.0 - left;
-        at = parent;
-    }
-    return probability;
+    return descent_probability(nodes_, leaf, [&](const Node& n) { return share_of_left(n, point); });
 }
 
 }  // namespace brisance

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "emitters/tree_descent.h"
+
 namespace brisance {
 
 namespace {
@@ -157,33 +159,14 @@ double RayLightTree::share_of_left(const Node& node, const RayLightReceiver& rec
 std::optional<RayLightTree::Choice> RayLightTree::choose(const RayLightReceiver& receiver, double u) const {
     if (nodes_.empty())
         return std::nullopt;
-    Choice choice{0, 1.0, 1};
-    std::uint32_t at = 0;
-    while (nodes_[at].left != 0) {
-        const double left = share_of_left(nodes_[at], receiver);
-        if (left < 0.0)
-            return std::nullopt;
-        const bool goes_left = u < left;
-        const double share = goes_left ? left : 1.0 - left;
-        u = std::min((goes_left ? u : u - left) / share, 1.0 - 0x1p-53);
-        choice.probability *= share;
-        choice.visited += 2;
-        at = goes_left ? nodes_[at].left : nodes_[at].right;
-    }
-    choice.light = nodes_[at].right;
-    return choice;
+    const auto found = descend(nodes_, u, [&](const Node& n) { return share_of_left(n, receiver); });
+    if (!found)
+        return std::nullopt;
+    return Choice{nodes_[found->leaf].right, found->probability, 1 + 2 * found->branches};
 }
 
 double RayLightTree::probability(const RayLightReceiver& receiver, std::size_t light) const {
-    double probability = 1.0;
-    for (std::uint32_t at = leaf_of_[light]; at != 0; at = nodes_[at].parent) {
-        const std::uint32_t parent = nodes_[at].parent;
-        const double left = share_of_left(nodes_[parent], receiver);
-        if (left < 0.0)
-            return 0.0;
-        probability *= nodes_[parent].left == at ? left : 1.0 - left;
-    }
-    return probability;
+    return descent_probability(nodes_, leaf_of_[light], [&](const Node& n) { return share_of_left(n, receiver); });
 }
 
 }  // namespace brisance
