@@ -25,9 +25,21 @@ Directions spiral() {
 
 }  // namespace
 
-NodeWeights escape_likelihood(const Medium& medium, const PointDepths& depths, const std::vector<Rgb>& intensity) {
-    const Directions directions = spiral();
+float mean_transmittance_outside(const Medium& medium, const PointDepths& depths, const vec3& from) {
+    static const Directions directions = spiral();
     const float far = local_bounds(medium).diagonal();
+    std::array<vec3, PointDepths::kRays> to;
+    std::array<float, PointDepths::kRays> depth;
+    for (int k = 0; k < PointDepths::kRays; ++k)
+        to[k] = from + far * directions[k];
+    depths.between(from, to.data(), depth.data());
+    float sum = 0.0f;
+    for (const float d : depth)
+        sum += std::exp(-d) / PointDepths::kRays;
+    return sum;
+}
+
+NodeWeights escape_likelihood(const Medium& medium, const PointDepths& depths, const std::vector<Rgb>& intensity) {
     NodeWeights likelihood(intensity.size(), 0.0f);
     parallel_for(
         intensity.size() / BrickLattice::kNodes,
@@ -36,14 +48,9 @@ NodeWeights escape_likelihood(const Medium& medium, const PointDepths& depths, c
                 const std::size_t i = b * BrickLattice::kNodes + n;
                 if (!(luminance(intensity[i]) > 0.0f))
                     continue;
-                const vec3 from = medium.local_of_node(medium.lattice.first_node(b) + BrickLattice::node_in_brick(n));
-                std::array<vec3, PointDepths::kRays> to;
-                std::array<float, PointDepths::kRays> depth;
-                for (int k = 0; k < PointDepths::kRays; ++k)
-                    to[k] = from + far * directions[k];
-                depths.between(from, to.data(), depth.data());
-                for (const float d : depth)
-                    likelihood[i] += std::exp(-d) / PointDepths::kRays;
+                likelihood[i] = mean_transmittance_outside(
+                    medium, depths,
+                    medium.local_of_node(medium.lattice.first_node(b) + BrickLattice::node_in_brick(n)));
             }
         },
         4);

@@ -8,6 +8,9 @@
 
 namespace brisance {
 
+// Over PointDepths::kRays fixed directions, from a place in the medium, local [m].
+float mean_transmittance_outside(const Medium& medium, const PointDepths& depths, const vec3& from);
+
 // For every node with an intensity above zero the mean transmittance to the outside over PointDepths::kRays fixed
 // directions, 0 for others: an importance, not an estimate.
 NodeWeights escape_likelihood(const Medium& medium, const PointDepths& depths, const std::vector<Rgb>& intensity);

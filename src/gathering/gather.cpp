@@ -304,9 +304,10 @@ Gathered gather_from_outside(const LightField& field, const LatticeRequest& requ
 }
 
 Gathered gather_at_points(const LightField& field, const GridLevel& bottom, const Receivers& receivers,
-                          float mean_cosine, std::vector<LevelCost>& costs, Progress& progress, ReceiverKind kind) {
+                          float mean_cosine, std::vector<LevelCost>& costs, Progress& progress, ReceiverKind kind,
+                          bool moments) {
     Gathered out;
-    out.resize(receivers.size(), !receivers.out_x.empty(), false);
+    out.resize(receivers.size(), !receivers.out_x.empty(), moments);
     FarGather gather(field, receivers, mean_cosine, out, progress, kind);
     costs.push_back(gather.run(bottom, false));
     gather_upper_levels(field, gather, costs);

@@ -76,6 +76,6 @@ GridLevel bottom_level(const LightField& field);
 // (`bottom`, made once) by marched shadows and the ball kernel. Planar over receivers.
 Gathered gather_at_points(const LightField& field, const GridLevel& bottom, const Receivers& receivers,
                           float mean_cosine, std::vector<LevelCost>& costs, Progress& progress,
-                          ReceiverKind kind = ReceiverKind::Medium);
+                          ReceiverKind kind = ReceiverKind::Medium, bool moments = false);
 
 }  // namespace brisance

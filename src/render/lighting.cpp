@@ -8,6 +8,7 @@
 #include "lights/voxel_lights.h"
 #include "medium/phase.h"
 #include "render/emitter_gather.h"
+#include "render/level_costs.h"
 #include "render/surface_occluders.h"
 
 namespace brisance {
@@ -16,28 +17,6 @@ namespace {
 
 // Of the pyramid that rays toward extended lights march: which part of a light is hidden by smoke needs no more.
 constexpr int kAimLevel = 2;
-
-nlohmann::ordered_json level_table(const std::vector<LevelCost>& costs) {
-    auto table = nlohmann::ordered_json::array();
-    for (const LevelCost& c : costs)
-        table.push_back({{"level", c.level},
-                         {"lights", c.lights},
-                         {"resolution", c.resolution},
-                         {"distances", c.distances},
-                         {"map_bytes", c.map_bytes},
-                         {"held_bytes", c.held_bytes},
-                         {"map_seconds", c.map_seconds},
-                         {"gather_seconds", c.gather_seconds},
-                         {"evaluations", c.evaluations}});
-    return table;
-}
-
-std::uint64_t most_held(const std::vector<LevelCost>& costs) {
-    std::uint64_t most = 0;
-    for (const LevelCost& c : costs)
-        most = std::max(most, c.held_bytes);
-    return most;
-}
 
 nlohmann::ordered_json balance_row(const BounceBalance& b, const std::string& order) {
     return {{"order", order},
@@ -102,6 +81,9 @@ Lighting::Lighting(const Shot& shot, const Plan& plan, const Medium& medium, con
     }
     if (plan.directional)
         toward_camera_ = directions_to(medium, vec3(camera.eye_local()));
+    if (!marching() && (plan.single || plan.multiple))
+        haze_ =
+            Haze(medium, depths_, needed_, plan.directional ? std::optional(vec3(camera.eye_local())) : std::nullopt);
     Gathered first;
     if (plan.emission)
         first = light_from_fire();
@@ -124,6 +106,13 @@ Lighting::Lighting(const Shot& shot, const Plan& plan, const Medium& medium, con
 LatticeRequest Lighting::request() const {
     const bool moments = plan_.multiple && plan_.directional;
     return {&needed_, plan_.directional ? &toward_camera_ : nullptr, moments, medium_.mean_cosine};
+}
+
+// Of the last flight before the camera.
+LatticeRequest Lighting::last_request() const {
+    LatticeRequest ask = request();
+    ask.moments = false;
+    return ask;
 }
 
 Gathered Lighting::light_from_surfaces(const PointLights& reflecting) {
@@ -202,15 +191,17 @@ Gathered Lighting::light_from_fire() {
         stage.detail["levels"] = level_table(costs);
         stage.seconds = watch.seconds();
         statistics_.stages.push_back(stage);
-        if (!marching())
-            nodes_.single = source_function(first);
     }
-    if (marching() || lights_surfaces()) {
+    if (marching() || lights_outside()) {
         fire_ = std::make_unique<KeptLights>();
         fire_->lights = std::move(lights);
         fire_->scale = scale;
         keep(*fire_, shot_.lighting.alpha);
+        if (nodes)
+            light_haze(*fire_, request(), first);
     }
+    if (nodes && !marching())
+        nodes_.single = source_function(first);
     if (first.fluence.empty())
         first.resize(needed_.size(), plan_.directional, plan_.multiple && plan_.directional);
     return first;
@@ -219,8 +210,7 @@ Gathered Lighting::light_from_fire() {
 Gathered Lighting::gather_last_flight(const HierarchyLights& lights, int order, nlohmann::ordered_json& balances,
                                       std::vector<LevelCost>& costs) {
     const LightField field = lights.field(pyramid_, shot_.scattering.alpha, shot_.lighting, nullptr);
-    Gathered g = gather_at_nodes(
-        field, {&needed_, plan_.directional ? &toward_camera_ : nullptr, false, medium_.mean_cosine}, costs, progress_);
+    Gathered g = gather_at_nodes(field, last_request(), costs, progress_);
     prepare_interpolation(medium_.lattice, needed_, g);
     if (!shot_.lighting.energy_balance)
         return g;
@@ -270,35 +260,43 @@ void Lighting::light_from_smoke(const Gathered& first) {
     std::vector<LevelCost> levels;
     Gathered sum;
     sum.resize(needed_.size(), plan_.directional, false);
-    const bool kept = marching() || lights_surfaces();
+    const bool kept = marching() || lights_outside();
     if (kept)
         smoke_ = std::make_unique<KeptLights>();
     for (std::size_t k = 0; k < orders.size(); ++k) {
         orders[k].sharpen(medium_.lattice);
         HierarchyLights lights = build_hierarchy(medium_, std::move(orders[k]), shot_.lighting.levels);
         // Marching gathers at the points later; the nodes then serve the balance alone.
+        Gathered g;
         if (!marching() || shot_.lighting.energy_balance) {
             std::vector<LevelCost> these;
-            const Gathered g = gather_last_flight(lights, orders_apart() ? int(k) + 1 : -1, balances, these);
+            g = gather_last_flight(lights, orders_apart() ? int(k) + 1 : -1, balances, these);
             if (levels.empty())
                 levels = these;
-            if (orders_apart())
-                nodes_.orders.push_back(source_function(g));
-            sum.add(g);
         }
         if (kept)
             smoke_->lights = std::move(lights);
+        if (kept && orders_apart()) {
+            keep(*smoke_, shot_.scattering.alpha);
+            light_haze(*smoke_, last_request(), g);
+        }
+        if (orders_apart())
+            nodes_.orders.push_back(source_function(g));
+        sum.add(g);
     }
-    if (kept && lights_surfaces() && !plan_.directional && shot_.scattering.bounces < 0) {
-        // What the camera sees is what lights the surfaces: all light that arrives at the nodes, scattered once more.
+    if (kept && lights_outside() && !plan_.directional && shot_.scattering.bounces < 0 && !orders_apart()) {
+        // What the camera sees is what lights the surroundings: all light that arrives at the nodes, scattered once
+        // more.
         Gathered all = first;
         all.add(sum);
         ScatteredLight leaving = scattered_light(medium_, all, needed_);
         leaving.sharpen(medium_.lattice);
         smoke_->lights = build_hierarchy(medium_, std::move(leaving), shot_.lighting.levels);
     }
-    if (kept)
+    if (kept && !orders_apart()) {
         keep(*smoke_, shot_.scattering.alpha);
+        light_haze(*smoke_, last_request(), sum);
+    }
     if (!marching())
         nodes_.multiple = source_function(sum);
     last.seconds = watch.seconds();

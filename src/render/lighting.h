@@ -9,6 +9,7 @@
 #include "render/camera.h"
 #include "render/cell_field.h"
 #include "render/extended_light.h"
+#include "render/haze.h"
 #include "render/integrate.h"
 #include "render/plan.h"
 #include "render/statistics.h"
@@ -52,6 +53,7 @@ private:
     Gathered light_from_surfaces(const PointLights& reflecting);
     Gathered light_from_emitters(const Surroundings& surroundings);
     LatticeRequest request() const;
+    LatticeRequest last_request() const;
     std::vector<ScatteredLight> orders_of_scattering(const Gathered& first);
     void light_from_smoke(const Gathered& first);
     Gathered gather_last_flight(const HierarchyLights& lights, int order, nlohmann::ordered_json& balances,
@@ -60,6 +62,7 @@ private:
     bool orders_apart() const { return shot_.output.bounce_layers && !marching() && !lights_surfaces(); }
     bool marching() const { return shot_.lighting.gather == GatherMethod::RayMarch; }
     bool lights_surfaces() const { return plan_.needs(Cell::SV) || plan_.needs(Cell::SM); }
+    bool lights_outside() const { return lights_surfaces() || !haze_.empty(); }
 
     const Shot& shot_;
     const Plan& plan_;
@@ -71,20 +74,25 @@ private:
     std::vector<std::uint8_t> needed_;
     std::vector<vec3> toward_camera_;
     PointDepths depths_;
+    Haze haze_;
     NodeLighting nodes_;
 
-    // Of the fire and of the smoke, kept for at_points and at_surfaces only.
+    // Of the fire and of the smoke, kept for at_points, at_surfaces and haze only.
     struct KeptLights {
         HierarchyLights lights;
         LightField field;
         GridLevel bottom;
         ShadowMapCache maps;
-        std::vector<float> escape;  // for surfaces: per node, how likely light is to leave the medium
+        std::vector<float> escape;  // for receivers outside: per node, how likely light is to leave the medium
+        LightingGrid for_haze;
         Rgb scale{1.0f};
         std::unique_ptr<ExtendedLight> aim;  // for surfaces
-        Rgb escape_scale{1.0f};              // the same
+        Rgb escape_scale{1.0f};              // for receivers outside
     };
+    NodeWeights escape_of(const std::vector<Rgb>& intensity) const;
     void keep(KeptLights& lights, float alpha);
+    // Where nodes are haze: from lights that were kept, in the place of what was gathered.
+    void light_haze(KeptLights& from, const LatticeRequest& ask, Gathered& gathered);
     void balance_escape(KeptLights& lights);
     std::unique_ptr<KeptLights> fire_, smoke_;
 };

@@ -7,6 +7,7 @@
 #include "lights/voxel_lights.h"
 #include "medium/local_bounds.h"
 #include "medium/phase.h"
+#include "render/level_costs.h"
 #include "render/lighting.h"
 #include "render/outside_lights.h"
 #include "scattering/balance.h"
@@ -80,28 +81,74 @@ Receivers point_receivers(const Medium& medium, const std::vector<MarchPoint>& p
 
 }  // namespace
 
+// How likely light of each node is to leave the medium; haze knows it of its own.
+NodeWeights Lighting::escape_of(const std::vector<Rgb>& intensity) const {
+    if (haze_.empty())
+        return escape_likelihood(medium_, depths_, intensity);
+    const std::vector<float>& open = haze_.open();
+    std::vector<Rgb> rest = intensity;
+    for (std::size_t i = 0; i < rest.size(); ++i)
+        if (open[i] >= 0.0f)
+            rest[i] = Rgb(0.0f);
+    NodeWeights escape = escape_likelihood(medium_, depths_, rest);
+    for (std::size_t i = 0; i < rest.size(); ++i)
+        if (open[i] >= 0.0f)
+            escape[i] = open[i];
+    return escape;
+}
+
 // Makes what gathering at points asks for, from lights that have found their place.
 void Lighting::keep(KeptLights& lights, float alpha) {
     const Stopwatch watch;
-    if (!marching()) {
-        lights.escape = escape_likelihood(medium_, depths_, lights.lights.light.intensity);
+    const bool outside = lights_outside();
+    if (outside) {
+        lights.escape = escape_of(lights.lights.light.intensity);
         serve_outside(lights.lights, medium_, lights.escape);
+        if (!haze_.empty() && lights_surfaces())
+            lights.for_haze = lights.lights.grid;
+        if (lights_surfaces())
+            drop_coarse_levels(lights.lights.grid, kLeastLightsForSurfaces);
     }
+    lights.maps = {};
     lights.field = lights.lights.field(pyramid_, alpha, shot_.lighting, &lights.maps);
-    if (!marching()) {
+    if (outside) {
         lights.field.escape = &lights.escape;
         lights.field.occluders = nullptr;  // surfaces aim at the lights themselves
     }
     lights.bottom = bottom_level(lights.field);
-    if (!lights_surfaces())
+    if (!outside)
         return;
-    lights.aim = std::make_unique<ExtendedLight>(medium_, depths_, lights.lights.light.intensity, lights.escape);
+    if (lights_surfaces())
+        lights.aim = std::make_unique<ExtendedLight>(medium_, depths_, lights.lights.light.intensity, lights.escape);
     if (shot_.lighting.energy_balance)
         balance_escape(lights);
-    statistics_.stages.push_back({"lights for surfaces",
+    statistics_.stages.push_back({lights_surfaces() ? "lights for surfaces" : "lights for haze",
                                   watch.seconds(),
-                                  lights.lights.grid.bytes() + lights.aim->bytes(),
+                                  lights.lights.grid.bytes() + (lights.aim ? lights.aim->bytes() : 0),
                                   {{"coarsest_level_lights", lights.lights.grid.levels.back().size()}}});
+}
+
+void Lighting::light_haze(KeptLights& from, const LatticeRequest& ask, Gathered& gathered) {
+    if (haze_.empty())
+        return;
+    const Stopwatch watch;
+    LightField field = from.field;
+    ShadowMapCache maps;
+    if (lights_surfaces()) {
+        field.grid = &from.for_haze;
+        field.occluders = pyramid_.occluders();
+        field.cache = &maps;
+    }
+    std::vector<LevelCost> costs;
+    Gathered g = haze_.gather(field, from.bottom, ask, costs, progress_);
+    prepare_interpolation(medium_.lattice, haze_.nodes(), g);
+    g.scale(from.escape_scale);
+    haze_.mix(g, gathered);
+    statistics_.stages.push_back({"light in haze",
+                                  watch.seconds(),
+                                  most_held(costs),
+                                  {{"nodes", haze_.node_count()}, {"points", haze_.point_count()}}});
+    statistics_.stages.back().detail["levels"] = level_table(costs);
 }
 
 // What passes through the sphere around the medium must be what rays say escapes.

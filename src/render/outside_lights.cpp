@@ -10,17 +10,8 @@ namespace brisance {
 
 namespace {
 
-// Of the coarsest level, before those that send nothing are left out. With a quarter of them the error is four times
-// as large.
-constexpr std::size_t kLeastTopLights = 4000;
-
 // Of all that is sent to the outside.
 constexpr double kLostShare = 1e-3;
-
-void drop_coarse_levels(LightingGrid& grid) {
-    while (grid.levels.size() > 1 && grid.levels.back().size() < kLeastTopLights)
-        grid.levels.pop_back();
-}
 
 // Lights at the middle of what they send to the outside, not of all they send.
 void move_to_skin(HierarchyLights& lights, const Medium& medium, const NodeWeights& escape) {
@@ -91,8 +82,13 @@ void drop_hidden_lights(HierarchyLights& lights, const Medium& medium, const Nod
 
 void serve_outside(HierarchyLights& lights, const Medium& medium, const NodeWeights& escape) {
     move_to_skin(lights, medium, escape);
-    drop_coarse_levels(lights.grid);
     drop_hidden_lights(lights, medium, escape);
+    drop_coarse_levels(lights.grid, kLeastLightsForHaze);
+}
+
+void drop_coarse_levels(LightingGrid& grid, std::size_t least) {
+    while (grid.levels.size() > 1 && grid.levels.back().size() < least)
+        grid.levels.pop_back();
 }
 
 }  // namespace brisance

@@ -13,7 +13,14 @@
 
 namespace brisance {
 
-// `escape`: how likely light is to leave the medium, per node (gathering/escape.h).
+// Lights of the coarsest level that are seen. With a quarter of them the error on a floor is four times as large; haze,
+// of which the camera sees the sum along its rays, is as well served by a quarter.
+constexpr std::size_t kLeastLightsForSurfaces = 4000, kLeastLightsForHaze = 1000;
+
+// `escape`: how likely light is to leave the medium, per node (gathering/escape.h). Leaves the levels that haze needs.
 void serve_outside(HierarchyLights& lights, const Medium& medium, const NodeWeights& escape);
+
+// While the coarsest level has fewer than `least` lights.
+void drop_coarse_levels(LightingGrid& grid, std::size_t least);
 
 }  // namespace brisance

@@ -30,19 +30,29 @@ double power(const std::vector<Rgb>& lights) {
     return luminance(Rgb(total(lights)));
 }
 
-// Level on which the series is solved: the finest with at most this many nodes that scatter.
-constexpr std::size_t kMostCoarseNodes = 120000;
+// Level on which the series is solved: the finest with at most this many nodes that scatter. Haze around dense smoke
+// does not count, as the smoke would be solved the worse for it; but no level is finer than memory and time allow.
+constexpr std::size_t kMostCoarseNodes = 120000, kMostWithHaze = 1000000;
+constexpr double kHaze = 0.05;  // of the mean extinction that light meets
 
 int choose_level(const ExtinctionPyramid& pyramid, int wish) {
     const int last = pyramid.level_count() - 1;
     if (wish >= 0)
         return std::min(wish, last);
-    int level = 0;
-    const auto lit = [&](int l) {
-        const auto& nodes = pyramid.nodes(l);
-        return std::size_t(std::count_if(nodes.begin(), nodes.end(), [](float e) { return e > 0.0f; }));
+    const auto above = [&](int level, double extinction) {
+        const auto& nodes = pyramid.nodes(level);
+        return std::size_t(std::count_if(nodes.begin(), nodes.end(), [&](float e) { return e > extinction; }));
     };
-    while (level < last && lit(level) > kMostCoarseNodes)
+    const auto met = [&](int level) {
+        double sum = 0.0, squares = 0.0;
+        for (const float e : pyramid.nodes(level)) {
+            sum += e;
+            squares += double(e) * e;
+        }
+        return sum > 0.0 ? squares / sum : 0.0;
+    };
+    int level = 0;
+    while (level < last && (above(level, kHaze * met(level)) > kMostCoarseNodes || above(level, 0.0) > kMostWithHaze))
         ++level;
     return level;
 }
