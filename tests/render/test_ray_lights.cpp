@@ -123,13 +123,13 @@ bool skips(const Plan& plan, const char* part) {
 TEST(RayLightPictures, NothingIsTracedForWhatIsNotThere) {
     const Shot shot = small_shot(RenderMethod::LightingGrid);
     const Medium medium = smoke(0.0f);
-    EXPECT_TRUE(plan_cells(shot, medium).ray_lights);
+    EXPECT_TRUE(plan_cells(shot, medium).scattered_lights);
     EXPECT_TRUE(skips(plan_cells(shot, medium), "scattered hierarchies"));
-    EXPECT_FALSE(plan_cells(shot, Medium{}).ray_lights);
-    EXPECT_FALSE(plan_cells(small_shot(RenderMethod::Path), medium).ray_lights);
+    EXPECT_FALSE(plan_cells(shot, Medium{}).scattered_lights);
+    EXPECT_FALSE(plan_cells(small_shot(RenderMethod::Path), medium).scattered_lights);
     Shot once = shot;
     once.scattering.bounces = 1;
-    EXPECT_FALSE(plan_cells(once, medium).ray_lights);
+    EXPECT_FALSE(plan_cells(once, medium).scattered_lights);
     EXPECT_TRUE(skips(plan_cells(once, medium), "ray lights"));
     Progress silent;
     for (const StageCost& stage : render_medium(once, medium, silent).statistics.stages)
