@@ -9,11 +9,11 @@
 #include "medium_points/compensation.h"
 #include "medium_points/point_sum.h"
 #include "medium_points/trace_medium_points.h"
-#include "ray_lights/scattered_light.h"
+#include "ray_lights/lights_in_smoke.h"
 
 namespace brisance {
 
-class MediumPoints : public ScatteredLight {
+class MediumPoints : public LightsInSmoke {
 public:
     // Traces, thins out and sorts the lights. Keeps a reference to the scene. `receivers`: what stands for all that the
     // camera sees, for the roulette. `bounces` as of trace_medium_points().

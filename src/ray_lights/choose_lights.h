@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/rng.h"
+#include "ray_lights/lights_in_smoke.h"
 #include "ray_lights/ray_light_tree.h"
-#include "ray_lights/scattered_light.h"
 
 namespace brisance {
 

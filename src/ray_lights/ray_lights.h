@@ -14,13 +14,13 @@
 #include <span>
 #include <vector>
 
+#include "ray_lights/lights_in_smoke.h"
 #include "ray_lights/ray_light_tree.h"
-#include "ray_lights/scattered_light.h"
 #include "ray_lights/trace_ray_lights.h"
 
 namespace brisance {
 
-class RayLights : public ScatteredLight {
+class RayLights : public LightsInSmoke {
 public:
     // Traces, thins out and sorts the lights. Keeps a reference to the scene. `receivers`: what stands for all that the
     // camera sees, for the roulette. `bounces` as of trace_ray_lights().

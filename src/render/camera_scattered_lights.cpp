@@ -30,8 +30,8 @@ std::vector<RayLightReceiver> receivers_of(const DirectLight& scene, const Camer
     return receivers;
 }
 
-std::unique_ptr<ScatteredLight> ray_lights(const Shot& shot, const DirectLight& scene, const Camera& camera,
-                                           StageCost& cost) {
+std::unique_ptr<LightsInSmoke> ray_lights(const Shot& shot, const DirectLight& scene, const Camera& camera,
+                                          StageCost& cost) {
     auto lights =
         std::make_unique<RayLights>(scene, shot.ray_lights, shot.scattering.bounces, receivers_of(scene, camera));
     const RayLightReport& r = lights->report();
@@ -44,8 +44,8 @@ std::unique_ptr<ScatteredLight> ray_lights(const Shot& shot, const DirectLight& 
     return lights;
 }
 
-std::unique_ptr<ScatteredLight> point_lights(const Shot& shot, const DirectLight& scene, const Camera& camera,
-                                             StageCost& cost) {
+std::unique_ptr<LightsInSmoke> point_lights(const Shot& shot, const DirectLight& scene, const Camera& camera,
+                                            StageCost& cost) {
     auto lights =
         std::make_unique<MediumPoints>(scene, shot.point_lights, shot.scattering.bounces, receivers_of(scene, camera));
     const MediumPointReport& r = lights->report();
@@ -62,8 +62,8 @@ std::unique_ptr<ScatteredLight> point_lights(const Shot& shot, const DirectLight
 
 }  // namespace
 
-std::unique_ptr<ScatteredLight> trace_scattered_lights(const Shot& shot, const DirectLight& scene, const Camera& camera,
-                                                       Statistics& statistics, Progress& progress) {
+std::unique_ptr<LightsInSmoke> trace_scattered_lights(const Shot& shot, const DirectLight& scene, const Camera& camera,
+                                                      Statistics& statistics, Progress& progress) {
     const bool points = shot.ray_lights.method == ScatteringMethod::PointLights;
     StageCost cost;
     cost.name = points ? "point lights (MM, SM)" : "ray lights (MM, SM)";
@@ -75,7 +75,7 @@ std::unique_ptr<ScatteredLight> trace_scattered_lights(const Shot& shot, const D
     return lights;
 }
 
-LightRays light_rays_by(const ScatteredLight& lights, const TrackingField& field) {
+LightRays light_rays_by(const LightsInSmoke& lights, const TrackingField& field) {
     return [&](const PixelRay& r, double end) {
         thread_local SeenMedium seen;
         seen.look(field, r.ray, end);

@@ -4,12 +4,13 @@
 
 #include <memory>
 
-#include "ray_lights/scattered_light.h"
+#include "ray_lights/lights_in_smoke.h"
 #include "render/camera.h"
 #include "render/integrate.h"
 #include "render/plan.h"
 #include "render/statistics.h"
 #include "shot/shot.h"
+#include "tracing/direct_light.h"
 
 namespace brisance {
 
@@ -17,11 +18,11 @@ namespace brisance {
 void check_scattered_lights(const Shot& shot);
 
 // Of the kind that scattering.method names. Keeps a reference to the scene.
-std::unique_ptr<ScatteredLight> trace_scattered_lights(const Shot& shot, const DirectLight& scene, const Camera& camera,
-                                                       Statistics& statistics, Progress& progress);
+std::unique_ptr<LightsInSmoke> trace_scattered_lights(const Shot& shot, const DirectLight& scene, const Camera& camera,
+                                                      Statistics& statistics, Progress& progress);
 
 // Keeps references to both.
-LightRays light_rays_by(const ScatteredLight& lights, const TrackingField& field);
+LightRays light_rays_by(const LightsInSmoke& lights, const TrackingField& field);
 
 // What is left to the lighting grid, and how many scatterings it should think that it follows.
 Plan without_scattered_lights(Plan plan);

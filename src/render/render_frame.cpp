@@ -154,7 +154,7 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     if (shot.virtual_lights.count > 0 && (plan.needs(Cell::SS) || plan.needs(Cell::MS)))
         virtual_lights = place_virtual_lights(shot, paths->direct(), camera, statistics, progress);
     std::optional<DirectLight> own_scene;
-    std::unique_ptr<ScatteredLight> scattered_lights;
+    std::unique_ptr<LightsInSmoke> scattered_lights;
     if (plan.scattered_lights) {
         const DirectLight& scene = paths ? paths->direct() : own_scene.emplace(medium, shot.tracing, surroundings);
         scattered_lights = trace_scattered_lights(shot, scene, camera, statistics, progress);

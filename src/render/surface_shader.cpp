@@ -22,7 +22,7 @@ bool has_specular(const SurfaceMaterial& m) {
 }  // namespace
 
 SurfaceShader::SurfaceShader(const Plan& plan, const CellField& field, Lighting* lighting, const VirtualLights* lights,
-                             const PathTracer& paths, int parts, const ScatteredLight* scattered_lights,
+                             const PathTracer& paths, int parts, const LightsInSmoke* scattered_lights,
                              PathLengths* lengths)
     : plan_(plan),
       field_(field),

@@ -10,7 +10,7 @@
 #include <span>
 
 #include "emitters/surroundings.h"
-#include "ray_lights/scattered_light.h"
+#include "ray_lights/lights_in_smoke.h"
 #include "render/cell_field.h"
 #include "render/integrate.h"
 #include "render/lighting.h"
@@ -27,7 +27,7 @@ public:
     // `parts`: as of PictureSettings. `scattered_lights`: null where they do not own SM. `lengths`: counts the paths of
     // the virtual lights; null: nobody wants to know.
     SurfaceShader(const Plan& plan, const CellField& field, Lighting* lighting, const VirtualLights* lights,
-                  const PathTracer& paths, int parts, const ScatteredLight* scattered_lights = nullptr,
+                  const PathTracer& paths, int parts, const LightsInSmoke* scattered_lights = nullptr,
                   PathLengths* lengths = nullptr);
 
     void shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) const;
@@ -47,7 +47,7 @@ private:
     const PathTracer& paths_;
     const Surroundings& surroundings_;
     int parts_;
-    const ScatteredLight* scattered_lights_;
+    const LightsInSmoke* scattered_lights_;
     PathLengths* lengths_;
 };
 

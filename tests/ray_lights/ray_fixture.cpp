@@ -25,7 +25,7 @@ Twice Stage::by_paths(const Ray& ray, double place, Rng& rng) const {
     return {sum.cells.at(Cell::MM), sum.cells.at(Cell::SM)};
 }
 
-Twice Stage::by_lights(const ScatteredLight& lights, const Ray& ray, Rng& rng, bool all) const {
+Twice Stage::by_lights(const LightsInSmoke& lights, const Ray& ray, Rng& rng, bool all) const {
     const RaySegment segment = scene().segment_along(ray);
     SeenMedium seen;
     seen.look(scene().field(), ray, segment.end);

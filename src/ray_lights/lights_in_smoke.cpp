@@ -1,4 +1,4 @@
-#include "ray_lights/scattered_light.h"
+#include "ray_lights/lights_in_smoke.h"
 
 #include <algorithm>
 #include <cmath>

@@ -15,9 +15,9 @@ struct RayLightCost {
     std::uint64_t visited = 0;  // nodes of the tree
 };
 
-class ScatteredLight {
+class LightsInSmoke {
 public:
-    virtual ~ScatteredLight() = default;
+    virtual ~LightsInSmoke() = default;
 
     // MM along a ray of the camera whose medium was looked at [W/(m^2 sr)].
     virtual Rgb along_ray(const SeenMedium& seen, Rng& rng, RayLightCost* cost = nullptr) const = 0;
