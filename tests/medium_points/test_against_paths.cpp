@@ -54,13 +54,13 @@ TEST(PointsAgainstPaths, ABoundWiderThanTheSmoke) {
 
 // Light from floor and mirror is compensated as well: what is left out arrives at the nearer vertex from everywhere. By
 // fire alone: paths cannot find a point lamp in a mirror.
-TEST(PointsAgainstPaths, AMirrorBelow) {
+TEST(PointsAgainstPaths, AMirrorAbove) {
     SceneMaterial mirror = lambert(0.9f);
     mirror.surface.metallic = 1.0f;
     mirror.surface.roughness = 0.0f;
     Scene scene;
     add_quad(scene, {-4, -4, -1.2f}, {8, 0, 0}, {0, 8, 0}, lambert(0.7f));
-    add_quad(scene, {-4, 1.2f, -4}, {8, 0, 0}, {0, 0, 8}, mirror);
+    add_quad(scene, {-4, -4, 2.8f}, {8, 0, 0}, {0, 8, 0}, mirror);  // above the rays
     const Stage stage(coloured_ball(8, 2.0f, 0.0f), std::move(scene));
     expect_same_means(mean_by_points(stage, points(0.5, kExact)), mean_by_paths(stage, 300), "mirror, exact");
 }
