@@ -56,6 +56,7 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
     plan.scattered_lights = by_lights && (plan.multiple || plan.needs(Cell::SM));
     if (by_lights && !plan.scattered_lights)
         skip(scattering == ScatteringMethod::RayLights ? "ray lights" : "point lights", "no light is scattered twice");
+    const std::string owners = std::string("scattering.method is ") + name_of(scattering) + ": MM and SM are theirs";
     if (!plan.surfaces)
         skip("row S, column S", "no surfaces in the shot");
     if (!plan.emitters)
@@ -70,6 +71,8 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
             if (!plan.needs(cell) && (cell != Cell::SV || plan.surfaces))
                 skip(name_of(cell), "nothing emits");
         skip("lights, hierarchy, shadow maps", "nothing emits");
+        if (plan.scattered_lights)
+            skip("scattered hierarchies", owners);
         return plan;
     }
     const bool lit_by_grid = shot.method == RenderMethod::LightingGrid;
@@ -81,8 +84,7 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
     if (!plan.single || !lit_by_grid)
         skip("lights, hierarchy, shadow maps", lit_by_grid ? "no cell asks for them" : "method is path");
     else if (plan.scattered_lights)
-        skip("scattered hierarchies",
-             std::string("scattering.method is ") + name_of(scattering) + ": MM and SM are theirs");
+        skip("scattered hierarchies", owners);
     else if (!plan.multiple)
         skip("scattered hierarchies", "one scattering only");
     plan.directional = lit_by_grid && plan.single && medium.mean_cosine != 0.0f;
