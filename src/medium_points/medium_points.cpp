@@ -6,7 +6,8 @@ namespace brisance {
 
 MediumPoints::MediumPoints(const DirectLight& scene, const PointLightSettings& settings, int bounces,
                            std::span<const RayLightReceiver> receivers)
-    : samples_(settings.samples),
+    : LightsInSmoke(settings.seed),
+      samples_(settings.samples),
       sum_(scene,
            keep_important(trace_medium_points(scene, settings, bounces, report_), receivers,
                           static_cast<std::size_t>(settings.count), scene.field().mean_cosine(),

@@ -17,7 +17,13 @@ struct RayLightCost {
 
 class LightsInSmoke {
 public:
+    explicit LightsInSmoke(std::uint32_t seed) : seed_(seed) {}
     virtual ~LightsInSmoke() = default;
+
+    // For a ray of a pixel of the camera: pictures of different seeds share no random numbers.
+    Rng rng(Stream stream, std::uint32_t pixel, std::uint32_t number) const {
+        return Rng(stream, pixel | std::uint64_t(seed_) << 32, number);
+    }
 
     // MM along a ray of the camera whose medium was looked at [W/(m^2 sr)].
     virtual Rgb along_ray(const SeenMedium& seen, Rng& rng, RayLightCost* cost = nullptr) const = 0;
@@ -29,6 +35,9 @@ public:
     virtual Rgb along_ray_from_all(const SeenMedium& seen, Rng& rng) const = 0;
     virtual Rgb at_surface_from_all(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer,
                                     Rng& rng) const = 0;
+
+private:
+    std::uint32_t seed_;
 };
 
 // The part of a ray that shows almost all that is seen of its medium.

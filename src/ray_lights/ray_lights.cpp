@@ -17,7 +17,8 @@ constexpr double kByItsBox = 0.1;
 
 RayLights::RayLights(const DirectLight& scene, const RayLightSettings& settings, int bounces,
                      std::span<const RayLightReceiver> receivers)
-    : scene_(scene),
+    : LightsInSmoke(settings.seed),
+      scene_(scene),
       settings_(settings),
       lights_(keep_important(trace_ray_lights(scene, settings, bounces, report_), receivers,
                              static_cast<std::size_t>(settings.count), scene.field().mean_cosine(),

@@ -79,7 +79,7 @@ LightRays light_rays_by(const LightsInSmoke& lights, const TrackingField& field)
     return [&](const PixelRay& r, double end) {
         thread_local SeenMedium seen;
         seen.look(field, r.ray, end);
-        Rng rng(Stream::RayLightPair, r.pixel, r.number);
+        Rng rng = lights.rng(Stream::RayLightPair, r.pixel, r.number);
         return lights.along_ray(seen, rng);
     };
 }

@@ -128,7 +128,9 @@ void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector
             const SurfacePoint& point = points[i];
             const dvec3 toward_viewer = -samples[i].ray.direction;
             Rng rng(Stream::Surface, samples[i].pixel, samples[i].number);
-            Rng ray_rng(Stream::RayLightSurface, samples[i].pixel, samples[i].number);
+            Rng ray_rng = scattered_lights_
+                              ? scattered_lights_->rng(Stream::RayLightSurface, samples[i].pixel, samples[i].number)
+                              : Rng(Stream::RayLightSurface, samples[i].pixel, samples[i].number);
             CellSum& out = light[i];
             if (lighting_ && has_base(point.material)) {
                 out.at(Cell::SV) +=
