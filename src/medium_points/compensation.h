@@ -10,8 +10,8 @@
 // Keller 2004): a path by the phase function or the BSDF of u that collides at v. There it asks lines toward the fire
 // and emitters, and one of the bounded lights, and goes on: into smoke nearer than r with the part left out there, no
 // farther; to surfaces, and to fire and emitters along its way, as any path does, as the lights hold none of these.
-// After mirrors smoke counts whole, as lights do not shine into delta lobes. Unbiased. Where r is many mean free paths
-// this is a path tracer.
+// After mirrors smoke counts whole, as lights do not shine into delta lobes. Unbiased, but for what paths from the
+// camera cannot find: a point lamp in a mirror. Where r is many mean free paths this is a path tracer.
 //
 // Local (after the idea of Engelhardt, Novak, Schmidt, Dachsbacher, Approximate Bias Compensation for Rendering Scenes
 // with Heterogeneous Participating Media, CGF 31(7), 2012; its formulas are not public, these are this program's own
