@@ -22,7 +22,9 @@ enum class Stream : std::uint32_t {
     RayLight,
     RayLightRoulette,
     RayLightPair,
-    RayLightSurface
+    RayLightSurface,
+    MediumPoint,
+    MediumPointRoulette
 };
 
 // SplitMix64 (Steele, Lea, Flood 2014), keyed by identity.

@@ -19,6 +19,10 @@ struct RayLightReceiver {
     Segment ray;  // the part that is mostly seen
     dvec3 point{0.0}, normal{0.0};
     static RayLightReceiver along(const Segment& seen) { return {true, seen, {}, {}}; }
+    // A point of the medium that is seen along `direction` (unit). `short_way`: against all it sees [m].
+    static RayLightReceiver in_smoke(const dvec3& point, const dvec3& direction, double short_way) {
+        return along({point, direction, short_way});
+    }
     static RayLightReceiver at(const dvec3& point, const dvec3& normal) { return {false, {}, point, normal}; }
 };
 

@@ -102,19 +102,15 @@ double importance(const RayLightBounds& box, const RayLightReceiver& receiver, d
            (receiver.is_ray ? along_ray(box, receiver.ray, g) : at_point(box, receiver.point, receiver.normal, g));
 }
 
-RayLightTree::RayLightTree(std::span<const RayLight> lights, double mean_cosine)
+RayLightTree::RayLightTree(std::span<const RayLightBounds> lights, double mean_cosine)
     : mean_cosine_(mean_cosine), leaf_of_(lights.size()) {
     if (lights.empty())
         return;
-    std::vector<RayLightBounds> bounds;
-    bounds.reserve(lights.size());
-    for (const RayLight& light : lights)
-        bounds.push_back(bounds_of(light));
     std::vector<std::uint32_t> order(lights.size());
     for (std::uint32_t i = 0; i < order.size(); ++i)
         order[i] = i;
     nodes_.reserve(2 * lights.size());
-    build(bounds, order, 0);
+    build(lights, order, 0);
 }
 
 // Halves by number along the longest side of the middles' box: no path is longer than the logarithm.

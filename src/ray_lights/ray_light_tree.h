@@ -1,5 +1,5 @@
-// A binary tree over ray lights that picks one of them for a camera ray or a surface point, about in proportion to what
-// it may send there, at a cost that grows like the logarithm of their number.
+// A binary tree over ray lights, or other lights in boxes, that picks one of them for a camera ray or a surface point,
+// about in proportion to what it may send there, at a cost that grows like the logarithm of their number.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +19,15 @@ struct RayLightBounds {
     dvec3 heading{0.0};       // mean of the lights' directions by power, between 0 (all over) and 1 long
 };
 RayLightBounds bounds_of(const RayLight& light);
+// Of each of some lights.
+template <class Lights>
+std::vector<RayLightBounds> boxes_of(const Lights& lights) {
+    std::vector<RayLightBounds> boxes;
+    boxes.reserve(lights.size());
+    for (const auto& light : lights)
+        boxes.push_back(bounds_of(light));
+    return boxes;
+}
 // What is left of light after an optical depth that is only guessed: more than exp(-depth), as guesses may be wrong.
 inline double guessed_transmittance(double depth) {
     return 1.0 / (1.0 + depth * (1.0 + 0.5 * depth));
@@ -33,7 +42,7 @@ double importance(const RayLightBounds& box, const RayLightReceiver& receiver, d
 
 class RayLightTree {
 public:
-    RayLightTree(std::span<const RayLight> lights, double mean_cosine);
+    RayLightTree(std::span<const RayLightBounds> lights, double mean_cosine);
     bool empty() const { return nodes_.empty(); }
 
     struct Choice {

@@ -3,31 +3,27 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ray_lights/choose_lights.h"
+#include "ray_lights/keep_important.h"
+
 namespace brisance {
 
 namespace {
 
-constexpr double kMostlySeen = 0.99;
-// Lights that the tree proposes for one that is asked.
-constexpr int kCandidates = 8;
 // What its few places may miss, a light is wanted for by its box.
 constexpr double kByItsBox = 0.1;
 
 }  // namespace
 
-RayLightReceiver receiver_along(const SeenMedium& seen) {
-    Segment part = seen.segment();
-    part.length = seen.sample_flight(kMostlySeen);
-    return RayLightReceiver::along(part);
-}
-
 RayLights::RayLights(const DirectLight& scene, const RayLightSettings& settings, int bounces,
                      std::span<const RayLightReceiver> receivers)
-    : scene_(scene),
+    : LightsInSmoke(settings.seed),
+      scene_(scene),
       settings_(settings),
       lights_(keep_important(trace_ray_lights(scene, settings, bounces, report_), receivers,
-                             static_cast<std::size_t>(settings.count), scene.field().mean_cosine(), settings.seed)),
-      tree_(lights_, scene.field().mean_cosine()) {
+                             static_cast<std::size_t>(settings.count), scene.field().mean_cosine(),
+                             Stream::RayLightRoulette, settings.seed)),
+      tree_(boxes_of(lights_), scene.field().mean_cosine()) {
     report_.lights = lights_.size();
 }
 
@@ -104,32 +100,15 @@ Rgb RayLights::to_surface(const SurfacePoint& point, const Bsdf& bsdf, const dve
 
 // The double integral of a pair by a few of its places.
 double RayLights::wanted_along(const SeenMedium& seen, const RayLight& light) const {
-    constexpr int kPlaces = 3, kAngles = 4;
-    const Segment& ray = seen.segment();
-    const double g = scene_.field().mean_cosine(), tiny = 1e-9 * ray.length;
-    const InverseDistanceDensity near(light.segment, ray);
+    constexpr int kPlaces = 3;
+    const double g = scene_.field().mean_cosine();
+    const InverseDistanceDensity near(light.segment, seen.segment());
     double sum = 0.0;
     for (int i = 0; i < kPlaces; ++i) {
         const double v = near.place((i + 0.5) / kPlaces);
-        const dvec3 way = ray.start - light.segment.at(v);
-        const double begin = glm::dot(way, ray.direction);
-        const dvec3 across = way - begin * ray.direction;
-        const double height = std::max(glm::length(across), tiny), first = std::atan2(begin, height);
-        const double angle = std::atan2(height * ray.length, height * height + begin * (begin + ray.length));
-        double shown = 0.0;
-        for (int k = 0; k < kAngles; ++k) {
-            const double a = first + (k + 0.5) / kAngles * angle, cosine = std::max(std::cos(a), 1e-12);
-            const double u = std::clamp(height * std::sin(a) / cosine - begin, 0.0, ray.length);
-            double here = seen.transmittance(u) * guessed_transmittance(light.extinction * height / cosine);
-            if (g != 0.0) {
-                const dvec3 toward = cosine / height * across + std::sin(a) * ray.direction;
-                here *= phase_about(light.segment.direction, toward, g) * phase_about(toward, -ray.direction, g);
-            }
-            shown += here;
-        }
-        sum += shown * angle / (height * near.pdf(v));
+        sum += shown_along(seen, light.segment.at(v), light.segment.direction, light.extinction, g) / near.pdf(v);
     }
-    return sum * light.scattered / (kPlaces * kAngles * light.segment.length);
+    return sum * light.scattered / (kPlaces * light.segment.length);
 }
 
 // By its middle, as the tree sees it.
@@ -137,41 +116,8 @@ double RayLights::wanted_at(const dvec3& point, const dvec3& normal, const RayLi
     return importance(bounds_of(light), RayLightReceiver::at(point, normal), scene_.field().mean_cosine());
 }
 
-// Candidates are stratified over the tree; those of one sample lie apart.
-template <class Wanted>
-void RayLights::choose(const RayLightReceiver& receiver, const Wanted& wanted_of, Rng& rng, RayLightCost* cost,
-                       std::vector<Choice>& choices) const {
-    choices.clear();
-    if (tree_.empty())
-        return;
-    const int samples = settings_.samples, candidates = samples * kCandidates;
-    const double shift = rng.next_double();
-    for (int i = 0; i < samples; ++i) {
-        double sum = 0.0, target = 0.0;
-        const RayLight* chosen = nullptr;
-        for (int k = 0; k < kCandidates; ++k) {
-            const auto proposed = tree_.choose(receiver, (i + samples * k + shift) / candidates);
-            if (!proposed)
-                continue;
-            const RayLight& light = lights_[proposed->light];
-            const double wanted = wanted_of(light), weight = wanted / proposed->probability;
-            sum += weight;
-            if (weight > 0.0 && rng.next_double() * sum < weight) {
-                chosen = &light;
-                target = wanted;
-            }
-            if (cost)
-                cost->visited += static_cast<std::uint64_t>(proposed->visited);
-        }
-        if (chosen)
-            choices.push_back({chosen, sum / (target * kCandidates * samples)});
-    }
-    if (cost)
-        cost->pairs += choices.size();
-}
-
 Rgb RayLights::along_ray(const SeenMedium& seen, Rng& rng, RayLightCost* cost) const {
-    thread_local std::vector<Choice> choices;
+    thread_local std::vector<LightChoice<RayLight>> choices;
     if (seen.empty())
         return Rgb(0.0f);
     const RayLightReceiver receiver = receiver_along(seen);
@@ -179,22 +125,23 @@ Rgb RayLights::along_ray(const SeenMedium& seen, Rng& rng, RayLightCost* cost) c
     const auto wanted = [&](const RayLight& light) {
         return wanted_along(seen, light) + kByItsBox * importance(bounds_of(light), receiver, g);
     };
-    choose(receiver, wanted, rng, cost, choices);
+    choose_lights<RayLight>(tree_, lights_, receiver, settings_.samples, wanted, rng, cost, choices);
     Rgb sum(0.0f);
-    for (const Choice& c : choices)
+    for (const LightChoice<RayLight>& c : choices)
         sum += float(c.weight) * pair(seen, *c.light, rng);
     return sum;
 }
 
 Rgb RayLights::at_surface(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer, Rng& rng,
                           RayLightCost* cost) const {
-    thread_local std::vector<Choice> choices;
+    thread_local std::vector<LightChoice<RayLight>> choices;
     const bool above = glm::dot(point.frame.normal, toward_viewer) >= 0.0;
     const dvec3 normal = above ? point.frame.normal : -point.frame.normal;
     const auto wanted = [&](const RayLight& light) { return wanted_at(point.position, normal, light); };
-    choose(RayLightReceiver::at(point.position, normal), wanted, rng, cost, choices);
+    choose_lights<RayLight>(tree_, lights_, RayLightReceiver::at(point.position, normal), settings_.samples, wanted,
+                            rng, cost, choices);
     Rgb sum(0.0f);
-    for (const Choice& c : choices)
+    for (const LightChoice<RayLight>& c : choices)
         sum += float(c.weight) * to_surface(point, bsdf, toward_viewer, *c.light, rng);
     return sum;
 }

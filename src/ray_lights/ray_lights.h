@@ -8,55 +8,38 @@
 // T(0, v) is 1 for short lights, which end where their particle collided. One pair estimates it, drawn by one of two
 // densities which share it by the balance heuristic: the inverse square with both phase functions, and a flight along
 // the camera's ray with the same seen from where it collides.
-// Which lights are asked: the tree, whose boxes cannot know which of their lights almost touches the ray, proposes a
-// few for every one that is asked, and one of them is resampled by its own place (Talbot, Cline, Egbert, Importance
-// Resampling for Global Illumination, EGSR 2005).
+// Which lights are asked: choose_lights.h.
 #pragma once
 
 #include <span>
 #include <vector>
 
+#include "ray_lights/lights_in_smoke.h"
 #include "ray_lights/ray_light_tree.h"
-#include "ray_lights/seen_medium.h"
 #include "ray_lights/trace_ray_lights.h"
 
 namespace brisance {
 
-struct RayLightCost {
-    std::uint64_t pairs = 0;    // lights that were asked
-    std::uint64_t visited = 0;  // nodes of the tree
-};
-
-class RayLights {
+class RayLights : public LightsInSmoke {
 public:
     // Traces, thins out and sorts the lights. Keeps a reference to the scene. `receivers`: what stands for all that the
     // camera sees, for the roulette. `bounces` as of trace_ray_lights().
     RayLights(const DirectLight& scene, const RayLightSettings& settings, int bounces,
               std::span<const RayLightReceiver> receivers);
 
-    // MM along a ray of the camera whose medium was looked at [W/(m^2 sr)].
-    Rgb along_ray(const SeenMedium& seen, Rng& rng, RayLightCost* cost = nullptr) const;
-    // SM at a point of a surface by these of its lobes, in the direction of the viewer (unit) [W/(m^2 sr)].
+    Rgb along_ray(const SeenMedium& seen, Rng& rng, RayLightCost* cost = nullptr) const override;
     Rgb at_surface(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer, Rng& rng,
-                   RayLightCost* cost = nullptr) const;
-
-    // The same from every light, one pair each: the check.
-    Rgb along_ray_from_all(const SeenMedium& seen, Rng& rng) const;
-    Rgb at_surface_from_all(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer, Rng& rng) const;
+                   RayLightCost* cost = nullptr) const override;
+    // One pair each.
+    Rgb along_ray_from_all(const SeenMedium& seen, Rng& rng) const override;
+    Rgb at_surface_from_all(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer,
+                            Rng& rng) const override;
 
     std::span<const RayLight> lights() const { return lights_; }
     const RayLightReport& report() const { return report_; }
     std::uint64_t bytes() const { return lights_.size() * sizeof(RayLight) + tree_.bytes(); }
 
 private:
-    struct Choice {
-        const RayLight* light;
-        double weight;  // over the number of samples
-    };
-    // `wanted`: about what a light sends, for resampling.
-    template <class Wanted>
-    void choose(const RayLightReceiver& receiver, const Wanted& wanted, Rng& rng, RayLightCost* cost,
-                std::vector<Choice>& choices) const;
     double wanted_along(const SeenMedium& seen, const RayLight& light) const;
     double wanted_at(const dvec3& point, const dvec3& normal, const RayLight& light) const;
     Rgb pair(const SeenMedium& seen, const RayLight& light, Rng& rng) const;
@@ -71,8 +54,5 @@ private:
     std::vector<RayLight> lights_;
     RayLightTree tree_;
 };
-
-// The part of a ray that shows almost all that is seen of its medium.
-RayLightReceiver receiver_along(const SeenMedium& seen);
 
 }  // namespace brisance

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tracing/trackers.h"
-
 namespace brisance {
 
 namespace {
@@ -13,20 +11,27 @@ constexpr double kUnseenDepth = 64.0;
 
 }  // namespace
 
-Coefficients RayProbe::at(double t) const {
+std::optional<Collision> RayProbe::place(double t) const {
     const dvec3 nodes = way_.origin + t * way_.direction;
     const dvec3 brick = glm::floor(nodes / double(BrickLattice::kSize));
     const dvec3 bound = dvec3(field_->bricks().brick_extent());
     for (int a = 0; a < 3; ++a)
         if (!(brick[a] >= 0.0 && brick[a] < bound[a]))
-            return {};
+            return std::nullopt;
     const int b = field_->bricks().find(field_->bricks().min_brick() + ivec3(brick));
     if (b < 0)
-        return {};
+        return std::nullopt;
     const vec3 p =
         glm::clamp(vec3(nodes - brick * double(BrickLattice::kSize)), vec3(0.0f), vec3(float(BrickLattice::kSize)));
-    const float extinction = field_->extinction(static_cast<std::size_t>(b), p);
-    return {extinction, extinction * field_->albedo(static_cast<std::size_t>(b), p)};
+    return Collision{t, static_cast<std::size_t>(b), p};
+}
+
+Coefficients RayProbe::at(double t) const {
+    const std::optional<Collision> c = place(t);
+    if (!c)
+        return {};
+    const float extinction = field_->extinction(c->brick, c->position);
+    return {extinction, extinction * field_->albedo(c->brick, c->position)};
 }
 
 void SeenMedium::look(const TrackingField& field, const Ray& ray, double end) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "ray_lights/pair_sampling.h"
-#include "tracing/tracking_field.h"
+#include "tracing/trackers.h"
 
 namespace brisance {
 
@@ -20,6 +20,8 @@ public:
     RayProbe(const TrackingField& field, const Ray& ray) : field_(&field), way_(field.enter(ray)) {}
     // At a distance [m]; nothing scatters outside the medium.
     Coefficients at(double t) const;
+    // As a place where a flight might collide; none outside the medium.
+    std::optional<Collision> place(double t) const;
 
 private:
     const TrackingField* field_;
@@ -38,6 +40,8 @@ public:
     const Segment& segment() const { return segment_; }
     double transmittance(double t) const;  // from the ray's origin to t along the segment
     Coefficients coefficients(double t) const { return probe_->at(begin_ + t); }
+    // Its distance is from the ray's origin.
+    std::optional<Collision> place(double t) const { return probe_->place(begin_ + t); }
     double opacity() const;                        // of the whole segment
     double sample_flight(double xi) const;         // t along the segment, of a flight that collides on it
     double pdf_of_flight(double t) const;          // [1/m]

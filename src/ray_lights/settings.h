@@ -6,7 +6,11 @@
 namespace brisance {
 
 // Who owns light that was scattered in the medium before its last scattering: MM and SM.
-enum class ScatteringMethod { LightingGrid, RayLights };
+enum class ScatteringMethod { LightingGrid, RayLights, PointLights };
+constexpr const char* name_of(ScatteringMethod method) {
+    constexpr const char* kNames[] = {"lighting_grid", "ray_lights", "point_lights"};
+    return kNames[static_cast<int>(method)];
+}
 
 enum class RayLength {
     Short,  // to the particle's next collision: shines alike all along

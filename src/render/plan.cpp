@@ -51,11 +51,12 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
     const int bounces = shot.scattering.bounces;
     const bool scatters = medium.scatters();
     decide(plan, scatters, plan.emitters && surroundings->emitters().visible(), bounces);
-    const bool by_rays =
-        shot.method == RenderMethod::LightingGrid && shot.ray_lights.method == ScatteringMethod::RayLights;
-    plan.ray_lights = by_rays && (plan.multiple || plan.needs(Cell::SM));
-    if (by_rays && !plan.ray_lights)
-        skip("ray lights", "no light is scattered twice");
+    const ScatteringMethod scattering = shot.ray_lights.method;
+    const bool by_lights = shot.method == RenderMethod::LightingGrid && scattering != ScatteringMethod::LightingGrid;
+    plan.scattered_lights = by_lights && (plan.multiple || plan.needs(Cell::SM));
+    if (by_lights && !plan.scattered_lights)
+        skip(scattering == ScatteringMethod::RayLights ? "ray lights" : "point lights", "no light is scattered twice");
+    const std::string owners = std::string("scattering.method is ") + name_of(scattering) + ": MM and SM are theirs";
     if (!plan.surfaces)
         skip("row S, column S", "no surfaces in the shot");
     if (!plan.emitters)
@@ -70,6 +71,8 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
             if (!plan.needs(cell) && (cell != Cell::SV || plan.surfaces))
                 skip(name_of(cell), "nothing emits");
         skip("lights, hierarchy, shadow maps", "nothing emits");
+        if (plan.scattered_lights)
+            skip("scattered hierarchies", owners);
         return plan;
     }
     const bool lit_by_grid = shot.method == RenderMethod::LightingGrid;
@@ -80,8 +83,8 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
         skip("MM", scatters ? "scattering.bounces is " + std::to_string(bounces) : dark);
     if (!plan.single || !lit_by_grid)
         skip("lights, hierarchy, shadow maps", lit_by_grid ? "no cell asks for them" : "method is path");
-    else if (plan.ray_lights)
-        skip("scattered hierarchies", "scattering.method is ray_lights: MM and SM are theirs");
+    else if (plan.scattered_lights)
+        skip("scattered hierarchies", owners);
     else if (!plan.multiple)
         skip("scattered hierarchies", "one scattering only");
     plan.directional = lit_by_grid && plan.single && medium.mean_cosine != 0.0f;

@@ -18,7 +18,7 @@ struct Plan {
     bool single = false;                // MV
     bool multiple = false;              // MM
     bool directional = false;           // anisotropic phase function: directional storage
-    bool ray_lights = false;            // they own MM and SM
+    bool scattered_lights = false;      // virtual lights in the smoke, rays or points, own MM and SM
     bool surfaces = false;              // there are some
     bool emitters = false;              // there are lights, emissive surfaces or an environment
     std::array<bool, kCells> needed{};  // the cells that can be other than zero, those above among them

@@ -8,7 +8,7 @@
 #include "core/stopwatch.h"
 #include "medium/similar_medium.h"
 #include "render/camera.h"
-#include "render/camera_ray_lights.h"
+#include "render/camera_scattered_lights.h"
 #include "render/cell_field.h"
 #include "render/certify.h"
 #include "render/frame_input.h"
@@ -145,8 +145,8 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
                 const Camera& camera, Statistics& statistics, ImageMetadata& metadata, Progress& progress) {
     if (surroundings)
         check_surroundings(shot);
-    if (plan.ray_lights)
-        check_ray_lights(shot);
+    if (plan.scattered_lights)
+        check_scattered_lights(shot);
     std::optional<PathTracer> paths;
     if (plan.surfaces)
         paths.emplace(medium, shot.tracing, shot.scattering.bounces, surroundings);
@@ -154,14 +154,14 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     if (shot.virtual_lights.count > 0 && (plan.needs(Cell::SS) || plan.needs(Cell::MS)))
         virtual_lights = place_virtual_lights(shot, paths->direct(), camera, statistics, progress);
     std::optional<DirectLight> own_scene;
-    std::unique_ptr<RayLights> ray_lights;
-    if (plan.ray_lights) {
+    std::unique_ptr<LightsInSmoke> scattered_lights;
+    if (plan.scattered_lights) {
         const DirectLight& scene = paths ? paths->direct() : own_scene.emplace(medium, shot.tracing, surroundings);
-        ray_lights = trace_ray_lights_of(shot, scene, camera, statistics, progress);
+        scattered_lights = trace_scattered_lights(shot, scene, camera, statistics, progress);
     }
     // Orders of scattering that the grid follows.
-    const int grid_bounces = plan.ray_lights ? bounces_beside_ray_lights(plan) : shot.scattering.bounces;
-    const Plan grid_plan = plan.ray_lights ? without_ray_lights(plan) : plan;
+    const int grid_bounces = plan.scattered_lights ? bounces_beside_scattered_lights(plan) : shot.scattering.bounces;
+    const Plan grid_plan = plan.scattered_lights ? without_scattered_lights(plan) : plan;
     std::unique_ptr<Lighting> lighting;
     std::optional<Medium> similar;
     if (plan.single || plan.needs(Cell::SV) || plan.needs(Cell::MA)) {
@@ -186,8 +186,8 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     settings.layers = plan.needed;
     settings.layers[static_cast<int>(Cell::V)] |= !medium.lattice.empty();
     settings.surroundings = surroundings;
-    if (ray_lights)
-        settings.light_rays = light_rays_by(*ray_lights, (paths ? paths->direct() : *own_scene).field());
+    if (scattered_lights)
+        settings.light_rays = light_rays_by(*scattered_lights, (paths ? paths->direct() : *own_scene).field());
     if (plan.surfaces && camera.settings().samples_per_axis == 0)
         settings.samples_per_axis = std::max(settings.samples_per_axis, kSurfaceSamples);
     std::optional<PathLengths> lengths;
@@ -196,8 +196,8 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     std::optional<SurfaceShader> shader;
     LightSurfaces light_surfaces;
     if (plan.surfaces) {
-        shader.emplace(plan, field, lighting.get(), virtual_lights.get(), *paths, settings.parts, ray_lights.get(),
-                       lengths ? &*lengths : nullptr);
+        shader.emplace(plan, field, lighting.get(), virtual_lights.get(), *paths, settings.parts,
+                       scattered_lights.get(), lengths ? &*lengths : nullptr);
         light_surfaces = [&](const auto& samples, auto& light) { shader->shade(samples, light); };
     }
     LightPoints light_points;
@@ -208,7 +208,7 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
         progress.warning("bounce-layers", "output.layers.bounces needs lighting.gather = cache; left out");
     else if (shot.output.bounce_layers && surroundings)
         progress.warning("bounce-layers", "output.layers.bounces with a scene needs method = path; left out");
-    else if (shot.output.bounce_layers && plan.ray_lights)
+    else if (shot.output.bounce_layers && plan.scattered_lights)
         progress.warning("bounce-layers", "output.layers.bounces needs scattering.method = lighting_grid; left out");
     else if (shot.output.bounce_layers && lighting)
         add_order_layers(image, field, nodes, medium, similar ? &*similar : nullptr, camera, settings, progress);
@@ -237,8 +237,8 @@ void file_single_scattering(Image& image, const Image& single) {
 Drawn draw(const Shot& shot, const Plan& plan, const Medium& medium, const Surroundings* surroundings,
            const Camera& camera, Statistics& statistics, ImageMetadata& metadata, Progress& progress) {
     Drawn drawn = draw_once(shot, plan, medium, surroundings, camera, statistics, metadata, progress);
-    const bool mixed =
-        plan.multiple && !plan.ray_lights && shot.scattering.bounces < 0 && forward_share(medium.mean_cosine) > 0.0f;
+    const bool mixed = plan.multiple && !plan.scattered_lights && shot.scattering.bounces < 0 &&
+                       forward_share(medium.mean_cosine) > 0.0f;
     if (!mixed || !shot.output.cell_layers)
         return drawn;
     Shot alone = shot;
@@ -270,6 +270,7 @@ std::string checkpoint_key(Shot shot, const std::filesystem::path& volume, int f
     shot.certify = CertifySettings{};
     shot.virtual_lights = VirtualLightSettings{};
     shot.ray_lights = RayLightSettings{};
+    shot.point_lights = PointLightSettings{};
     shot.output = OutputSettings{};
     shot.output.bounce_layers = bounces;
     const auto size_of = [](const std::filesystem::path& file) {

@@ -22,7 +22,8 @@ bool has_specular(const SurfaceMaterial& m) {
 }  // namespace
 
 SurfaceShader::SurfaceShader(const Plan& plan, const CellField& field, Lighting* lighting, const VirtualLights* lights,
-                             const PathTracer& paths, int parts, const RayLights* ray_lights, PathLengths* lengths)
+                             const PathTracer& paths, int parts, const LightsInSmoke* scattered_lights,
+                             PathLengths* lengths)
     : plan_(plan),
       field_(field),
       lighting_(lighting),
@@ -30,7 +31,7 @@ SurfaceShader::SurfaceShader(const Plan& plan, const CellField& field, Lighting*
       paths_(paths),
       surroundings_(*paths.direct().surroundings()),
       parts_(parts),
-      ray_lights_(ray_lights),
+      scattered_lights_(scattered_lights),
       lengths_(lengths) {}
 
 Rgb SurfaceShader::from_emitters(const Scatterer& place, Rng& rng) const {
@@ -109,11 +110,11 @@ void SurfaceShader::reflect_medium(const SurfacePoint& point, const dvec3& towar
     light.at(Cell::SV) += drawn->weight * seen.cells.at(Cell::V);
     for (const Cell cell : {Cell::MV, Cell::MM, Cell::MS, Cell::MA})
         light.at(Cell::SM) += drawn->weight * seen.cells.at(cell);
-    if (!ray_lights_)
+    if (!scattered_lights_)
         return;
     thread_local SeenMedium medium;
     medium.look(paths_.field(), ray, hit ? hit->distance : std::numeric_limits<double>::infinity());
-    light.at(Cell::SM) += drawn->weight * ray_lights_->along_ray(medium, ray_rng);
+    light.at(Cell::SM) += drawn->weight * scattered_lights_->along_ray(medium, ray_rng);
 }
 
 void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) const {
@@ -127,7 +128,9 @@ void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector
             const SurfacePoint& point = points[i];
             const dvec3 toward_viewer = -samples[i].ray.direction;
             Rng rng(Stream::Surface, samples[i].pixel, samples[i].number);
-            Rng ray_rng(Stream::RayLightSurface, samples[i].pixel, samples[i].number);
+            Rng ray_rng = scattered_lights_
+                              ? scattered_lights_->rng(Stream::RayLightSurface, samples[i].pixel, samples[i].number)
+                              : Rng(Stream::RayLightSurface, samples[i].pixel, samples[i].number);
             CellSum& out = light[i];
             if (lighting_ && has_base(point.material)) {
                 out.at(Cell::SV) +=
@@ -135,9 +138,9 @@ void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector
                 out.at(Cell::SM) +=
                     receivers[i].smoke * seen_part(lighting_->smoke_to_aim_at(), point, toward_viewer, rng);
             }
-            if (ray_lights_ && has_base(point.material))
-                out.at(Cell::SM) += ray_lights_->at_surface(point, Bsdf(point.material, point.frame, Lobes::Base),
-                                                            toward_viewer, ray_rng);
+            if (scattered_lights_ && has_base(point.material))
+                out.at(Cell::SM) += scattered_lights_->at_surface(point, Bsdf(point.material, point.frame, Lobes::Base),
+                                                                  toward_viewer, ray_rng);
             if (lighting_ && has_specular(point.material))
                 reflect_medium(point, toward_viewer, rng, ray_rng, out);
             const Scatterer place(point, samples[i].ray.direction);

@@ -3,14 +3,14 @@
 // SV and SM: the Lambert base asks the lighting grids, which sum all lights of fire and smoke without noise, times the
 // part that other surfaces do not hide (extended_light.h). All other lobes are sampled: what a ray in such a direction
 // sees of the medium is what they reflect.
-// Where ray lights own SM, they take the place of the grid's smoke, and shine along those rays.
+// Where virtual lights in the smoke own SM, they take the place of the grid's smoke, and shine along those rays.
 // SA: a place on one of the emitters, and a ray by the BSDF. SS: the virtual lights; without them, paths.
 #pragma once
 
 #include <span>
 
 #include "emitters/surroundings.h"
-#include "ray_lights/ray_lights.h"
+#include "ray_lights/lights_in_smoke.h"
 #include "render/cell_field.h"
 #include "render/integrate.h"
 #include "render/lighting.h"
@@ -24,10 +24,10 @@ namespace brisance {
 class SurfaceShader {
 public:
     // Keeps references. `lighting`: null where neither fire nor smoke shines; `lights`: null where the shot wants none.
-    // `parts`: as of PictureSettings. `ray_lights`: null where they do not own SM. `lengths`: counts the paths of the
-    // virtual lights; null: nobody wants to know.
+    // `parts`: as of PictureSettings. `scattered_lights`: null where they do not own SM. `lengths`: counts the paths of
+    // the virtual lights; null: nobody wants to know.
     SurfaceShader(const Plan& plan, const CellField& field, Lighting* lighting, const VirtualLights* lights,
-                  const PathTracer& paths, int parts, const RayLights* ray_lights = nullptr,
+                  const PathTracer& paths, int parts, const LightsInSmoke* scattered_lights = nullptr,
                   PathLengths* lengths = nullptr);
 
     void shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) const;
@@ -47,7 +47,7 @@ private:
     const PathTracer& paths_;
     const Surroundings& surroundings_;
     int parts_;
-    const RayLights* ray_lights_;
+    const LightsInSmoke* scattered_lights_;
     PathLengths* lengths_;
 };
 

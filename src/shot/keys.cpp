@@ -37,8 +37,8 @@ Affects affected_by(const std::string& path) {
     // Leaving out orders of scattering changes what is true.
     if (path == "scattering.bounces")
         return Affects::Picture;
-    for (const char* section :
-         {"lighting.", "scattering.", "ray_lights.", "virtual_lights.", "tracing.", "certify.", "output."})
+    for (const char* section : {"lighting.", "scattering.", "ray_lights.", "point_lights.", "virtual_lights.",
+                                "tracing.", "certify.", "output."})
         if (path.starts_with(section))
             return Affects::Method;
     for (const char* key : {"$schema", "name", "method", "camera.samples_per_axis"})
@@ -63,6 +63,7 @@ const std::vector<std::pair<std::string, std::string>>& shot_sections() {
         {"lighting", "how the fire's light reaches the smoke"},
         {"scattering", "light scattered more than once"},
         {"ray_lights", "virtual ray lights, of scattering.method ray_lights"},
+        {"point_lights", "volumetric virtual point lights, of scattering.method point_lights"},
         {"virtual_lights", "light that surfaces reflect onto surfaces and smoke"},
         {"tracing", "the reference path tracer (method path)"},
         {"certify", "how far the finished frame is from the truth"},

@@ -7,9 +7,11 @@ namespace {
 void add_ray_light_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "scattering.method",
-        "lighting_grid: hierarchies of scattered light; ray_lights: virtual ray lights, unbiased and noisy",
-        choice<ScatteringMethod>(
-            {{"lighting_grid", ScatteringMethod::LightingGrid}, {"ray_lights", ScatteringMethod::RayLights}}),
+        "lighting_grid: hierarchies of scattered light; ray_lights: virtual ray lights, unbiased and noisy; "
+        "point_lights: volumetric virtual point lights",
+        choice<ScatteringMethod>({{"lighting_grid", ScatteringMethod::LightingGrid},
+                                  {"ray_lights", ScatteringMethod::RayLights},
+                                  {"point_lights", ScatteringMethod::PointLights}}),
         [](Shot & s) -> auto& { return s.ray_lights.method; }));
     keys.push_back(make_key(
         "ray_lights.paths", "particles whose flights through the smoke become ray lights", whole(1, 100000000),
@@ -27,6 +29,35 @@ void add_ray_light_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "ray_lights.seed", "another number gives other rays", whole(0, 2147483647),
         [](Shot & s) -> auto& { return s.ray_lights.seed; }));
+}
+
+void add_point_light_keys(std::vector<Key>& keys) {
+    keys.push_back(make_key(
+        "point_lights.paths", "particles whose collisions in the smoke become point lights", whole(1, 100000000),
+        [](Shot & s) -> auto& { return s.point_lights.paths; }));
+    keys.push_back(make_key(
+        "point_lights.count", "collisions that are kept, on average: the important ones", whole(1, 100000000),
+        [](Shot & s) -> auto& { return s.point_lights.count; }));
+    keys.push_back(make_key(
+        "point_lights.samples", "point lights asked by every ray of the camera, and by every surface it meets",
+        whole(1, 65536), [](Shot & s) -> auto& { return s.point_lights.samples; }));
+    keys.push_back(make_key(
+        "point_lights.bound_per_metre2",
+        "the most that 1 / distance^2 to a light may be [1/m^2]; 0: unbounded; auto: from the smoke and `paths`",
+        or_word(real(at_least(0.0)), "auto", kAutomaticBound), [](Shot & s) -> auto& { return s.point_lights.bound; }));
+    keys.push_back(make_key(
+        "point_lights.compensation",
+        "of what the bound takes away. none: lost; exact: found by paths, unbiased; local: guessed as if the smoke "
+        "around every place were alike",
+        choice<BiasCompensation>(
+            {{"none", BiasCompensation::None}, {"exact", BiasCompensation::Exact}, {"local", BiasCompensation::Local}}),
+        [](Shot & s) -> auto& { return s.point_lights.compensation; }));
+    keys.push_back(make_key(
+        "point_lights.compensation_samples", "of it, on every ray of the camera and at every surface it meets",
+        whole(1, 65536), [](Shot & s) -> auto& { return s.point_lights.compensation_samples; }));
+    keys.push_back(make_key(
+        "point_lights.seed", "another number gives other lights", whole(0, 2147483647),
+        [](Shot & s) -> auto& { return s.point_lights.seed; }));
 }
 
 }  // namespace
@@ -73,6 +104,7 @@ void add_lighting_keys(std::vector<Key>& keys) {
         "scattering.alpha", "as lighting.alpha, for scattered light", real_float({1.0, 64.0}),
         [](Shot & s) -> auto& { return s.scattering.alpha; }));
     add_ray_light_keys(keys);
+    add_point_light_keys(keys);
 }
 
 }  // namespace brisance

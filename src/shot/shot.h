@@ -8,6 +8,7 @@
 #include "film/settings.h"
 #include "gathering/settings.h"
 #include "medium/settings.h"
+#include "medium_points/settings.h"
 #include "ray_lights/settings.h"
 #include "render/camera_settings.h"
 #include "render/certify_settings.h"
@@ -43,6 +44,7 @@ struct Shot {
     LightingSettings lighting;
     ScatteringSettings scattering;
     RayLightSettings ray_lights;
+    PointLightSettings point_lights;
     VirtualLightSettings virtual_lights;
     TracingSettings tracing;
     CertifySettings certify;

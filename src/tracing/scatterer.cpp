@@ -42,8 +42,11 @@ Scatterer::Scatterer(const dvec3& position, const dvec3& arriving, float mean_co
     : lit_{position, dvec3(0.0), LitPoint::Kind::Medium}, arriving_(arriving), mean_cosine_(mean_cosine) {}
 
 Scatterer::Scatterer(const SurfacePoint& point, const dvec3& arriving)
+    : Scatterer(point, Bsdf(point.material, point.frame), arriving) {}
+
+Scatterer::Scatterer(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& arriving)
     : lit_(lit_point(point)), arriving_(arriving), only_delta_(is_only_delta(point.material)) {
-    surface_.emplace(OnSurface{point, Bsdf(point.material, point.frame)});
+    surface_.emplace(OnSurface{point, bsdf});
 }
 
 Ray Scatterer::leaving(const dvec3& direction) const {

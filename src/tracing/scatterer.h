@@ -14,10 +14,13 @@ public:
     // Of smoke. `arriving`: unit, the direction of the path's travel toward here.
     Scatterer(const dvec3& position, const dvec3& arriving, float mean_cosine);
     Scatterer(const SurfacePoint& point, const dvec3& arriving);
+    // Of these of its lobes.
+    Scatterer(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& arriving);
 
     bool on_surface() const { return surface_.has_value(); }
     const dvec3& position() const { return lit_.position; }
     const LitPoint& lit() const { return lit_; }
+    const dvec3& arriving() const { return arriving_; }
     // Nothing can be asked of it but sample().
     bool only_delta() const { return only_delta_; }
 

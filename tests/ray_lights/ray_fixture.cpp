@@ -25,7 +25,7 @@ Twice Stage::by_paths(const Ray& ray, double place, Rng& rng) const {
     return {sum.cells.at(Cell::MM), sum.cells.at(Cell::SM)};
 }
 
-Twice Stage::by_lights(const RayLights& lights, const Ray& ray, Rng& rng, bool all) const {
+Twice Stage::by_lights(const LightsInSmoke& lights, const Ray& ray, Rng& rng, bool all) const {
     const RaySegment segment = scene().segment_along(ray);
     SeenMedium seen;
     seen.look(scene().field(), ray, segment.end);
@@ -42,6 +42,10 @@ Twice Stage::by_lights(const RayLights& lights, const Ray& ray, Rng& rng, bool a
 }
 
 RayLights Stage::lights(const RayLightSettings& settings, int rays, std::uint64_t key) const {
+    return RayLights(scene(), settings, bounces_, receivers(rays, key));
+}
+
+std::vector<RayLightReceiver> Stage::receivers(int rays, std::uint64_t key) const {
     std::vector<RayLightReceiver> receivers;
     Rng rng(Stream::Points, key);
     for (int i = 0; i < rays; ++i) {
@@ -54,7 +58,7 @@ RayLights Stage::lights(const RayLightSettings& settings, int rays, std::uint64_
         if (segment.point)
             receivers.push_back(RayLightReceiver::at(segment.point->position, segment.point->frame.normal));
     }
-    return RayLights(scene(), settings, bounces_, receivers);
+    return receivers;
 }
 
 Ray Stage::ray(Rng& rng) const {
@@ -63,40 +67,58 @@ Ray Stage::ray(Rng& rng) const {
     return {eye, glm::normalize(target - eye)};
 }
 
-void expect_same_light(const Stage& stage, const RayLightSettings& settings, const char* what,
-                       std::uint64_t path_samples, std::uint64_t light_sets) {
-    const auto put = [](const Twice& t, double weight, double* out) {
-        for (int c = 0; c < 3; ++c) {
-            out[c] += weight * t.medium[c];
-            out[3 + c] += weight * t.surface[c];
-        }
-    };
-    const Estimate paths = estimate(6, path_samples, [&](const dvec3& place, Rng& rng, double* out) {
+namespace {
+
+void put(const Twice& t, double weight, double* out) {
+    for (int c = 0; c < 3; ++c) {
+        out[c] += weight * t.medium[c];
+        out[3 + c] += weight * t.surface[c];
+    }
+}
+
+}  // namespace
+
+Estimate mean_by_paths(const Stage& stage, std::uint64_t samples) {
+    return estimate(6, samples, [&](const dvec3& place, Rng& rng, double* out) {
         std::fill(out, out + 6, 0.0);
         const Ray ray = stage.ray(rng);
         put(stage.by_paths(ray, place.z, rng), 1.0, out);
     });
-    // Rays that ask the same lights are not independent: a sample is a set of lights.
-    const Estimate lights = estimate(6, light_sets, [&](const dvec3&, Rng& rng, double* out) {
+}
+
+Estimate mean_by_lights(const Stage& stage, const MakeLights& make, std::uint64_t sets) {
+    return estimate(6, sets, [&](const dvec3&, Rng& rng, double* out) {
         std::fill(out, out + 6, 0.0);
-        RayLightSettings own = settings;
-        own.seed = static_cast<std::uint32_t>(rng.next_double() * 4294967296.0);
-        const RayLights set = stage.lights(own, 16, own.seed);
+        const auto set = make(static_cast<std::uint32_t>(rng.next_double() * 4294967296.0));
         for (int i = 0; i < kRaysToASet; ++i) {
             const Ray ray = stage.ray(rng);
-            put(stage.by_lights(set, ray, rng), 1.0 / kRaysToASet, out);
+            put(stage.by_lights(*set, ray, rng), 1.0 / kRaysToASet, out);
         }
     });
+}
+
+void expect_same_means(const Estimate& lights, const Estimate& paths, const char* what, double sharp) {
     for (int k = 0; k < 6; ++k) {
         const double error = std::hypot(lights.error[k], paths.error[k]);
         EXPECT_NEAR(lights.mean[k], paths.mean[k], 3.0 * error) << what << ", number " << k;
         if (k % 3 == 0 && paths.mean[k] > 0.0) {
-            EXPECT_LT(error, 0.05 * paths.mean[k]) << what << ": not sampled enough";
-            std::printf("%s, %s: paths %.5g +- %.2g %%, ray lights %.5g +- %.2g %%, %+.2f standard errors\n", what,
+            EXPECT_LT(error, sharp * paths.mean[k]) << what << ": not sampled enough";
+            std::printf("%s, %s: paths %.5g +- %.2g %%, lights %.5g +- %.2g %%, %+.2f standard errors\n", what,
                         k == 0 ? "MM" : "SM", paths.mean[k], 100.0 * paths.error[k] / paths.mean[k], lights.mean[k],
                         100.0 * lights.error[k] / lights.mean[k], (lights.mean[k] - paths.mean[k]) / error);
         }
     }
+}
+
+void expect_same_light(const Stage& stage, const RayLightSettings& settings, const char* what,
+                       std::uint64_t path_samples, std::uint64_t light_sets) {
+    const Estimate paths = mean_by_paths(stage, path_samples);
+    const auto make = [&](std::uint32_t seed) {
+        RayLightSettings own = settings;
+        own.seed = seed;
+        return std::make_unique<RayLights>(stage.scene(), own, stage.bounces(), stage.receivers(16, seed));
+    };
+    expect_same_means(mean_by_lights(stage, make, light_sets), paths, what);
 }
 
 Recipe coloured_ball(int nodes, float optical_radius, float mean_cosine) {

@@ -1,6 +1,7 @@
-// Small media, with and without a floor, and both ways to see them: by ray lights and by paths.
+// Small media, with and without a floor, and both ways to see them: by virtual lights in the smoke and by paths.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -24,9 +25,12 @@ public:
 
     const DirectLight& scene() const { return tracer_.direct(); }
     Twice by_paths(const Ray& ray, double place, Rng& rng) const;
-    Twice by_lights(const RayLights& lights, const Ray& ray, Rng& rng, bool all = false) const;
-    // New lights, for rays like these.
+    Twice by_lights(const LightsInSmoke& lights, const Ray& ray, Rng& rng, bool all = false) const;
+    // What stands for rays like these.
+    std::vector<RayLightReceiver> receivers(int rays, std::uint64_t key) const;
+    // New lights, for such rays.
     RayLights lights(const RayLightSettings& settings, int rays, std::uint64_t key) const;
+    int bounces() const { return bounces_; }
     // A ray of the family that is compared: from above, somewhere through the ball of radius 1 m around the origin.
     Ray ray(Rng& rng) const;
 
@@ -37,7 +41,14 @@ private:
     int bounces_;
 };
 
-// The same mean of both, within three standard errors, for the three channels of MM and SM.
+// MM and SM, three channels each, over the family of rays.
+Estimate mean_by_paths(const Stage& stage, std::uint64_t samples);
+// `make`: lights of that seed. A sample is a set of lights, as rays that ask the same ones are not independent.
+using MakeLights = std::function<std::unique_ptr<LightsInSmoke>(std::uint32_t seed)>;
+Estimate mean_by_lights(const Stage& stage, const MakeLights& make, std::uint64_t sets);
+
+// The same mean of both, within three standard errors, for all six; a standard error is below that part of the mean.
+void expect_same_means(const Estimate& lights, const Estimate& paths, const char* what, double sharp = 0.05);
 void expect_same_light(const Stage& stage, const RayLightSettings& settings, const char* what,
                        std::uint64_t path_samples = 400, std::uint64_t light_sets = 1);
 

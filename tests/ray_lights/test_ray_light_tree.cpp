@@ -37,7 +37,7 @@ std::vector<RayLightReceiver> some_receivers() {
 TEST(RayLightTree, ProbabilitiesAddUpToOne) {
     const std::vector<RayLight> lights = random_lights(500);
     for (const double g : {0.0, 0.8, -0.999}) {
-        const RayLightTree tree(lights, g);
+        const RayLightTree tree(boxes_of(lights), g);
         for (const RayLightReceiver& receiver : some_receivers()) {
             double sum = 0.0;
             for (std::size_t i = 0; i < lights.size(); ++i) {
@@ -54,7 +54,7 @@ TEST(RayLightTree, ChoosesAsItSays) {
     constexpr int kSamples = 200'000, kLights = 40;
     const std::vector<RayLight> lights = random_lights(kLights);
     for (const double g : {0.0, 0.8}) {
-        const RayLightTree tree(lights, g);
+        const RayLightTree tree(boxes_of(lights), g);
         for (const RayLightReceiver& receiver : some_receivers()) {
             std::map<std::size_t, int> chosen;
             Rng rng(Stream::Points, 22);
@@ -83,9 +83,9 @@ TEST(RayLightTree, DarkLightsAreNotChosen) {
     std::vector<RayLight> lights = random_lights(9);
     for (RayLight& light : lights)
         light.scattered = 0.0;
-    EXPECT_FALSE(RayLightTree(lights, 0.0).choose(some_receivers()[0], 0.5));
+    EXPECT_FALSE(RayLightTree(boxes_of(lights), 0.0).choose(some_receivers()[0], 0.5));
     lights[4].scattered = 1.0;
-    const auto choice = RayLightTree(lights, 0.0).choose(some_receivers()[0], 0.5);
+    const auto choice = RayLightTree(boxes_of(lights), 0.0).choose(some_receivers()[0], 0.5);
     ASSERT_TRUE(choice);
     EXPECT_EQ(choice->light, 4u);
     EXPECT_DOUBLE_EQ(choice->probability, 1.0);
@@ -94,7 +94,7 @@ TEST(RayLightTree, DarkLightsAreNotChosen) {
 TEST(RayLightTree, CostGrowsLikeTheLogarithm) {
     std::printf(" lights  nodes asked for one light\n");
     for (const std::size_t count : {100, 1'000, 10'000, 100'000}) {
-        const RayLightTree tree(random_lights(count), 0.3);
+        const RayLightTree tree(boxes_of(random_lights(count)), 0.3);
         Rng rng(Stream::Points, 23);
         int most = 0;
         for (int i = 0; i < 1000; ++i)

@@ -176,8 +176,19 @@ TEST(Runs, OfVirtualLightsChangeTheirChoicesAndTheSamples) {
     Shot base = shot();
     base.camera.eye = dvec3(0.0, -6.0, 0.0);
     base.camera_given = true;
-    const std::vector<std::string> names = {
-        "vbnl", "vbnl_resampled", "vbnl_power", "vbnl_light_tree", "vbnl_bsdf", "rich_vsl", "vsl", "vpl", "ray_lights"};
+    const std::vector<std::string> names = {"vbnl",
+                                            "vbnl_resampled",
+                                            "vbnl_power",
+                                            "vbnl_light_tree",
+                                            "vbnl_bsdf",
+                                            "rich_vsl",
+                                            "vsl",
+                                            "vpl",
+                                            "ray_lights",
+                                            "point_lights",
+                                            "point_lights_bounded",
+                                            "point_lights_compensated",
+                                            "point_lights_local"};
     const std::vector<PlannedMethod> planned = plan_runs(base, parse(names, {"rich_vsl:2,4", "4"}));
     ASSERT_EQ(planned.size(), names.size());
     std::set<std::string> looks;

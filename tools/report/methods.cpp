@@ -32,6 +32,14 @@ BuiltIn by_virtual_lights(const std::string& name, const Settings& choices) {
     return method;
 }
 
+// Volumetric virtual point lights with these choices.
+BuiltIn by_point_lights(const std::string& name, const Settings& choices) {
+    BuiltIn method{name, {"method=lighting_grid", "scattering.method=point_lights"}, StepsOf::Samples};
+    for (const std::string& choice : choices)
+        method.settings.push_back("point_lights." + choice);
+    return method;
+}
+
 std::vector<BuiltIn> make_built_ins() {
     return {{"lighting_grid", {"method=lighting_grid", "scattering.method=lighting_grid"}, StepsOf::Grid},
             {"path", {"method=path"}, StepsOf::Paths},
@@ -40,6 +48,10 @@ std::vector<BuiltIn> make_built_ins() {
               "tracing.free_flight=null_collision"},
              StepsOf::Paths},
             {"ray_lights", {"method=lighting_grid", "scattering.method=ray_lights"}, StepsOf::Samples},
+            by_point_lights("point_lights", {"bound_per_metre2=0"}),
+            by_point_lights("point_lights_bounded", {"compensation=none"}),
+            by_point_lights("point_lights_compensated", {"compensation=exact"}),
+            by_point_lights("point_lights_local", {"compensation=local"}),
             by_virtual_lights("vbnl", {}),
             by_virtual_lights("vbnl_resampled", {"sampling=resampled"}),
             by_virtual_lights("vbnl_power", {"sampling=power"}),

@@ -1,4 +1,4 @@
-// Pictures whose MM and SM are owned by ray lights.
+// Pictures whose MM and SM are owned by ray lights, or by point lights.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using namespace testing;
 
 constexpr int kSide = 20;
 
-Shot small_shot(RenderMethod method) {
+Shot small_shot(RenderMethod method, ScatteringMethod scattering) {
     Shot shot;
     shot.method = method;
     shot.camera_given = true;
@@ -29,10 +29,12 @@ Shot small_shot(RenderMethod method) {
     shot.camera.samples_per_axis = 2;
     shot.tracing.samples = 64;
     shot.virtual_lights.count = 0;
-    shot.ray_lights.method = ScatteringMethod::RayLights;
+    shot.ray_lights.method = scattering;
     shot.ray_lights.paths = 4000;
     shot.ray_lights.count = 30000;
     shot.ray_lights.samples = 4;
+    shot.point_lights.paths = 4000;
+    shot.point_lights.count = 6000;
     return shot;
 }
 
@@ -74,7 +76,7 @@ Sets over_sets(Shot shot, const Medium& medium, const Surroundings* set, const c
     double sum = 0.0, square = 0.0;
     Progress silent;
     for (int i = 0; i < kSets; ++i) {
-        shot.ray_lights.seed = static_cast<std::uint32_t>(i);
+        shot.ray_lights.seed = shot.point_lights.seed = static_cast<std::uint32_t>(i);
         const double mean = mean_of(render_medium(shot, medium, silent, set).image, layer);
         sum += mean / kSets;
         square += mean * mean / kSets;
@@ -82,36 +84,45 @@ Sets over_sets(Shot shot, const Medium& medium, const Surroundings* set, const c
     return {sum, std::sqrt(std::max(0.0, square - sum * sum) / (kSets - 1))};
 }
 
-void expect_as_paths(const Medium& medium, const Surroundings* set, const char* layer) {
+void expect_as_paths(ScatteringMethod scattering, const Medium& medium, const Surroundings* set, const char* layer) {
     Progress silent;
-    const RenderedFrame paths = render_medium(small_shot(RenderMethod::Path), medium, silent, set);
+    const RenderedFrame paths = render_medium(small_shot(RenderMethod::Path, scattering), medium, silent, set);
     const double a = mean_of(paths.halves[0], layer), b = mean_of(paths.halves[1], layer);
-    const Sets lights = over_sets(small_shot(RenderMethod::LightingGrid), medium, set, layer);
+    const Sets lights = over_sets(small_shot(RenderMethod::LightingGrid, scattering), medium, set, layer);
     const double error = std::hypot(lights.error, 0.5 * (a - b));
-    std::printf("%s: paths %.5g, ray lights %.5g, standard error %.2g\n", layer, 0.5 * (a + b), lights.mean, error);
+    std::printf("%s, %s: paths %.5g, lights %.5g, standard error %.2g\n", name_of(scattering), layer, 0.5 * (a + b),
+                lights.mean, error);
     // The camera's samples differ: half a percent.
     EXPECT_NEAR(lights.mean, 0.5 * (a + b), 3.0 * error + 0.005 * a) << layer;
     EXPECT_LT(error, 0.05 * a) << layer;
 }
 
-TEST(RayLightPictures, SmokeIsAsPathsSeeIt) {
-    expect_as_paths(smoke(0.0f), nullptr, "MM");
-    expect_as_paths(smoke(0.6f), nullptr, "MM");
+class LightsInSmokePictures : public ::testing::TestWithParam<ScatteringMethod> {};
+
+INSTANTIATE_TEST_SUITE_P(Kinds, LightsInSmokePictures,
+                         ::testing::Values(ScatteringMethod::RayLights, ScatteringMethod::PointLights),
+                         [](const auto& kind) { return std::string(name_of(kind.param)); });
+
+TEST_P(LightsInSmokePictures, SmokeIsAsPathsSeeIt) {
+    expect_as_paths(GetParam(), smoke(0.0f), nullptr, "MM");
+    expect_as_paths(GetParam(), smoke(0.6f), nullptr, "MM");
 }
 
-TEST(RayLightPictures, SmokeOverAFloorIsAsPathsSeeIt) {
+TEST_P(LightsInSmokePictures, SmokeOverAFloorIsAsPathsSeeIt) {
     const Surroundings set = floor_of_two();
-    expect_as_paths(smoke(0.0f), &set, "MM");
-    expect_as_paths(smoke(0.0f), &set, "SM");
+    expect_as_paths(GetParam(), smoke(0.0f), &set, "MM");
+    expect_as_paths(GetParam(), smoke(0.0f), &set, "SM");
 }
 
-TEST(RayLightPictures, ThreadsChangeNothing) {
+TEST_P(LightsInSmokePictures, ThreadsChangeNothing) {
     const Medium medium = smoke(0.6f);
     const Surroundings set = floor_of_two();
     const auto pixels = [&](int threads) {
         const ThreadLimit limit(threads);
         Progress silent;
-        return render_medium(small_shot(RenderMethod::LightingGrid), medium, silent, &set).image.layer("").pixels;
+        return render_medium(small_shot(RenderMethod::LightingGrid, GetParam()), medium, silent, &set)
+            .image.layer("")
+            .pixels;
     };
     EXPECT_EQ(pixels(1), pixels(2));
 }
@@ -120,24 +131,25 @@ bool skips(const Plan& plan, const char* part) {
     return std::any_of(plan.skipped.begin(), plan.skipped.end(), [&](const SkippedPart& s) { return s.name == part; });
 }
 
-TEST(RayLightPictures, NothingIsTracedForWhatIsNotThere) {
-    const Shot shot = small_shot(RenderMethod::LightingGrid);
+TEST_P(LightsInSmokePictures, NothingIsTracedForWhatIsNotThere) {
+    const Shot shot = small_shot(RenderMethod::LightingGrid, GetParam());
     const Medium medium = smoke(0.0f);
-    EXPECT_TRUE(plan_cells(shot, medium).ray_lights);
+    EXPECT_TRUE(plan_cells(shot, medium).scattered_lights);
     EXPECT_TRUE(skips(plan_cells(shot, medium), "scattered hierarchies"));
-    EXPECT_FALSE(plan_cells(shot, Medium{}).ray_lights);
-    EXPECT_FALSE(plan_cells(small_shot(RenderMethod::Path), medium).ray_lights);
+    EXPECT_FALSE(plan_cells(shot, Medium{}).scattered_lights);
+    EXPECT_FALSE(plan_cells(small_shot(RenderMethod::Path, GetParam()), medium).scattered_lights);
     Shot once = shot;
     once.scattering.bounces = 1;
-    EXPECT_FALSE(plan_cells(once, medium).ray_lights);
-    EXPECT_TRUE(skips(plan_cells(once, medium), "ray lights"));
+    EXPECT_FALSE(plan_cells(once, medium).scattered_lights);
+    const std::string kind = GetParam() == ScatteringMethod::RayLights ? "ray lights" : "point lights";
+    EXPECT_TRUE(skips(plan_cells(once, medium), kind.c_str()));
     Progress silent;
     for (const StageCost& stage : render_medium(once, medium, silent).statistics.stages)
-        EXPECT_EQ(stage.name.find("ray lights"), std::string::npos);
+        EXPECT_EQ(stage.name.find(kind), std::string::npos);
 }
 
-TEST(RayLightPictures, MarchingIsRefused) {
-    Shot shot = small_shot(RenderMethod::LightingGrid);
+TEST_P(LightsInSmokePictures, MarchingIsRefused) {
+    Shot shot = small_shot(RenderMethod::LightingGrid, GetParam());
     shot.lighting.gather = GatherMethod::RayMarch;
     Progress silent;
     EXPECT_THROW(render_medium(shot, smoke(0.0f), silent), Error);

@@ -1,0 +1,136 @@
+#include "medium_points/point_sum.h"
+
+#include <cmath>
+
+#include "tracing/particles.h"
+
+namespace brisance {
+
+namespace {
+
+// What a few angles may miss, a light is wanted for by its box.
+constexpr double kByItsBox = 0.1;
+
+// Part of the scene's size that stands for a point of a ray.
+constexpr double kShort = 1e-6;
+
+}  // namespace
+
+PointSum::PointSum(const DirectLight& scene, std::vector<MediumPoint> lights, const Bound& bound, int bounces)
+    : scene_(scene),
+      lights_(std::move(lights)),
+      tree_(boxes_of(lights_), scene.field().mean_cosine()),
+      bound_(bound),
+      bounces_(bounces),
+      short_way_(kShort * ball_around(scene).radius) {}
+
+bool PointSum::within_bounces(int order, const MediumPoint& light) const {
+    return bounces_ < 0 || order + light.scatterings <= bounces_;
+}
+
+bool PointSum::occluded(const Ray& ray, double end) const {
+    return scene_.surroundings() && scene_.surroundings()->intersector().occluded(ray, end);
+}
+
+RayLightReceiver PointSum::receiver_at(const Scatterer& place) const {
+    if (!place.on_surface())
+        return RayLightReceiver::in_smoke(place.position(), place.arriving(), short_way_);
+    const dvec3& normal = place.lit().normal;
+    const bool above = glm::dot(normal, place.arriving()) <= 0.0;
+    return RayLightReceiver::at(place.position(), above ? normal : -normal);
+}
+
+double PointSum::wanted_along(const SeenMedium& seen, const RayLightReceiver& receiver,
+                              const MediumPoint& light) const {
+    const double g = scene_.field().mean_cosine();
+    const double shown = shown_along(seen, light.position, light.direction, light.extinction, g, bound_.per_metre2());
+    return light.scattered * shown + kByItsBox * importance(bounds_of(light), receiver, g);
+}
+
+// What it sends, but for its colour and what is between.
+double PointSum::wanted_at(const Scatterer& place, int order, const MediumPoint& light) const {
+    double w = 0.0;
+    const Ray ray = place.toward(light.position, w);
+    if (!within_bounces(order, light) || !(w > 0.0))
+        return 0.0;
+    const double phase = phase_about(light.direction, -ray.direction, scene_.field().mean_cosine());
+    return light.scattered * luminance(place.at(ray.direction).value) * phase * bound_.of(1.0 / (w * w)) *
+           guessed_transmittance(light.extinction * w);
+}
+
+Rgb PointSum::to_ray(const SeenMedium& seen, const MediumPoint& light, Rng& rng) const {
+    const Segment& camera = seen.segment();
+    if (!(camera.length > 0.0))
+        return Rgb(0.0f);
+    const double g = scene_.field().mean_cosine();
+    const AngularDensity angular(light.position, camera, {{light.direction, g}, {-camera.direction, g}});
+    const double u = rng.next_double() < 0.5 ? angular.sample(rng) : seen.sample_flight(rng.next_double());
+    const double pdf = 0.5 * (angular.pdf(u) + seen.pdf_of_flight(u));
+    const Coefficients at_u = seen.coefficients(u);
+    const dvec3 way = camera.at(u) - light.position;
+    const double w = glm::length(way);
+    if (at_u.scattering == Rgb(0.0f) || !(w > 0.0) || !(pdf > 0.0))
+        return Rgb(0.0f);
+    const Ray between{light.position, way / w};
+    if (occluded(between, w))
+        return Rgb(0.0f);
+    const double phases =
+        phase_about(light.direction, between.direction, g) * phase_about(between.direction, -camera.direction, g);
+    const double through = seen.transmittance(u) * scene_.lines().transmittance(between, w, rng);
+    return light.power * at_u.scattering * float(phases * through * bound_.of(1.0 / (w * w)) / pdf);
+}
+
+Rgb PointSum::to_place(const Scatterer& place, int order, const MediumPoint& light, Rng& rng) const {
+    double w = 0.0;
+    const Ray ray = place.toward(light.position, w);
+    if (!within_bounces(order, light) || !(w > 0.0))
+        return Rgb(0.0f);
+    const Rgb value = place.at(ray.direction).value;
+    if (value == Rgb(0.0f) || occluded(ray, w))
+        return Rgb(0.0f);
+    const double phase = phase_about(light.direction, -ray.direction, scene_.field().mean_cosine());
+    const double through = scene_.lines().transmittance(ray, w, rng);
+    return light.power * value * float(phase * through * bound_.of(1.0 / (w * w)));
+}
+
+Rgb PointSum::along_ray(const SeenMedium& seen, int samples, Rng& rng, RayLightCost* cost) const {
+    thread_local std::vector<LightChoice<MediumPoint>> choices;
+    if (seen.empty())
+        return Rgb(0.0f);
+    const RayLightReceiver receiver = receiver_along(seen);
+    const auto wanted = [&](const MediumPoint& light) { return wanted_along(seen, receiver, light); };
+    choose_lights<MediumPoint>(tree_, lights_, receiver, samples, wanted, rng, cost, choices);
+    Rgb sum(0.0f);
+    for (const LightChoice<MediumPoint>& c : choices)
+        sum += float(c.weight) * to_ray(seen, *c.light, rng);
+    return sum;
+}
+
+Rgb PointSum::at(const Scatterer& place, int order, int samples, Rng& rng, RayLightCost* cost) const {
+    thread_local std::vector<LightChoice<MediumPoint>> choices;
+    if (place.only_delta())
+        return Rgb(0.0f);
+    const auto wanted = [&](const MediumPoint& light) { return wanted_at(place, order, light); };
+    choose_lights<MediumPoint>(tree_, lights_, receiver_at(place), samples, wanted, rng, cost, choices);
+    Rgb sum(0.0f);
+    for (const LightChoice<MediumPoint>& c : choices)
+        sum += float(c.weight) * to_place(place, order, *c.light, rng);
+    return sum;
+}
+
+Rgb PointSum::along_ray_from_all(const SeenMedium& seen, Rng& rng) const {
+    Rgb sum(0.0f);
+    for (const MediumPoint& light : lights_)
+        if (!seen.empty())
+            sum += to_ray(seen, light, rng);
+    return sum;
+}
+
+Rgb PointSum::at_from_all(const Scatterer& place, int order, Rng& rng) const {
+    Rgb sum(0.0f);
+    for (const MediumPoint& light : lights_)
+        sum += to_place(place, order, light, rng);
+    return sum;
+}
+
+}  // namespace brisance

@@ -1,0 +1,48 @@
+#include "ray_lights/lights_in_smoke.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ray_lights/ray_light_tree.h"
+
+namespace brisance {
+
+namespace {
+
+constexpr double kMostlySeen = 0.99;
+
+}  // namespace
+
+RayLightReceiver receiver_along(const SeenMedium& seen) {
+    Segment part = seen.segment();
+    part.length = seen.sample_flight(kMostlySeen);
+    return RayLightReceiver::along(part);
+}
+
+double shown_along(const SeenMedium& seen, const dvec3& place, const dvec3& direction, double extinction, double g,
+                   double bound) {
+    constexpr int kAngles = 4;
+    const Segment& ray = seen.segment();
+    const dvec3 way = ray.start - place;
+    const double begin = glm::dot(way, ray.direction);
+    const dvec3 across = way - begin * ray.direction;
+    const double height = std::max(glm::length(across), 1e-9 * ray.length), first = std::atan2(begin, height);
+    const double angle = std::atan2(height * ray.length, height * height + begin * (begin + ray.length));
+    double shown = 0.0;
+    for (int k = 0; k < kAngles; ++k) {
+        const double a = first + (k + 0.5) / kAngles * angle, cosine = std::max(std::cos(a), 1e-12);
+        const double u = std::clamp(height * std::sin(a) / cosine - begin, 0.0, ray.length);
+        const double distance = height / cosine;
+        double here = seen.transmittance(u) * guessed_transmittance(extinction * distance);
+        if (g != 0.0) {
+            const dvec3 toward = across / distance + std::sin(a) * ray.direction;
+            here *= phase_about(direction, toward, g) * phase_about(toward, -ray.direction, g);
+        }
+        if (bound > 0.0)
+            here *= std::min(1.0, bound * distance * distance);
+        shown += here;
+    }
+    return shown * angle / (height * kAngles);
+}
+
+}  // namespace brisance

@@ -1,0 +1,52 @@
+// Light that was scattered in the medium before, as virtual lights in it send it: the cells MM and SM.
+#pragma once
+
+#include <cstdint>
+
+#include "core/rng.h"
+#include "geometry/surface_point.h"
+#include "ray_lights/ray_light.h"
+#include "ray_lights/seen_medium.h"
+
+namespace brisance {
+
+struct RayLightCost {
+    std::uint64_t pairs = 0;    // lights that were asked
+    std::uint64_t visited = 0;  // nodes of the tree
+};
+
+class LightsInSmoke {
+public:
+    explicit LightsInSmoke(std::uint32_t seed) : seed_(seed) {}
+    virtual ~LightsInSmoke() = default;
+
+    // For a ray of a pixel of the camera: pictures of different seeds share no random numbers.
+    Rng rng(Stream stream, std::uint32_t pixel, std::uint32_t number) const {
+        return Rng(stream, pixel | std::uint64_t(seed_) << 32, number);
+    }
+
+    // MM along a ray of the camera whose medium was looked at [W/(m^2 sr)].
+    virtual Rgb along_ray(const SeenMedium& seen, Rng& rng, RayLightCost* cost = nullptr) const = 0;
+    // SM at a point of a surface by these of its lobes, in the direction of the viewer (unit) [W/(m^2 sr)].
+    virtual Rgb at_surface(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer, Rng& rng,
+                           RayLightCost* cost = nullptr) const = 0;
+
+    // The same from every light: the check.
+    virtual Rgb along_ray_from_all(const SeenMedium& seen, Rng& rng) const = 0;
+    virtual Rgb at_surface_from_all(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer,
+                                    Rng& rng) const = 0;
+
+private:
+    std::uint32_t seed_;
+};
+
+// The part of a ray that shows almost all that is seen of its medium.
+RayLightReceiver receiver_along(const SeenMedium& seen);
+
+// About what light that sets out from a place along `direction` (unit), in smoke of that extinction [1/m], shows along
+// the ray once it has scattered there: the integral of 1 / distance^2 (no more than `bound` [1/m^2]; 0: unbounded) with
+// both phase functions and what smoke leaves of it, by a few angles.
+double shown_along(const SeenMedium& seen, const dvec3& place, const dvec3& direction, double extinction,
+                   double mean_cosine, double bound = 0.0);
+
+}  // namespace brisance
