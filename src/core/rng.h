@@ -22,7 +22,8 @@ enum class Stream : std::uint32_t {
     RayLight,
     RayLightRoulette,
     RayLightPair,
-    RayLightSurface
+    RayLightSurface,
+    RayLightPass
 };
 
 // SplitMix64 (Steele, Lea, Flood 2014), keyed by identity.

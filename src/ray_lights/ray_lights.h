@@ -8,6 +8,12 @@
 // T(0, v) is 1 for short lights, which end where their particle collided. One pair estimates it, drawn by one of two
 // densities which share it by the balance heuristic: the inverse square with both phase functions, and a flight along
 // the camera's ray with the same seen from where it collides.
+// At a point of a surface BSDF times cosine stands in the place of sigma_s(u) p(u) T(0, u), and there is no integral
+// over u; v is drawn by the inverse square with the light's phase function. The BSDF is only evaluated: narrow lobes
+// are noisy without a radius. Whoever holds them does better (surface_shader.h): a ray in a direction that they draw
+// sees the medium, and along_ray() of it is all of SM but for light that was scattered once.
+// With a radius, lights are beams: phase functions, BSDF and the inverse square are blurred, which is a bias that
+// vanishes with the radius (beam.h).
 // Which lights are asked: the tree, whose boxes cannot know which of their lights almost touches the ray, proposes a
 // few for every one that is asked, and one of them is resampled by its own place (Talbot, Cline, Egbert, Importance
 // Resampling for Global Illumination, EGSR 2005).
@@ -16,6 +22,7 @@
 #include <span>
 #include <vector>
 
+#include "ray_lights/beam.h"
 #include "ray_lights/ray_light_tree.h"
 #include "ray_lights/seen_medium.h"
 #include "ray_lights/trace_ray_lights.h"
@@ -46,6 +53,7 @@ public:
 
     std::span<const RayLight> lights() const { return lights_; }
     const RayLightReport& report() const { return report_; }
+    double radius() const { return lights_.empty() ? 0.0 : lights_.front().radius; }  // [m]
     std::uint64_t bytes() const { return lights_.size() * sizeof(RayLight) + tree_.bytes(); }
 
 private:
