@@ -51,6 +51,15 @@ RayLightReceiver receiver_along(const SeenMedium& seen) {
     return RayLightReceiver::along(part);
 }
 
+RayLightSettings settings_of_pass(RayLightSettings settings, int pass, double first) {
+    if (pass == 0)
+        return settings;
+    settings.radius = first * radius_shrunk(pass, settings.shrink);
+    Rng rng(Stream::RayLightPass, settings.seed, static_cast<std::uint64_t>(pass));
+    settings.seed = static_cast<std::uint32_t>(rng.next_double() * 0x1p32);
+    return settings;
+}
+
 RayLights::RayLights(const DirectLight& scene, const RayLightSettings& settings, int bounces,
                      std::span<const RayLightReceiver> receivers)
     : scene_(scene),

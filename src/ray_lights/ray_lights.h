@@ -29,6 +29,9 @@
 
 namespace brisance {
 
+// Of a pass, from 0: with a seed of its own, and the radius that is left of `first` [m], that of pass 0.
+RayLightSettings settings_of_pass(RayLightSettings settings, int pass, double first);
+
 struct RayLightCost {
     std::uint64_t pairs = 0;    // lights that were asked
     std::uint64_t visited = 0;  // nodes of the tree

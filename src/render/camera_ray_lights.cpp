@@ -1,5 +1,9 @@
 #include "render/camera_ray_lights.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "core/error.h"
 #include "core/stopwatch.h"
 
@@ -28,24 +32,74 @@ std::vector<RayLightReceiver> ray_light_receivers(const DirectLight& scene, cons
     return receivers;
 }
 
+constexpr const char* kStage = "ray lights (MM, SM)";
+
+// Over all passes.
+struct Totals {
+    double seconds = 0.0, radius = 0.0;  // of all; of the last [m]
+    std::uint64_t bytes = 0;             // of the largest
+    RayLightReport report;
+
+    void add(const RayLights& lights, double spent) {
+        const RayLightReport& r = lights.report();
+        seconds += spent;
+        radius = lights.radius();
+        bytes = std::max(bytes, lights.bytes());
+        report.paths += r.paths;
+        report.flights += r.flights;
+        report.pieces += r.pieces;
+        report.lights += r.lights;
+        report.not_finite += r.not_finite;
+    }
+};
+
+// Of `count` pictures, one after another.
+void add_to_mean(Image& mean, const Image& next, int count) {
+    for (std::size_t l = 0; l < mean.layers.size(); ++l)
+        for (std::size_t i = 0; i < mean.layers[l].pixels.size(); ++i) {
+            float& pixel = mean.layers[l].pixels[i];
+            pixel += (next.layers[l].pixels[i] - pixel) / float(count);
+        }
+}
+
 }  // namespace
 
-std::unique_ptr<RayLights> trace_ray_lights_of(const Shot& shot, const DirectLight& scene, const Camera& camera,
-                                               Statistics& statistics, Progress& progress) {
-    progress.stage("ray lights (MM, SM)");
-    const Stopwatch watch;
-    auto lights = std::make_unique<RayLights>(scene, shot.ray_lights, shot.scattering.bounces,
-                                              ray_light_receivers(scene, camera));
-    const RayLightReport& r = lights->report();
-    statistics.stages.push_back({"ray lights (MM, SM)",
-                                 watch.seconds(),
-                                 lights->bytes(),
+Image mean_of_passes(const Shot& shot, const DirectLight& scene, const Camera& camera, const DrawPass& draw,
+                     double& seconds, Statistics& statistics, Progress& progress) {
+    const std::vector<RayLightReceiver> receivers = ray_light_receivers(scene, camera);
+    const int passes = shot.ray_lights.passes;
+    Totals totals;
+    double first = 0.0;
+    Image mean;
+    for (int pass = 0; pass < passes; ++pass) {
+        progress.stage(passes > 1 ? fmt::format("{}, pass {} of {}", kStage, pass + 1, passes) : std::string(kStage));
+        const Stopwatch watch;
+        const RayLights lights(scene, settings_of_pass(shot.ray_lights, pass, first), shot.scattering.bounces,
+                               receivers);
+        totals.add(lights, watch.seconds());
+        if (pass == 0)
+            first = lights.radius();
+        progress.stage("camera");
+        Image picture = draw(&lights, pass);
+        if (pass == 0)
+            mean = std::move(picture);
+        else
+            add_to_mean(mean, picture, pass + 1);
+    }
+    const RayLightReport& r = totals.report;
+    statistics.stages.push_back({kStage,
+                                 totals.seconds,
+                                 totals.bytes,
                                  {{"particles", r.paths},
                                   {"flights", r.flights},
                                   {"pieces", r.pieces},
                                   {"lights", r.lights},
-                                  {"not_finite", r.not_finite}}});
-    return lights;
+                                  {"not_finite", r.not_finite},
+                                  {"passes", passes},
+                                  {"first_radius", first},
+                                  {"last_radius", totals.radius}}});
+    seconds = totals.seconds;
+    return mean;
 }
 
 LightRays light_rays_by(const RayLights& lights, const TrackingField& field) {

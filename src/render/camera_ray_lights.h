@@ -1,8 +1,11 @@
 // Ray lights as owners of MM and SM: made for what the camera sees, asked by its rays, and what they leave to the
 // lighting grid.
+// A pass draws the whole picture anew, with lights and random numbers of its own, and its lights are gone before those
+// of the next are made: memory is that of one pass, time grows with their number, and all that is drawn with random
+// numbers gains from it.
 #pragma once
 
-#include <memory>
+#include <functional>
 
 #include "ray_lights/ray_lights.h"
 #include "render/camera.h"
@@ -16,8 +19,12 @@ namespace brisance {
 // Throws Error Usage for what ray lights do not work with.
 void check_ray_lights(const Shot& shot);
 
-std::unique_ptr<RayLights> trace_ray_lights_of(const Shot& shot, const DirectLight& scene, const Camera& camera,
-                                               Statistics& statistics, Progress& progress);
+// A picture by the lights of a pass, from 0.
+using DrawPass = std::function<Image(const RayLights* lights, int pass)>;
+
+// The mean of all passes; `seconds`: spent on their lights.
+Image mean_of_passes(const Shot& shot, const DirectLight& scene, const Camera& camera, const DrawPass& draw,
+                     double& seconds, Statistics& statistics, Progress& progress);
 
 // Keeps references to both.
 LightRays light_rays_by(const RayLights& lights, const TrackingField& field);

@@ -154,11 +154,8 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     if (shot.virtual_lights.count > 0 && (plan.needs(Cell::SS) || plan.needs(Cell::MS)))
         virtual_lights = place_virtual_lights(shot, paths->direct(), camera, statistics, progress);
     std::optional<DirectLight> own_scene;
-    std::unique_ptr<RayLights> ray_lights;
-    if (plan.ray_lights) {
-        const DirectLight& scene = paths ? paths->direct() : own_scene.emplace(medium, shot.tracing, surroundings);
-        ray_lights = trace_ray_lights_of(shot, scene, camera, statistics, progress);
-    }
+    if (plan.ray_lights && !paths)
+        own_scene.emplace(medium, shot.tracing, surroundings);
     // Orders of scattering that the grid follows.
     const int grid_bounces = plan.ray_lights ? bounces_beside_ray_lights(plan) : shot.scattering.bounces;
     const Plan grid_plan = plan.ray_lights ? without_ray_lights(plan) : plan;
@@ -186,24 +183,29 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     settings.layers = plan.needed;
     settings.layers[static_cast<int>(Cell::V)] |= !medium.lattice.empty();
     settings.surroundings = surroundings;
-    if (ray_lights)
-        settings.light_rays = light_rays_by(*ray_lights, (paths ? paths->direct() : *own_scene).field());
     if (plan.surfaces && camera.settings().samples_per_axis == 0)
         settings.samples_per_axis = std::max(settings.samples_per_axis, kSurfaceSamples);
     std::optional<PathLengths> lengths;
     if (shot.output.virtual_lights && !why_no_virtual_lights(shot, plan))
         lengths.emplace(std::size_t(camera.settings().width) * camera.settings().height);
-    std::optional<SurfaceShader> shader;
-    LightSurfaces light_surfaces;
-    if (plan.surfaces) {
-        shader.emplace(plan, field, lighting.get(), virtual_lights.get(), *paths, settings.parts, ray_lights.get(),
-                       lengths ? &*lengths : nullptr);
-        light_surfaces = [&](const auto& samples, auto& light) { shader->shade(samples, light); };
-    }
     LightPoints light_points;
     if (lighting && marching)
         light_points = [&](const auto& points, auto& out) { lighting->at_points(points, out); };
-    Image image = render_picture(field, camera, settings, light_points, progress, light_surfaces);
+    const auto picture = [&](const RayLights* ray_lights, int pass) {
+        settings.pass = pass;
+        if (ray_lights)
+            settings.light_rays = light_rays_by(*ray_lights, (paths ? paths->direct() : *own_scene).field());
+        if (!plan.surfaces)
+            return render_picture(field, camera, settings, light_points, progress);
+        const SurfaceShader shader(plan, field, lighting.get(), virtual_lights.get(), *paths, settings.parts,
+                                   ray_lights, lengths ? &*lengths : nullptr);
+        return render_picture(field, camera, settings, light_points, progress,
+                              [&](const auto& samples, auto& light) { shader.shade(samples, light); });
+    };
+    double on_ray_lights = 0.0;
+    Image image = plan.ray_lights ? mean_of_passes(shot, paths ? paths->direct() : *own_scene, camera, picture,
+                                                   on_ray_lights, statistics, progress)
+                                  : picture(nullptr, 0);
     if (shot.output.bounce_layers && marching)
         progress.warning("bounce-layers", "output.layers.bounces needs lighting.gather = cache; left out");
     else if (shot.output.bounce_layers && surroundings)
@@ -212,9 +214,12 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
         progress.warning("bounce-layers", "output.layers.bounces needs scattering.method = lighting_grid; left out");
     else if (shot.output.bounce_layers && lighting)
         add_order_layers(image, field, nodes, medium, similar ? &*similar : nullptr, camera, settings, progress);
-    metadata.samples_per_pixel = double(settings.samples_per_axis) * settings.samples_per_axis;
-    statistics.stages.push_back(
-        {"camera", watch.seconds(), field.bytes(), {{"samples_per_pixel", metadata.samples_per_pixel}}});
+    metadata.samples_per_pixel =
+        double(settings.samples_per_axis) * settings.samples_per_axis * (plan.ray_lights ? shot.ray_lights.passes : 1);
+    statistics.stages.push_back({"camera",
+                                 watch.seconds() - on_ray_lights,
+                                 field.bytes(),
+                                 {{"samples_per_pixel", metadata.samples_per_pixel}}});
     Drawn out{std::move(image), std::nullopt};
     if (lengths)
         out.light_pictures =
