@@ -10,6 +10,13 @@
 
 namespace brisance {
 
+namespace {
+
+// Of each kind, for the mean over a cone: they cost little beside the way through the smoke.
+constexpr int kDirections = 4;
+
+}  // namespace
+
 BallCone::BallCone(const dvec3& axis, double distance, double radius) : axis_(axis) {
     const double sine = std::min(1.0, radius / distance), cosine = std::sqrt((1.0 - sine) * (1.0 + sine));
     const double outside = std::max(distance, radius);
@@ -44,13 +51,16 @@ double mean_phases(const BallCone& cone, const dvec3& arriving, const dvec3& lea
     };
     if (cone.thin() || mean_cosine == 0.0)
         return phase_about(arriving, cone.axis(), mean_cosine) * phase_about(cone.axis(), leaving, mean_cosine);
-    double sum = share(cone.sample(rng));
-    for (const dvec3& peak : {arriving, leaving}) {
-        const dvec3 way = sample_henyey_greenstein(peak, static_cast<float>(mean_cosine), rng);
-        if (cone.holds(way))
-            sum += share(way);
+    double sum = 0.0;
+    for (int i = 0; i < kDirections; ++i) {
+        sum += share(cone.sample(rng));
+        for (const dvec3& peak : {arriving, leaving}) {
+            const dvec3 way = sample_henyey_greenstein(peak, static_cast<float>(mean_cosine), rng);
+            if (cone.holds(way))
+                sum += share(way);
+        }
     }
-    return sum;
+    return sum / kDirections;
 }
 
 namespace {
@@ -106,20 +116,23 @@ Rgb mean_reflected(const BallCone& cone, const dvec3& arriving, double mean_cosi
         const double p = phase(to_light), others = bsdf.pdf(toward_viewer, to_light) + (peaked ? p : 0.0);
         return folded.scattered(to_light) * float(p * times / (times + solid_angle * others));
     };
-    // At least once, though rounding may put it past the edge.
-    const dvec3 within = folded.folded(cone.sample(rng));
-    Rgb sum = share(within, std::max(1, folded.times(within)));
+    Rgb sum(0.0f);
     const auto add = [&](const dvec3& to_light) {
         if (const int times = folded.times(to_light); times > 0)
             sum += share(to_light, times);
     };
-    const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
-    const std::optional<BsdfSample> drawn = bsdf.sample(toward_viewer, {x, y, z});
-    if (drawn && !drawn->delta)
-        add(drawn->wi);
-    if (peaked)
-        add(-sample_henyey_greenstein(arriving, static_cast<float>(mean_cosine), rng));
-    return sum;
+    for (int i = 0; i < kDirections; ++i) {
+        // At least once, though rounding may put it past the edge.
+        const dvec3 within = folded.folded(cone.sample(rng));
+        sum += share(within, std::max(1, folded.times(within)));
+        const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
+        const std::optional<BsdfSample> drawn = bsdf.sample(toward_viewer, {x, y, z});
+        if (drawn && !drawn->delta)
+            add(drawn->wi);
+        if (peaked)
+            add(-sample_henyey_greenstein(arriving, static_cast<float>(mean_cosine), rng));
+    }
+    return sum / float(kDirections);
 }
 
 double radius_shrunk(int pass, double alpha) {

@@ -51,7 +51,8 @@ private:
 
 // The mean over the cone of the product of two phase functions [1/sr^2]: of light that travels along `arriving`, turns
 // into the cone, whose axis is the way of light, and from there to `leaving`. Three directions share it by the balance
-// heuristic: of the cone, and of either phase function. Exact without a radius, and where mean_cosine is 0.
+// heuristic, a few of each: of the cone, and of either phase function. Exact without a radius, and where mean_cosine is
+// 0.
 double mean_phases(const BallCone& cone, const dvec3& arriving, const dvec3& leaving, double mean_cosine, Rng& rng);
 
 // The mean over the cone, whose axis leads from the surface to the light, of phase function times BSDF times cosine
