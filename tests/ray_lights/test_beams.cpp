@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <string>
 
 #include "ray_fixture.h"
 
@@ -48,12 +50,13 @@ TEST(Beams, KeepTheEnergy) {
 
 // In even smoke, light of a point that scatters alike all around: the bias of what arrives in all the smoke falls like
 // r^2 (times a logarithm, from the tail of the kernel).
+double bias(double radius) {  // [mean free paths]
+    return radius * over_distances([&](double w) {
+               return (kernel_at(w * radius, radius) * w * w * radius * radius - 1.0) * std::exp(-w * radius);
+           });
+}
+
 TEST(Beams, BiasFallsLikeTheSquareOfTheRadius) {
-    const auto bias = [](double radius) {  // [mean free paths]
-        return radius * over_distances([&](double w) {
-                   return (kernel_at(w * radius, radius) * w * w * radius * radius - 1.0) * std::exp(-w * radius);
-               });
-    };
     std::printf("radius in mean free paths  bias\n");
     for (const double r : {0.4, 0.2, 0.1, 0.05, 0.025})
         std::printf("%25g %+.4f\n", r, bias(r));
@@ -104,6 +107,65 @@ TEST(Beams, MeansOfPhasesAreThoseOfTheCone) {
         }
 }
 
+// MM and SM of the path tracer, but for a bias that is about that of even smoke and goes away with the radius.
+TEST(Beams, ComeToWhatPathsFindAsTheyShrink) {
+    constexpr float kDepth = 3.0f;  // per metre
+    const Stage stage(coloured_ball(8, kDepth, 0.3f), floor_below(0.7f));
+    RayLightSettings settings;
+    settings.paths = 600;
+    double last = -1.0;
+    for (const double radius : {0.2, 0.1, 0.05}) {
+        settings.radius = radius;
+        const std::string what = "beams of " + std::to_string(radius);
+        const double expected = bias(kDepth * radius);
+        const double found = expect_same_light(stage, settings, what.c_str(), 100, 1, 2.0 * std::abs(expected));
+        std::printf("radius %g m, %g mean free paths: bias %+.3f, of even smoke %+.3f\n", radius, kDepth * radius,
+                    found, expected);
+        EXPECT_GT(found, last) << radius;
+        last = found;
+    }
+}
+
+// Of one estimate over its mean, for rays of a family.
+template <class Estimator>
+double relative_variance(int samples, const Estimator& one) {
+    double sum = 0.0, square = 0.0;
+    Rng rng(Stream::Points, 33);
+    for (int i = 0; i < samples; ++i) {
+        const double x = one(rng);
+        sum += x / samples;
+        square += x * x / samples;
+    }
+    return square / (sum * sum) - 1.0;
+}
+
+// The same particles, and as many samples.
+void expect_less_noise(const Stage& stage, RayLightSettings settings, const char* what, double at_most,
+                       const std::function<double(const RayLights&, Rng&)>& one) {
+    double variance[2];
+    for (const double radius : {0.0, kAutomaticRadius}) {
+        settings.radius = radius;
+        const RayLights lights = stage.lights(settings, 16, 1);
+        variance[radius != 0.0] = relative_variance(40'000, [&](Rng& rng) { return one(lights, rng); });
+        std::printf("%s, radius %.3g m: relative deviation of a sample %.3g\n", what, lights.radius(),
+                    std::sqrt(variance[radius != 0.0]));
+    }
+    std::printf("%s: variance of rays over that of beams %.3g\n", what, variance[0] / variance[1]);
+    EXPECT_LT(variance[1], at_most * variance[0]) << what;
+}
+
+TEST(Beams, TakeAwayNoiseOfSharpPhaseFunctions) {
+    for (const float g : {0.8f, 0.95f}) {
+        const Stage stage(coloured_ball(8, 3.0f, g), {});
+        RayLightSettings settings;
+        settings.paths = 2000;
+        settings.samples = 1;
+        expect_less_noise(stage, settings, g < 0.9f ? "g 0.8" : "g 0.95", 0.5, [&](const RayLights& lights, Rng& rng) {
+            return stage.by_lights(lights, stage.ray(rng), rng).medium.x;
+        });
+    }
+}
+
 SurfacePoint on_floor(const SurfaceMaterial& material) {
     SurfacePoint p;
     p.position = dvec3(0.0);
@@ -129,7 +191,7 @@ TEST(Beams, MeansOverSurfacesAreThoseOfTheFoldedCone) {
                 const SurfacePoint point = on_floor(metal(roughness));
                 const Bsdf bsdf(point.material, point.frame);
                 const BallCone cone(glm::normalize(light), glm::length(light), 1.0);
-                const Estimate e = estimate(2, 400, [&](const dvec3&, Rng& rng, double* out) {
+                const Estimate e = estimate(2, 100, [&](const dvec3&, Rng& rng, double* out) {
                     out[0] = mean_reflected(cone, arriving, g, point, bsdf, viewer, rng).x;
                     dvec3 to = cone.sample(rng);
                     to.z = std::abs(to.z);
@@ -139,6 +201,25 @@ TEST(Beams, MeansOverSurfacesAreThoseOfTheFoldedCone) {
                     << roughness << ", " << g << ", " << light.z;
                 EXPECT_LT(e.error[0], e.error[1]) << roughness << ", " << g << ", " << light.z;
             }
+}
+
+// A polished floor under smoke, seen so that it mirrors the smoke.
+TEST(Beams, TakeAwayNoiseOfGlossySurfaces) {
+    for (const float roughness : {0.05f, 0.15f}) {
+        const Stage stage(coloured_ball(8, 1.0f, 0.0f), {});
+        RayLightSettings settings;
+        settings.paths = 2000;
+        settings.samples = 1;
+        const SurfaceMaterial material = metal(roughness);
+        expect_less_noise(stage, settings, roughness < 0.1f ? "roughness 0.05" : "roughness 0.15", 0.8,
+                          [&](const RayLights& lights, Rng& rng) {
+                              SurfacePoint point = on_floor(material);
+                              point.position = {rng.next_double() - 0.5, rng.next_double() - 2.5, -1.3};
+                              const dvec3 viewer = glm::normalize(dvec3(0.0, -1.0, 0.65));
+                              const Bsdf bsdf(point.material, point.frame);
+                              return double(lights.at_surface(point, bsdf, viewer, rng).x);
+                          });
+    }
 }
 
 // A floor takes half of what a point above it radiates, also where it cuts the ball.
