@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "fixtures/media.h"
 #include "fixtures/sets.h"
+#include "ray_lights/beam.h"
 #include "render/plan.h"
 #include "render/render_frame.h"
 

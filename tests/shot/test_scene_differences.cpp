@@ -37,13 +37,14 @@ TEST(SceneDifferences, AllAreTold) {
 }
 
 TEST(SceneDifferences, AreNotInTheMethodNorInWhatIsWritten) {
-    EXPECT_EQ(differences({"name=other", "lighting.alpha=3", "lighting.shadows=exact", "scattering.remainder=0.1",
-                           "scattering.alpha=4", "scattering.method=ray_lights", "ray_lights.samples=9",
-                           "ray_lights.length=long", "camera.samples_per_axis=2", "output.png=false",
-                           "output.layers.bounces=true", "output.virtual_lights=true", "output.exposure_stops=1",
-                           "$schema=x.json"},
-                          {}),
-              Lines{});
+    EXPECT_EQ(
+        differences({"name=other", "lighting.alpha=3", "lighting.shadows=exact", "scattering.remainder=0.1",
+                     "scattering.alpha=4", "scattering.method=ray_lights", "ray_lights.samples=9",
+                     "ray_lights.length=long", "ray_lights.radius=auto", "ray_lights.passes=3", "ray_lights.shrink=0.5",
+                     "camera.samples_per_axis=2", "output.png=false", "output.layers.bounces=true",
+                     "output.virtual_lights=true", "output.exposure_stops=1", "$schema=x.json"},
+                    {}),
+        Lines{});
 }
 
 TEST(SceneDifferences, VolumesCountByFileNotByFolder) {
