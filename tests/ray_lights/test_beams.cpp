@@ -118,7 +118,7 @@ TEST(Beams, ComeToWhatPathsFindAsTheyShrink) {
         settings.radius = radius;
         const std::string what = "beams of " + std::to_string(radius);
         const double expected = bias(kDepth * radius);
-        const double found = expect_same_light(stage, settings, what.c_str(), 100, 1, 2.0 * std::abs(expected));
+        const double found = expect_same_light(stage, settings, what.c_str(), 200, 1, 2.0 * std::abs(expected));
         std::printf("radius %g m, %g mean free paths: bias %+.3f, of even smoke %+.3f\n", radius, kDepth * radius,
                     found, expected);
         EXPECT_GT(found, last) << radius;
