@@ -24,7 +24,8 @@ enum class Stream : std::uint32_t {
     RayLightPair,
     RayLightSurface,
     MediumPoint,
-    MediumPointRoulette
+    MediumPointRoulette,
+    RayLightPass
 };
 
 // SplitMix64 (Steele, Lea, Flood 2014), keyed by identity.

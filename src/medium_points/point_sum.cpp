@@ -43,7 +43,7 @@ RayLightReceiver PointSum::receiver_at(const Scatterer& place) const {
 double PointSum::wanted_along(const SeenMedium& seen, const RayLightReceiver& receiver,
                               const MediumPoint& light) const {
     const double g = scene_.field().mean_cosine();
-    const double shown = shown_along(seen, light.position, light.direction, light.extinction, g, bound_.per_metre2());
+    const double shown = shown_along(seen, {light.position, light.direction, light.extinction, bound_.per_metre2()}, g);
     return light.scattered * shown + kByItsBox * importance(bounds_of(light), receiver, g);
 }
 

@@ -11,6 +11,12 @@ namespace {
 
 constexpr double kMostlySeen = 0.99;
 
+// A phase function's mean cosine once it is blurred over a ball of that sine, about.
+double blurred(double g, double sine) {
+    const double a = 1.0 - std::min(1.0, std::hypot(1.0 - std::abs(g), sine));
+    return g < 0.0 ? -a : a;
+}
+
 }  // namespace
 
 RayLightReceiver receiver_along(const SeenMedium& seen) {
@@ -19,27 +25,28 @@ RayLightReceiver receiver_along(const SeenMedium& seen) {
     return RayLightReceiver::along(part);
 }
 
-double shown_along(const SeenMedium& seen, const dvec3& place, const dvec3& direction, double extinction, double g,
-                   double bound) {
+double shown_along(const SeenMedium& seen, const ShiningPlace& light, double g) {
     constexpr int kAngles = 4;
     const Segment& ray = seen.segment();
-    const dvec3 way = ray.start - place;
+    const dvec3 way = ray.start - light.place;
     const double begin = glm::dot(way, ray.direction);
     const dvec3 across = way - begin * ray.direction;
-    const double height = std::max(glm::length(across), 1e-9 * ray.length), first = std::atan2(begin, height);
+    const double height = std::max({glm::length(across), 1e-9 * ray.length, 0.5 * light.radius}),
+                 first = std::atan2(begin, height);
     const double angle = std::atan2(height * ray.length, height * height + begin * (begin + ray.length));
     double shown = 0.0;
     for (int k = 0; k < kAngles; ++k) {
         const double a = first + (k + 0.5) / kAngles * angle, cosine = std::max(std::cos(a), 1e-12);
         const double u = std::clamp(height * std::sin(a) / cosine - begin, 0.0, ray.length);
         const double distance = height / cosine;
-        double here = seen.transmittance(u) * guessed_transmittance(extinction * distance);
+        double here = seen.transmittance(u) * guessed_transmittance(light.extinction * distance);
         if (g != 0.0) {
             const dvec3 toward = across / distance + std::sin(a) * ray.direction;
-            here *= phase_about(direction, toward, g) * phase_about(toward, -ray.direction, g);
+            const double wide = blurred(g, light.radius / distance);
+            here *= phase_about(light.direction, toward, wide) * phase_about(toward, -ray.direction, wide);
         }
-        if (bound > 0.0)
-            here *= std::min(1.0, bound * distance * distance);
+        if (light.bound > 0.0)
+            here *= std::min(1.0, light.bound * distance * distance);
         shown += here;
     }
     return shown * angle / (height * kAngles);

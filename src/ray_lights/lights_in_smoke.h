@@ -21,7 +21,7 @@ public:
     virtual ~LightsInSmoke() = default;
 
     // For a ray of a pixel of the camera: pictures of different seeds share no random numbers.
-    Rng rng(Stream stream, std::uint32_t pixel, std::uint32_t number) const {
+    Rng rng(Stream stream, std::uint32_t pixel, std::uint64_t number) const {
         return Rng(stream, pixel | std::uint64_t(seed_) << 32, number);
     }
 
@@ -43,10 +43,16 @@ private:
 // The part of a ray that shows almost all that is seen of its medium.
 RayLightReceiver receiver_along(const SeenMedium& seen);
 
-// About what light that sets out from a place along `direction` (unit), in smoke of that extinction [1/m], shows along
-// the ray once it has scattered there: the integral of 1 / distance^2 (no more than `bound` [1/m^2]; 0: unbounded) with
-// both phase functions and what smoke leaves of it, by a few angles.
-double shown_along(const SeenMedium& seen, const dvec3& place, const dvec3& direction, double extinction,
-                   double mean_cosine, double bound = 0.0);
+// Where light sets out along `direction` (unit), in smoke of that extinction [1/m].
+struct ShiningPlace {
+    dvec3 place, direction;
+    double extinction;
+    double bound = 0.0;   // on 1 / distance^2 [1/m^2]; 0: none
+    double radius = 0.0;  // of the ball over which it is blurred [m]
+};
+
+// About what it shows along the ray once it has scattered there: the integral of 1 / distance^2 with both phase
+// functions and what smoke leaves of it, by a few angles.
+double shown_along(const SeenMedium& seen, const ShiningPlace& light, double mean_cosine);
 
 }  // namespace brisance

@@ -18,6 +18,9 @@ constexpr double kClosest = 1e-9;
 // two asinh would lose its digits.
 constexpr double kUniformRange = 1e-3;
 
+// How near to a beam distances still count, over its radius.
+constexpr double kFlat = 0.5;
+
 }  // namespace
 
 double phase_about(const dvec3& axis, const dvec3& direction, double g) {
@@ -27,14 +30,15 @@ double phase_about(const dvec3& axis, const dvec3& direction, double g) {
     return (1.0 - a) * (1.0 + a) / (2.0 * kTwoPi * d * std::sqrt(d));
 }
 
-AngularDensity::AngularDensity(const dvec3& apex, const Segment& segment, std::initializer_list<PhaseLobe> lobes)
+AngularDensity::AngularDensity(const dvec3& apex, const Segment& segment, std::initializer_list<PhaseLobe> lobes,
+                               double radius)
     : length_(segment.length) {
     const dvec3 from = segment.start - apex;
     before_ = glm::dot(from, segment.direction);
     const dvec3 across = from - before_ * segment.direction;
     height_ = glm::length(across);
     const dvec3 toward = height_ > 0.0 ? across / height_ : dvec3(0.0);
-    height_ = std::max(height_, kClosest * std::max(length_, 1e-290));
+    height_ = std::max({height_, kClosest * std::max(length_, 1e-290), kFlat * radius});
     begin_ = std::atan2(before_, height_);
     angle_ = std::atan2(height_ * length_, height_ * height_ + before_ * (before_ + length_));
     for (const PhaseLobe& l : lobes) {
@@ -48,8 +52,11 @@ AngularDensity::AngularDensity(const dvec3& apex, const Segment& segment, std::i
         const double in_plane = std::hypot(along, up), out2 = glm::dot(lost, lost);
         Lobe& lobe = lobes_[count_++];
         lobe.middle = std::atan2(along, up);
-        lobe.a_minus_b = (1.0 - g) * (1.0 - g) + 2.0 * g * out2 / (1.0 + in_plane);
-        lobe.a_plus_b = (1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 + in_plane);
+        // a - b cos x is a - b + g x^2 near the peak: as wide as a ball that is seen there.
+        const double at_peak = before_ + distance_at(std::clamp(lobe.middle - begin_, 0.0, angle_));
+        const double ball = std::min(1.0, radius / std::hypot(height_, at_peak));
+        lobe.a_minus_b = (1.0 - g) * (1.0 - g) + 2.0 * g * out2 / (1.0 + in_plane) + g * ball * ball;
+        lobe.a_plus_b = (1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 + in_plane) + g * ball * ball;
         lobe.root = std::sqrt(lobe.a_minus_b * lobe.a_plus_b);
         lobe.first = primitive(lobe, begin_ - lobe.middle);
         lobe.integral = primitive(lobe, begin_ + angle_ - lobe.middle) - lobe.first;
@@ -106,7 +113,8 @@ double AngularDensity::pdf(double t) const {
     return per_angle / (count_ + 1) * height_ / (height_ * height_ + along * along);
 }
 
-InverseDistanceDensity::InverseDistanceDensity(const Segment& ray, const Segment& other) : length_(ray.length) {
+InverseDistanceDensity::InverseDistanceDensity(const Segment& ray, const Segment& other, double radius)
+    : length_(ray.length) {
     const dvec3 from = ray.start - other.start;
     const dvec3 across = from - glm::dot(from, other.direction) * other.direction;
     const dvec3 turn = ray.direction - glm::dot(ray.direction, other.direction) * other.direction;
@@ -114,7 +122,7 @@ InverseDistanceDensity::InverseDistanceDensity(const Segment& ray, const Segment
     if (!(sine_ > 0.0) || !(length_ > 0.0))
         return;
     closest_ = -glm::dot(across, turn) / (sine_ * sine_);
-    height_ = std::max(glm::length(across + closest_ * turn), kClosest * sine_ * length_);
+    height_ = std::max({glm::length(across + closest_ * turn), kClosest * sine_ * length_, kFlat * radius});
     begin_ = std::asinh(-closest_ * sine_ / height_);
     range_ = std::asinh((length_ - closest_) * sine_ / height_) - begin_;
     uniform_ = !(range_ >= kUniformRange);
@@ -130,16 +138,16 @@ double InverseDistanceDensity::pdf(double t) const {
     return uniform_ ? 1.0 / length_ : sine_ / (range_ * std::hypot(height_, (t - closest_) * sine_));
 }
 
-PairDensity::PairDensity(const Segment& camera, const Segment& light, double mean_cosine)
-    : camera_(camera), light_(light), g_(mean_cosine), marginal_(light, camera) {}
+PairDensity::PairDensity(const Segment& camera, const Segment& light, double mean_cosine, double radius)
+    : camera_(camera), light_(light), g_(mean_cosine), radius_(radius), marginal_(light, camera, radius) {}
 
 AngularDensity PairDensity::on_camera(double v) const {
-    return {light_.at(v), camera_, {{light_.direction, g_}, {-camera_.direction, g_}}};
+    return {light_.at(v), camera_, {{light_.direction, g_}, {-camera_.direction, g_}}, radius_};
 }
 
 // Seen from u light comes against the direction from the apex.
 AngularDensity PairDensity::on_light(double u) const {
-    return {camera_.at(u), light_, {{-light_.direction, g_}, {camera_.direction, g_}}};
+    return {camera_.at(u), light_, {{-light_.direction, g_}, {camera_.direction, g_}}, radius_};
 }
 
 std::optional<PairSample> PairDensity::sample(Rng& rng) const {

@@ -35,10 +35,13 @@ struct PhaseLobe {
 // Importance Sampling Techniques for Path Tracing in Participating Media, EGSR 2012). Along that angle a phase function
 // is a peak of the form (a - b cos)^(-3/2); the density adds one peak (a - b cos)^-1 for each, which can be inverted in
 // closed form, and the ratio of both has a variance that stays bounded when |g| goes to 1.
+// For beams (beam.h) of a radius above 0 the distance is kept apart from 0, where their kernel is flat, and peaks are
+// widened by the angle under which their balls are seen.
 class AngularDensity {
 public:
     // Lobes of g = 0 are left out. The segment's length must be above zero.
-    AngularDensity(const dvec3& apex, const Segment& segment, std::initializer_list<PhaseLobe> lobes);
+    AngularDensity(const dvec3& apex, const Segment& segment, std::initializer_list<PhaseLobe> lobes,
+                   double radius = 0.0);
 
     double sample(Rng& rng) const;  // distance along the segment [m]
     double pdf(double t) const;     // [1/m]
@@ -65,10 +68,11 @@ private:
 
 // A density [1/m] over `ray` for the integral of 1 / distance^2 over the whole line of `other`: proportional to the
 // inverse distance from that line. Uniform where the two are so close to parallel, or so far apart, that this is
-// constant to a thousandth.
+// constant to a thousandth. Flat, for beams, within half their radius: the kernel's integral along a line through the
+// middle is about 2 pi over the radius.
 class InverseDistanceDensity {
 public:
-    InverseDistanceDensity(const Segment& ray, const Segment& other);
+    InverseDistanceDensity(const Segment& ray, const Segment& other, double radius = 0.0);
     double place(double xi) const;  // where that part of the density lies before [m]
     double sample(Rng& rng) const { return place(rng.next_double()); }
     double pdf(double t) const;
@@ -89,7 +93,8 @@ struct PairSample {
 // `light`.
 class PairDensity {
 public:
-    PairDensity(const Segment& camera, const Segment& light, double mean_cosine);
+    // `radius`: of the light [m].
+    PairDensity(const Segment& camera, const Segment& light, double mean_cosine, double radius = 0.0);
     // None where one of the segments has no length.
     std::optional<PairSample> sample(Rng& rng) const;
     double pdf(double u, double v) const;
@@ -99,7 +104,7 @@ public:
 
 private:
     Segment camera_, light_;
-    double g_;
+    double g_, radius_;
     InverseDistanceDensity marginal_;  // over v
 };
 

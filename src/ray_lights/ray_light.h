@@ -11,6 +11,7 @@ struct RayLight {
     bool dimmed = false;      // of a long flight: what arrives at v passed the smoke from the start to there
     double extinction = 0.0;  // mean along it [1/m]
     double scattered = 0.0;   // luminance [W] that scatters along it, about: the optical depth times its power
+    double radius = 0.0;      // of a beam [m] (beam.h)
 };
 
 // Who is lit: a ray of the camera through the medium, or a point of a surface.

@@ -86,7 +86,8 @@ double at_point(const RayLightBounds& box, const dvec3& point, const dvec3& norm
 
 RayLightBounds bounds_of(const RayLight& light) {
     const dvec3 a = light.segment.start, b = light.segment.at(light.segment.length);
-    return {glm::min(a, b), glm::max(a, b), light.scattered, light.extinction, light.segment.direction};
+    return {glm::min(a, b) - light.radius, glm::max(a, b) + light.radius, light.scattered, light.extinction,
+            light.segment.direction};
 }
 
 RayLightBounds united(const RayLightBounds& a, const RayLightBounds& b) {

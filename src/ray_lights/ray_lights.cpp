@@ -13,16 +13,50 @@ namespace {
 // What its few places may miss, a light is wanted for by its box.
 constexpr double kByItsBox = 0.1;
 
+// Of the bricks that hold any smoke [m^3].
+double volume_of(const TrackingField& field) {
+    std::size_t bricks = 0;
+    for (std::size_t b = 0; b < field.bricks().brick_count(); ++b)
+        bricks += field.majorant(b) > 0.0f;
+    return double(bricks * BrickLattice::kNodes) * std::abs(glm::determinant(dmat3(field.medium().world_from_index)));
+}
+
+// How far it is to the nearest light from anywhere in the smoke, on average, were they strewn evenly: lines of a total
+// length l in a volume V are as many to an area as l / V, whatever their directions.
+double automatic_radius(std::span<const RayLight> lights, const TrackingField& field) {
+    double length = 0.0;
+    for (const RayLight& light : lights)
+        length += light.segment.length;
+    return length > 0.0 ? 0.5 * std::sqrt(volume_of(field) / length) : 0.0;
+}
+
+std::vector<RayLight> thickened(std::vector<RayLight> lights, double radius, const TrackingField& field) {
+    const double r = radius == kAutomaticRadius ? automatic_radius(lights, field) : radius;
+    for (RayLight& light : lights)
+        light.radius = r;
+    return lights;
+}
+
 }  // namespace
+
+RayLightSettings settings_of_pass(RayLightSettings settings, int pass, double first) {
+    if (pass == 0)
+        return settings;
+    settings.radius = first * radius_shrunk(pass, settings.shrink);
+    Rng rng(Stream::RayLightPass, settings.seed, static_cast<std::uint64_t>(pass));
+    settings.seed = static_cast<std::uint32_t>(rng.next_double() * 0x1p32);
+    return settings;
+}
 
 RayLights::RayLights(const DirectLight& scene, const RayLightSettings& settings, int bounces,
                      std::span<const RayLightReceiver> receivers)
     : LightsInSmoke(settings.seed),
       scene_(scene),
       settings_(settings),
-      lights_(keep_important(trace_ray_lights(scene, settings, bounces, report_), receivers,
-                             static_cast<std::size_t>(settings.count), scene.field().mean_cosine(),
-                             Stream::RayLightRoulette, settings.seed)),
+      lights_(thickened(keep_important(trace_ray_lights(scene, settings, bounces, report_), receivers,
+                                       static_cast<std::size_t>(settings.count), scene.field().mean_cosine(),
+                                       Stream::RayLightRoulette, settings.seed),
+                        settings.radius, scene.field())),
       tree_(boxes_of(lights_), scene.field().mean_cosine()) {
     report_.lights = lights_.size();
 }
@@ -38,7 +72,7 @@ bool RayLights::occluded(const Ray& ray, double end) const {
 Rgb RayLights::pair(const SeenMedium& seen, const RayLight& light, Rng& rng) const {
     const Segment& camera = seen.segment();
     const double g = scene_.field().mean_cosine();
-    const PairDensity joint(camera, light.segment, g);
+    const PairDensity joint(camera, light.segment, g, light.radius);
     PairSample s;
     if (rng.next_double() < 0.5) {
         const std::optional<PairSample> drawn = joint.sample(rng);
@@ -64,17 +98,17 @@ Rgb RayLights::pair(const SeenMedium& seen, const RayLight& light, Rng& rng) con
     const Ray between{from, way / w};
     if (occluded(between, w))
         return Rgb(0.0f);
-    const double phases = phase_about(light.segment.direction, between.direction, g) *
-                          phase_about(between.direction, -camera.direction, g);
+    const BallCone cone(between.direction, w, light.radius);
+    const double phases = mean_phases(cone, light.segment.direction, -camera.direction, g, rng);
     const double through =
         seen.transmittance(s.u) * reaches_along(light, s.v, rng) * scene_.lines().transmittance(between, w, rng);
-    return light.power * at_u.scattering * at_v.scattering * float(phases * through / (w * w * s.pdf));
+    return light.power * at_u.scattering * at_v.scattering * float(phases * through * cone.kernel() / s.pdf);
 }
 
 Rgb RayLights::to_surface(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer,
                           const RayLight& light, Rng& rng) const {
     const double g = scene_.field().mean_cosine();
-    const AngularDensity density(point.position, light.segment, {{-light.segment.direction, g}});
+    const AngularDensity density(point.position, light.segment, {{-light.segment.direction, g}}, light.radius);
     const double v = density.sample(rng);
     const Coefficients at_v = RayProbe(scene_.field(), {light.segment.start, light.segment.direction}).at(v);
     if (at_v.scattering == Rgb(0.0f))
@@ -84,29 +118,25 @@ Rgb RayLights::to_surface(const SurfacePoint& point, const Bsdf& bsdf, const dve
     if (!(w > 0.0))
         return Rgb(0.0f);
     const Ray ray{start, way / w};
-    // Interpolated normals must not let light through the surface itself.
-    const auto same_side = [&](const dvec3& n) {
-        return glm::dot(n, ray.direction) * glm::dot(n, toward_viewer) > 0.0;
-    };
-    if (same_side(point.frame.normal) != same_side(point.geometric_normal))
-        return Rgb(0.0f);
-    const Rgb scattered = bsdf.evaluate(toward_viewer, ray.direction);
+    const BallCone cone(ray.direction, w, light.radius);
+    const Rgb scattered = mean_reflected(cone, light.segment.direction, g, point, bsdf, toward_viewer, rng);
     if (scattered == Rgb(0.0f) || occluded(ray, w))
         return Rgb(0.0f);
     const double through = reaches_along(light, v, rng) * scene_.lines().transmittance(ray, w, rng);
-    const double phase = phase_about(light.segment.direction, -ray.direction, g);
-    return light.power * at_v.scattering * scattered * float(phase * through / (w * w * density.pdf(v)));
+    return light.power * at_v.scattering * scattered * float(through * cone.kernel() / density.pdf(v));
 }
 
 // The double integral of a pair by a few of its places.
 double RayLights::wanted_along(const SeenMedium& seen, const RayLight& light) const {
     constexpr int kPlaces = 3;
     const double g = scene_.field().mean_cosine();
-    const InverseDistanceDensity near(light.segment, seen.segment());
+    const InverseDistanceDensity near(light.segment, seen.segment(), light.radius);
     double sum = 0.0;
     for (int i = 0; i < kPlaces; ++i) {
         const double v = near.place((i + 0.5) / kPlaces);
-        sum += shown_along(seen, light.segment.at(v), light.segment.direction, light.extinction, g) / near.pdf(v);
+        sum +=
+            shown_along(seen, {light.segment.at(v), light.segment.direction, light.extinction, 0.0, light.radius}, g) /
+            near.pdf(v);
     }
     return sum * light.scattered / (kPlaces * light.segment.length);
 }

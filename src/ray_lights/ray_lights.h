@@ -8,17 +8,27 @@
 // T(0, v) is 1 for short lights, which end where their particle collided. One pair estimates it, drawn by one of two
 // densities which share it by the balance heuristic: the inverse square with both phase functions, and a flight along
 // the camera's ray with the same seen from where it collides.
+// At a point of a surface BSDF times cosine stands in the place of sigma_s(u) p(u) T(0, u), and there is no integral
+// over u; v is drawn by the inverse square with the light's phase function. The BSDF is only evaluated: narrow lobes
+// are noisy without a radius. Whoever holds them does better (surface_shader.h): a ray in a direction that they draw
+// sees the medium, and along_ray() of it is all of SM but for light that was scattered once.
+// With a radius, lights are beams: phase functions, BSDF and the inverse square are blurred, which is a bias that
+// vanishes with the radius (beam.h).
 // Which lights are asked: choose_lights.h.
 #pragma once
 
 #include <span>
 #include <vector>
 
+#include "ray_lights/beam.h"
 #include "ray_lights/lights_in_smoke.h"
 #include "ray_lights/ray_light_tree.h"
 #include "ray_lights/trace_ray_lights.h"
 
 namespace brisance {
+
+// Of a pass, from 0: with a seed of its own, and the radius that is left of `first` [m], that of pass 0.
+RayLightSettings settings_of_pass(RayLightSettings settings, int pass, double first);
 
 class RayLights : public LightsInSmoke {
 public:
@@ -37,6 +47,7 @@ public:
 
     std::span<const RayLight> lights() const { return lights_; }
     const RayLightReport& report() const { return report_; }
+    double radius() const { return lights_.empty() ? 0.0 : lights_.front().radius; }  // [m]
     std::uint64_t bytes() const { return lights_.size() * sizeof(RayLight) + tree_.bytes(); }
 
 private:

@@ -1,4 +1,4 @@
-// Virtual ray lights: how many, and how many of them a camera ray asks.
+// Virtual ray lights: how many, how many of them a camera ray asks, and how thick they are.
 #pragma once
 
 #include <cstdint>
@@ -24,6 +24,12 @@ struct RayLightSettings {
     int samples = 4;     // lights that a camera ray, or a point of a surface, asks
     RayLength length = RayLength::Short;
     std::uint32_t seed = 0;
+    double radius = 0.0;  // of the first pass [m]; 0: rays, without bias; above: beams (beam.h)
+    int passes = 1;       // pictures that are averaged, each with lights of its own
+    double shrink = 0.7;  // alpha of radius_shrunk(): near 1 the radius stays
 };
+
+// Of RayLightSettings::radius: from the lights of the first pass, RayLights::radius().
+constexpr double kAutomaticRadius = -1.0;
 
 }  // namespace brisance

@@ -1,5 +1,10 @@
 #include "render/camera_scattered_lights.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
 #include "core/error.h"
 #include "core/stopwatch.h"
 #include "medium_points/medium_points.h"
@@ -30,49 +35,100 @@ std::vector<RayLightReceiver> receivers_of(const DirectLight& scene, const Camer
     return receivers;
 }
 
-std::unique_ptr<LightsInSmoke> ray_lights(const Shot& shot, const DirectLight& scene, const Camera& camera,
-                                          StageCost& cost) {
-    auto lights =
-        std::make_unique<RayLights>(scene, shot.ray_lights, shot.scattering.bounces, receivers_of(scene, camera));
+struct Made {
+    std::unique_ptr<LightsInSmoke> lights;
+    std::uint64_t bytes = 0;
+    nlohmann::ordered_json detail;
+    double radius = 0.0;  // [m]
+};
+
+Made ray_lights(const DirectLight& scene, const RayLightSettings& settings, int bounces,
+                const std::vector<RayLightReceiver>& receivers) {
+    auto lights = std::make_unique<RayLights>(scene, settings, bounces, receivers);
     const RayLightReport& r = lights->report();
-    cost.bytes = lights->bytes();
-    cost.detail = {{"particles", r.paths},
-                   {"flights", r.flights},
-                   {"pieces", r.pieces},
-                   {"lights", r.lights},
-                   {"not_finite", r.not_finite}};
-    return lights;
+    Made made{nullptr, lights->bytes(), {}, lights->radius()};
+    made.detail = {{"particles", r.paths}, {"flights", r.flights},       {"pieces", r.pieces},
+                   {"lights", r.lights},   {"not_finite", r.not_finite}, {"last_radius", lights->radius()}};
+    made.lights = std::move(lights);
+    return made;
 }
 
-std::unique_ptr<LightsInSmoke> point_lights(const Shot& shot, const DirectLight& scene, const Camera& camera,
-                                            StageCost& cost) {
-    auto lights =
-        std::make_unique<MediumPoints>(scene, shot.point_lights, shot.scattering.bounces, receivers_of(scene, camera));
+Made point_lights(const DirectLight& scene, const PointLightSettings& settings, int bounces,
+                  const std::vector<RayLightReceiver>& receivers) {
+    auto lights = std::make_unique<MediumPoints>(scene, settings, bounces, receivers);
     const MediumPointReport& r = lights->report();
-    cost.bytes = lights->bytes();
-    cost.detail = {{"particles", r.paths},
+    Made made{nullptr, lights->bytes(), {}, 0.0};
+    made.detail = {{"particles", r.paths},
                    {"flights", r.flights},
                    {"collisions", r.collisions},
                    {"lights", r.lights},
                    {"not_finite", r.not_finite},
                    {"bound_per_metre2", lights->bound().per_metre2()},
                    {"bound_radius_metres", lights->bound().radius()}};
-    return lights;
+    made.lights = std::move(lights);
+    return made;
+}
+
+// What one pass cost, after others: counts add up.
+void add(StageCost& to, const Made& pass, double seconds) {
+    to.seconds += seconds;
+    to.bytes = std::max(to.bytes, pass.bytes);
+    for (const auto& [key, value] : pass.detail.items()) {
+        const bool counts = value.is_number_unsigned() && to.detail.contains(key);
+        to.detail[key] =
+            counts ? nlohmann::ordered_json(value.get<std::uint64_t>() + to.detail[key].get<std::uint64_t>()) : value;
+    }
+}
+
+// Of `count` pictures, one after another.
+void add_to_mean(Image& mean, const Image& next, int count) {
+    for (std::size_t l = 0; l < mean.layers.size(); ++l)
+        for (std::size_t i = 0; i < mean.layers[l].pixels.size(); ++i) {
+            float& pixel = mean.layers[l].pixels[i];
+            pixel += (next.layers[l].pixels[i] - pixel) / float(count);
+        }
+}
+
+bool by_points(const Shot& shot) {
+    return shot.ray_lights.method == ScatteringMethod::PointLights;
 }
 
 }  // namespace
 
-std::unique_ptr<LightsInSmoke> trace_scattered_lights(const Shot& shot, const DirectLight& scene, const Camera& camera,
-                                                      Statistics& statistics, Progress& progress) {
-    const bool points = shot.ray_lights.method == ScatteringMethod::PointLights;
-    StageCost cost;
-    cost.name = points ? "point lights (MM, SM)" : "ray lights (MM, SM)";
-    progress.stage(cost.name);
-    const Stopwatch watch;
-    auto lights = points ? point_lights(shot, scene, camera, cost) : ray_lights(shot, scene, camera, cost);
-    cost.seconds = watch.seconds();
+int passes_of(const Shot& shot) {
+    return by_points(shot) ? 1 : shot.ray_lights.passes;
+}
+
+Image mean_of_passes(const Shot& shot, const DirectLight& scene, const Camera& camera, const DrawPass& draw,
+                     double& seconds, Statistics& statistics, Progress& progress) {
+    const std::vector<RayLightReceiver> receivers = receivers_of(scene, camera);
+    const int passes = passes_of(shot), bounces = shot.scattering.bounces;
+    StageCost cost{by_points(shot) ? "point lights (MM, SM)" : "ray lights (MM, SM)", 0.0, 0, {}};
+    double first = 0.0;
+    Image mean;
+    for (int pass = 0; pass < passes; ++pass) {
+        progress.stage(passes > 1 ? fmt::format("{}, pass {} of {}", cost.name, pass + 1, passes) : cost.name);
+        const Stopwatch watch;
+        const Made made = by_points(shot)
+                              ? point_lights(scene, shot.point_lights, bounces, receivers)
+                              : ray_lights(scene, settings_of_pass(shot.ray_lights, pass, first), bounces, receivers);
+        if (pass == 0)
+            first = made.radius;
+        add(cost, made, watch.seconds());
+        progress.stage("camera");
+        Image picture = draw(*made.lights, pass);
+        if (pass == 0)
+            mean = std::move(picture);
+        else
+            add_to_mean(mean, picture, pass + 1);
+    }
+    if (!by_points(shot)) {
+        cost.detail["passes"] = passes;
+        cost.detail["first_radius"] = first;
+    }
+    seconds = cost.seconds;
     statistics.stages.push_back(std::move(cost));
-    return lights;
+    return mean;
 }
 
 LightRays light_rays_by(const LightsInSmoke& lights, const TrackingField& field) {

@@ -1,8 +1,12 @@
 // Virtual lights in the smoke as owners of MM and SM, ray lights or point lights: made for what the camera sees, asked
 // by its rays, and what they leave to the lighting grid.
+//
+// A pass draws the whole picture anew, with lights and random numbers of its own, and its lights are gone before those
+// of the next are made: memory is that of one pass, time grows with their number, and all that is drawn with random
+// numbers gains from it.
 #pragma once
 
-#include <memory>
+#include <functional>
 
 #include "ray_lights/lights_in_smoke.h"
 #include "render/camera.h"
@@ -17,9 +21,14 @@ namespace brisance {
 // Throws Error Usage for what they do not work with.
 void check_scattered_lights(const Shot& shot);
 
-// Of the kind that scattering.method names. Keeps a reference to the scene.
-std::unique_ptr<LightsInSmoke> trace_scattered_lights(const Shot& shot, const DirectLight& scene, const Camera& camera,
-                                                      Statistics& statistics, Progress& progress);
+// A picture by the lights of a pass, from 0.
+using DrawPass = std::function<Image(const LightsInSmoke& lights, int pass)>;
+
+int passes_of(const Shot& shot);
+
+// The mean of all passes, by lights of the kind that scattering.method names; `seconds`: spent on making them.
+Image mean_of_passes(const Shot& shot, const DirectLight& scene, const Camera& camera, const DrawPass& draw,
+                     double& seconds, Statistics& statistics, Progress& progress);
 
 // Keeps references to both.
 LightRays light_rays_by(const LightsInSmoke& lights, const TrackingField& field);

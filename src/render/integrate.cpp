@@ -296,7 +296,8 @@ private:
             for (std::uint32_t k = 0; k < samples_.size(); ++k) {
                 const PixelSample& s = samples_[k];
                 const Ray ray = camera_.ray(x + 0.5 + s.x, y + 0.5 + s.y);
-                const SurfaceSample sample{static_cast<std::uint32_t>(y * width + x), k, {}, {}};
+                const std::uint64_t number = static_cast<std::uint64_t>(settings_.pass) << 32 | k;
+                const SurfaceSample sample{static_cast<std::uint32_t>(y * width + x), number, {}, {}};
                 add_weighted(sums_[std::size_t(row) * width + x], look(field_, ray, settings_, sample, s.weight, found),
                              s.weight);
             }

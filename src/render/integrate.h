@@ -36,7 +36,7 @@ using LightPoints = std::function<void(const std::vector<MarchPoint>& points, st
 // A camera ray of a pixel.
 struct PixelRay {
     std::uint32_t pixel;
-    std::uint32_t number;  // of the ray in its pixel
+    std::uint64_t number;  // of the ray in its pixel, and of the pass (PictureSettings)
     Ray ray;
 };
 
@@ -50,6 +50,7 @@ struct PictureSettings {
     std::array<bool, kCells> layers = layers_of({Cell::V});  // ... of these cells
     const Surroundings* surroundings = nullptr;              // rays end at its surfaces
     LightRays light_rays = {};                               // empty: the field holds MM
+    int pass = 0;  // of several pictures that are averaged: each with random numbers of its own
 
     static constexpr std::array<bool, kCells> layers_of(std::initializer_list<Cell> cells) {
         std::array<bool, kCells> layers{};
@@ -62,7 +63,7 @@ struct PictureSettings {
 // A surface that the camera sees, on one of a pixel's rays.
 struct SurfaceSample {
     std::uint32_t pixel;
-    std::uint32_t number;  // of the ray in its pixel
+    std::uint64_t number;  // of the ray in its pixel, and of the pass (PictureSettings)
     Ray ray;
     SurfaceHit hit;
 };

@@ -154,11 +154,8 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     if (shot.virtual_lights.count > 0 && (plan.needs(Cell::SS) || plan.needs(Cell::MS)))
         virtual_lights = place_virtual_lights(shot, paths->direct(), camera, statistics, progress);
     std::optional<DirectLight> own_scene;
-    std::unique_ptr<LightsInSmoke> scattered_lights;
-    if (plan.scattered_lights) {
-        const DirectLight& scene = paths ? paths->direct() : own_scene.emplace(medium, shot.tracing, surroundings);
-        scattered_lights = trace_scattered_lights(shot, scene, camera, statistics, progress);
-    }
+    if (plan.scattered_lights && !paths)
+        own_scene.emplace(medium, shot.tracing, surroundings);
     // Orders of scattering that the grid follows.
     const int grid_bounces = plan.scattered_lights ? bounces_beside_scattered_lights(plan) : shot.scattering.bounces;
     const Plan grid_plan = plan.scattered_lights ? without_scattered_lights(plan) : plan;
@@ -186,24 +183,30 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     settings.layers = plan.needed;
     settings.layers[static_cast<int>(Cell::V)] |= !medium.lattice.empty();
     settings.surroundings = surroundings;
-    if (scattered_lights)
-        settings.light_rays = light_rays_by(*scattered_lights, (paths ? paths->direct() : *own_scene).field());
     if (plan.surfaces && camera.settings().samples_per_axis == 0)
         settings.samples_per_axis = std::max(settings.samples_per_axis, kSurfaceSamples);
     std::optional<PathLengths> lengths;
     if (shot.output.virtual_lights && !why_no_virtual_lights(shot, plan))
         lengths.emplace(std::size_t(camera.settings().width) * camera.settings().height);
-    std::optional<SurfaceShader> shader;
-    LightSurfaces light_surfaces;
-    if (plan.surfaces) {
-        shader.emplace(plan, field, lighting.get(), virtual_lights.get(), *paths, settings.parts,
-                       scattered_lights.get(), lengths ? &*lengths : nullptr);
-        light_surfaces = [&](const auto& samples, auto& light) { shader->shade(samples, light); };
-    }
     LightPoints light_points;
     if (lighting && marching)
         light_points = [&](const auto& points, auto& out) { lighting->at_points(points, out); };
-    Image image = render_picture(field, camera, settings, light_points, progress, light_surfaces);
+    const auto picture = [&](const LightsInSmoke* scattered_lights, int pass) {
+        settings.pass = pass;
+        if (scattered_lights)
+            settings.light_rays = light_rays_by(*scattered_lights, (paths ? paths->direct() : *own_scene).field());
+        if (!plan.surfaces)
+            return render_picture(field, camera, settings, light_points, progress);
+        const SurfaceShader shader(plan, field, lighting.get(), virtual_lights.get(), *paths, settings.parts,
+                                   scattered_lights, lengths ? &*lengths : nullptr);
+        return render_picture(field, camera, settings, light_points, progress,
+                              [&](const auto& samples, auto& light) { shader.shade(samples, light); });
+    };
+    double on_lights = 0.0;
+    const auto pass = [&](const LightsInSmoke& lights, int number) { return picture(&lights, number); };
+    Image image = plan.scattered_lights ? mean_of_passes(shot, paths ? paths->direct() : *own_scene, camera, pass,
+                                                         on_lights, statistics, progress)
+                                        : picture(nullptr, 0);
     if (shot.output.bounce_layers && marching)
         progress.warning("bounce-layers", "output.layers.bounces needs lighting.gather = cache; left out");
     else if (shot.output.bounce_layers && surroundings)
@@ -212,9 +215,10 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
         progress.warning("bounce-layers", "output.layers.bounces needs scattering.method = lighting_grid; left out");
     else if (shot.output.bounce_layers && lighting)
         add_order_layers(image, field, nodes, medium, similar ? &*similar : nullptr, camera, settings, progress);
-    metadata.samples_per_pixel = double(settings.samples_per_axis) * settings.samples_per_axis;
+    metadata.samples_per_pixel =
+        double(settings.samples_per_axis) * settings.samples_per_axis * (plan.scattered_lights ? passes_of(shot) : 1);
     statistics.stages.push_back(
-        {"camera", watch.seconds(), field.bytes(), {{"samples_per_pixel", metadata.samples_per_pixel}}});
+        {"camera", watch.seconds() - on_lights, field.bytes(), {{"samples_per_pixel", metadata.samples_per_pixel}}});
     Drawn out{std::move(image), std::nullopt};
     if (lengths)
         out.light_pictures =
@@ -222,15 +226,20 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     return out;
 }
 
-// Where forward peaks count as no scattering (similar_medium.h), MV holds light that was scattered more than once: MV
-// is then drawn by itself, and MM is the rest, so that every path stands in its own layer.
-void file_single_scattering(Image& image, const Image& single) {
-    Layer &mv = image.layer("MV"), &mm = image.layer("MM");
-    const Layer& found = single.layer("MV");
-    for (std::size_t i = 0; i < mv.pixels.size(); ++i) {
-        const float both = mv.pixels[i] + mm.pixels[i];
-        mv.pixels[i] = std::clamp(found.pixels[i], 0.0f, std::max(both, 0.0f));
-        mm.pixels[i] = both - mv.pixels[i];
+// Where forward peaks count as no scattering (similar_medium.h), MV and MA hold light that was scattered more than
+// once: they are then drawn by themselves, and MM is the rest, so that every path stands in its own layer.
+void file_single_scattering(Image& image, const Image& single, const Plan& plan) {
+    Layer& mm = image.layer("MM");
+    for (const Cell cell : {Cell::MV, Cell::MA}) {
+        if (!plan.needs(cell))
+            continue;
+        Layer& once = image.layer(name_of(cell));
+        const Layer& found = single.layer(name_of(cell));
+        for (std::size_t i = 0; i < once.pixels.size(); ++i) {
+            const float both = once.pixels[i] + mm.pixels[i];
+            once.pixels[i] = std::clamp(found.pixels[i], 0.0f, std::max(both, 0.0f));
+            mm.pixels[i] = both - once.pixels[i];
+        }
     }
 }
 
@@ -246,10 +255,12 @@ Drawn draw(const Shot& shot, const Plan& plan, const Medium& medium, const Surro
     alone.output.bounce_layers = alone.output.virtual_lights = false;
     Plan single = plan;
     single.multiple = false;
+    for (int cell = 0; cell < kCells; ++cell)
+        single.needed[cell] &= cell == int(Cell::MV) || cell == int(Cell::MA);
     Statistics costs;
     ImageMetadata ignored;
-    file_single_scattering(drawn.image,
-                           draw_once(alone, single, medium, surroundings, camera, costs, ignored, progress).image);
+    file_single_scattering(
+        drawn.image, draw_once(alone, single, medium, surroundings, camera, costs, ignored, progress).image, plan);
     for (StageCost& stage : costs.stages) {
         stage.name += ", for its own layer";
         statistics.stages.push_back(std::move(stage));

@@ -3,8 +3,11 @@
 // SV and SM: the Lambert base asks the lighting grids, which sum all lights of fire and smoke without noise, times the
 // part that other surfaces do not hide (extended_light.h). All other lobes are sampled: what a ray in such a direction
 // sees of the medium is what they reflect.
-// Where virtual lights in the smoke own SM, they take the place of the grid's smoke, and shine along those rays.
-// SA: a place on one of the emitters, and a ray by the BSDF. SS: the virtual lights; without them, paths.
+// Where virtual lights in the smoke own SM, they take the place of the grid's smoke on the base, and shine along those
+// rays. A light that the base does not show is thus never asked by a glossy lobe: what the lobe mirrors of smoke that
+// was lit once comes without noise from the grid, which sharing with a light's own places would only add to; of the
+// rest, a ray that the lobe drew asks the lights all along, as the camera's do. SA: a place on one of the emitters, and
+// a ray by the BSDF. SS: the virtual lights; without them, paths.
 #pragma once
 
 #include <span>

@@ -29,6 +29,19 @@ void add_ray_light_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "ray_lights.seed", "another number gives other rays", whole(0, 2147483647),
         [](Shot & s) -> auto& { return s.ray_lights.seed; }));
+    keys.push_back(make_key(
+        "ray_lights.radius",
+        "of beams in the first pass [m]: a blur that lowers the noise of sharp lobes; 0: none, without bias; auto: "
+        "from "
+        "how far the lights are apart",
+        or_word(real(at_least(0.0)), "auto", kAutomaticRadius), [](Shot & s) -> auto& { return s.ray_lights.radius; }));
+    keys.push_back(make_key(
+        "ray_lights.passes", "whole pictures that are averaged, each by ray lights of its own and thinner beams",
+        whole(1, 65536), [](Shot & s) -> auto& { return s.ray_lights.passes; }));
+    keys.push_back(make_key(
+        "ray_lights.shrink",
+        "of beams from pass to pass: alpha of r^2 (i + alpha) / (i + 1); small ones lose their blur sooner",
+        real({0.0, 1.0, true, true}), [](Shot & s) -> auto& { return s.ray_lights.shrink; }));
 }
 
 void add_point_light_keys(std::vector<Key>& keys) {
