@@ -72,17 +72,32 @@ HWY_INLINE V map_transmittance(D d, const ShadowMapLayout& layout, const std::ui
 
     const auto texel = hn::Add(hn::Mul(is, hn::Set(di, layout.side())), it);
     const auto word = hn::Add(hn::Mul(texel, hn::Set(di, layout.distances)), ik);
-    const auto at_texel = [&](int ds, int dt) {
-        const auto offset = hn::Add(word, hn::Set(di, (ds * layout.side() + dt) * layout.distances));
+    V near[4], far[4];  // of the four texels around
+    for (int corner = 0; corner < 4; ++corner) {
+        const int texels = (corner >> 1) * layout.side() + (corner & 1);
+        const auto offset = hn::Add(word, hn::Set(di, texels * layout.distances));
         const auto pair = hn::GatherOffset(du, reinterpret_cast<const std::uint32_t*>(map), hn::ShiftLeft<1>(offset));
-        const V near = hn::ConvertTo(d, hn::BitCast(di, hn::And(pair, hn::Set(du, 0xffffu))));
-        const V far = hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<16>(pair)));
-        return hn::MulAdd(ak, hn::Sub(far, near), near);
+        near[corner] = hn::ConvertTo(d, hn::BitCast(di, hn::And(pair, hn::Set(du, 0xffffu))));
+        far[corner] = hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<16>(pair)));
+    }
+    const auto between = [&] {
+        V t[4];
+        for (int corner = 0; corner < 4; ++corner)
+            t[corner] = hn::MulAdd(ak, hn::Sub(far[corner], near[corner]), near[corner]);
+        const V t0 = hn::MulAdd(at, hn::Sub(t[1], t[0]), t[0]), t1 = hn::MulAdd(at, hn::Sub(t[3], t[2]), t[2]);
+        return hn::MulAdd(as, hn::Sub(t1, t0), t0);
     };
-    const V t00 = at_texel(0, 0), t01 = at_texel(0, 1), t10 = at_texel(1, 0), t11 = at_texel(1, 1);
-    const V t0 = hn::MulAdd(at, hn::Sub(t01, t00), t00);
-    const V t1 = hn::MulAdd(at, hn::Sub(t11, t10), t10);
-    return hn::Mul(hn::MulAdd(as, hn::Sub(t1, t0), t0), hn::Set(d, layout.range / 65535.0f));
+    V transmittance = between();
+    if (layout.geometric) {
+        V least = near[0];
+        for (int corner = 0; corner < 4; ++corner) {
+            least = hn::Min(least, hn::Min(near[corner], far[corner]));
+            near[corner] = hn::Log(d, hn::Max(near[corner], hn::Set(d, 0.5f)));
+            far[corner] = hn::Log(d, hn::Max(far[corner], hn::Set(d, 0.5f)));
+        }
+        transmittance = hn::IfThenElse(hn::Lt(least, hn::Set(d, 0.5f)), transmittance, hn::Exp(d, between()));
+    }
+    return hn::Mul(transmittance, hn::Set(d, layout.range / 65535.0f));
 }
 
 // Numerical transmittance between the light and the receivers; `way` points from receiver to light [m].

@@ -45,6 +45,11 @@ ShadowMapLayout layout_of(const LightField& field, const GridLevel& level, bool 
         layout.distances = std::min(64, static_cast<int>(std::ceil(layout.distances * far / layout.far_distance)));
         layout.far_distance = far;
     }
+    if (!field.intensity) {  // lights outside of the medium
+        layout.geometric = true;
+        const float range = layout.far_distance - layout.near_distance;
+        layout.distances = std::max(layout.distances, std::min(256, 1 + int(range / field.pyramid->medium().spacing)));
+    }
     return layout;
 }
 

@@ -65,6 +65,11 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
         skip("column V, row M, column M", "no volume in the shot");
         return plan;
     }
+    const bool lit_by_grid = shot.method == RenderMethod::LightingGrid;
+    const bool lights_smoke = plan.single || plan.needs(Cell::MA) || plan.needs(Cell::MS);
+    plan.directional = lit_by_grid && lights_smoke && medium.mean_cosine != 0.0f;
+    if (lit_by_grid && lights_smoke && !plan.directional)
+        skip("directional storage", "the phase function is isotropic");
     if (!plan.emission) {
         skip("V", why_no_emission(shot, medium));
         for (const Cell cell : {Cell::MV, Cell::MM, Cell::SV})
@@ -75,7 +80,6 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
             skip("scattered hierarchies", owners);
         return plan;
     }
-    const bool lit_by_grid = shot.method == RenderMethod::LightingGrid;
     const std::string dark = medium.max_extinction <= 0.0f ? "there is no smoke to scatter" : "the albedo is zero";
     if (!plan.single)
         skip("MV", scatters ? "scattering.bounces is 0" : dark);
@@ -87,9 +91,6 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
         skip("scattered hierarchies", owners);
     else if (!plan.multiple)
         skip("scattered hierarchies", "one scattering only");
-    plan.directional = lit_by_grid && plan.single && medium.mean_cosine != 0.0f;
-    if (lit_by_grid && plan.single && !plan.directional)
-        skip("directional storage", "the phase function is isotropic");
     return plan;
 }
 

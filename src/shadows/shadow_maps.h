@@ -5,6 +5,9 @@
 //    medium), so distances are sampled there alone.
 //  - What is stored and interpolated is transmittance, in 16 bits: a light stands for many, and the mean of their
 //    transmittances is what the receiver needs.
+//  - A light outside of the medium stands for no voxels, and its rays die within the smoke's skin, each at a place of
+//    its own. Transmittance interpolated there would be too much by a quarter: such maps have a sample for every voxel,
+//    and are interpolated as optical depth.
 //  - A light stands for a region, and near it the mean transmittance of that region is what counts, more than that of
 //    its centre (exp is convex, and fire burns where the smoke is dense): up to the nearest distance asked for, each
 //    texel averages several rays that start at voxels the light stands for, picked systematically in proportion to what
@@ -32,6 +35,7 @@ struct ShadowMapLayout {
     float far_distance = 0;    // of the last [m]
     bool for_outside = false;  // receivers are outside of the medium
     float range = 1.0f;        // the transmittance that is stored as 65535
+    bool geometric = false;    // to be interpolated as optical depth, where nothing is opaque
 
     int side() const { return resolution + 2; }
     // 16-bit values per light; one is spare, since samples are read in pairs.
