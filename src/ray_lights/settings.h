@@ -5,10 +5,11 @@
 
 namespace brisance {
 
-// Who owns light that was scattered in the medium before its last scattering: MM and SM.
-enum class ScatteringMethod { LightingGrid, RayLights, PointLights };
+// Who owns light that was scattered in the medium before its last scattering: MM and SM. Automatic: the plan decides
+// (render/plan.h).
+enum class ScatteringMethod { LightingGrid, RayLights, PointLights, Automatic };
 constexpr const char* name_of(ScatteringMethod method) {
-    constexpr const char* kNames[] = {"lighting_grid", "ray_lights", "point_lights"};
+    constexpr const char* kNames[] = {"lighting_grid", "ray_lights", "point_lights", "auto"};
     return kNames[static_cast<int>(method)];
 }
 
@@ -18,7 +19,7 @@ enum class RayLength {
 };
 
 struct RayLightSettings {
-    ScatteringMethod method = ScatteringMethod::LightingGrid;
+    ScatteringMethod method = ScatteringMethod::Automatic;
     int paths = 16384;   // particles that are followed
     int count = 131072;  // pieces of rays that are kept, on average
     int samples = 4;     // lights that a camera ray, or a point of a surface, asks

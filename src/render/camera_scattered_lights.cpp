@@ -9,6 +9,7 @@
 #include "core/stopwatch.h"
 #include "medium_points/medium_points.h"
 #include "ray_lights/ray_lights.h"
+#include "render/emitters_along_ray.h"
 
 namespace brisance {
 
@@ -16,6 +17,9 @@ namespace {
 
 // Rays of the camera that stand for all of them when lights are thinned out, along a side of the picture.
 constexpr int kReceivers = 12;
+
+// On every ray of the camera, where it asks emitters.
+constexpr int kEmitterPlaces = 16;
 
 // Who is lit by them: the smoke on some of the camera's rays, and the surfaces behind it.
 std::vector<RayLightReceiver> receivers_of(const DirectLight& scene, const Camera& camera) {
@@ -89,27 +93,27 @@ void add_to_mean(Image& mean, const Image& next, int count) {
         }
 }
 
-bool by_points(const Shot& shot) {
-    return shot.ray_lights.method == ScatteringMethod::PointLights;
+bool by_points(const Plan& plan) {
+    return plan.scattering == ScatteringMethod::PointLights;
 }
 
 }  // namespace
 
-int passes_of(const Shot& shot) {
-    return by_points(shot) ? 1 : shot.ray_lights.passes;
+int passes_of(const Shot& shot, const Plan& plan) {
+    return by_points(plan) ? 1 : shot.ray_lights.passes;
 }
 
-Image mean_of_passes(const Shot& shot, const DirectLight& scene, const Camera& camera, const DrawPass& draw,
-                     double& seconds, Statistics& statistics, Progress& progress) {
+Image mean_of_passes(const Shot& shot, const Plan& plan, const DirectLight& scene, const Camera& camera,
+                     const DrawPass& draw, double& seconds, Statistics& statistics, Progress& progress) {
     const std::vector<RayLightReceiver> receivers = receivers_of(scene, camera);
-    const int passes = passes_of(shot), bounces = shot.scattering.bounces;
-    StageCost cost{by_points(shot) ? "point lights (MM, SM)" : "ray lights (MM, SM)", 0.0, 0, {}};
+    const int passes = passes_of(shot, plan), bounces = shot.scattering.bounces;
+    StageCost cost{by_points(plan) ? "point lights (MM, SM)" : "ray lights (MM, SM)", 0.0, 0, {}};
     double first = 0.0;
     Image mean;
     for (int pass = 0; pass < passes; ++pass) {
         progress.stage(passes > 1 ? fmt::format("{}, pass {} of {}", cost.name, pass + 1, passes) : cost.name);
         const Stopwatch watch;
-        const Made made = by_points(shot)
+        const Made made = by_points(plan)
                               ? point_lights(scene, shot.point_lights, bounces, receivers)
                               : ray_lights(scene, settings_of_pass(shot.ray_lights, pass, first), bounces, receivers);
         if (pass == 0)
@@ -122,7 +126,7 @@ Image mean_of_passes(const Shot& shot, const DirectLight& scene, const Camera& c
         else
             add_to_mean(mean, picture, pass + 1);
     }
-    if (!by_points(shot)) {
+    if (!by_points(plan)) {
         cost.detail["passes"] = passes;
         cost.detail["first_radius"] = first;
     }
@@ -131,31 +135,40 @@ Image mean_of_passes(const Shot& shot, const DirectLight& scene, const Camera& c
     return mean;
 }
 
-LightRays light_rays_by(const LightsInSmoke& lights, const TrackingField& field) {
-    return [&](const PixelRay& r, double end) {
+LightRays light_rays_by(const LightsInSmoke* lights, const DirectLight* scene, const Plan& plan) {
+    if (!lights && !plan.emitters_by_rays)
+        return {};
+    return [=, emitters = plan.emitters_by_rays](const PixelRay& r, double end) {
         thread_local SeenMedium seen;
-        seen.look(field, r.ray, end);
-        Rng rng = lights.rng(Stream::RayLightPair, r.pixel, r.number);
-        return lights.along_ray(seen, rng);
+        seen.look(scene->field(), r.ray, end);
+        Rng rng = lights ? lights->rng(Stream::RayLightPair, r.pixel, r.number)
+                         : Rng(Stream::RayLightPair, r.pixel, r.number);
+        LightOnRay light;
+        if (lights)
+            light.scattered = lights->along_ray(seen, rng);
+        if (emitters)
+            light.emitters = emitters_along_ray(*scene, seen, r.ray, kEmitterPlaces, rng);
+        return light;
     };
 }
 
 Plan without_scattered_lights(Plan plan) {
     plan.multiple = false;
-    plan.needed[static_cast<int>(Cell::MM)] = plan.needed[static_cast<int>(Cell::SM)] = false;
+    for (const Cell cell : {Cell::MM, Cell::SM, Cell::MA})
+        plan.needed[static_cast<int>(cell)] = false;
     return plan;
 }
 
 // One scattering in smoke alone leaves the camera's rays the peak of the phase function (similar_medium.h), which they
 // find again for fire; light from a set needs its peaks as they are.
 int bounces_beside_scattered_lights(const Plan& plan) {
-    return plan.needs(Cell::MS) || plan.needs(Cell::MA) ? 2 : 1;
+    return plan.needs(Cell::MS) ? 2 : 1;
 }
 
-void check_scattered_lights(const Shot& shot) {
+void check_scattered_lights(const Shot& shot, const Plan& plan) {
     if (shot.lighting.gather == GatherMethod::RayMarch)
         throw Error(ExitCode::Usage, std::string("lighting.gather: ray_march does not work with scattering.method ") +
-                                         name_of(shot.ray_lights.method) + "; use cache");
+                                         name_of(plan.scattering) + "; use cache");
 }
 
 }  // namespace brisance

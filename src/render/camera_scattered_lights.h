@@ -1,5 +1,5 @@
 // Virtual lights in the smoke as owners of MM and SM, ray lights or point lights: made for what the camera sees, asked
-// by its rays, and what they leave to the lighting grid.
+// by its rays, and what they leave to the lighting grid. MA goes by the camera's rays beside them.
 //
 // A pass draws the whole picture anew, with lights and random numbers of its own, and its lights are gone before those
 // of the next are made: memory is that of one pass, time grows with their number, and all that is drawn with random
@@ -19,19 +19,20 @@
 namespace brisance {
 
 // Throws Error Usage for what they do not work with.
-void check_scattered_lights(const Shot& shot);
+void check_scattered_lights(const Shot& shot, const Plan& plan);
 
 // A picture by the lights of a pass, from 0.
 using DrawPass = std::function<Image(const LightsInSmoke& lights, int pass)>;
 
-int passes_of(const Shot& shot);
+int passes_of(const Shot& shot, const Plan& plan);
 
-// The mean of all passes, by lights of the kind that scattering.method names; `seconds`: spent on making them.
-Image mean_of_passes(const Shot& shot, const DirectLight& scene, const Camera& camera, const DrawPass& draw,
-                     double& seconds, Statistics& statistics, Progress& progress);
+// The mean of all passes, by lights of the kind that the plan names; `seconds`: spent on making them.
+Image mean_of_passes(const Shot& shot, const Plan& plan, const DirectLight& scene, const Camera& camera,
+                     const DrawPass& draw, double& seconds, Statistics& statistics, Progress& progress);
 
-// Keeps references to both.
-LightRays light_rays_by(const LightsInSmoke& lights, const TrackingField& field);
+// MM by the lights, or null, and MA where the plan has it by rays; empty where there is neither. Keeps references to
+// lights and scene.
+LightRays light_rays_by(const LightsInSmoke* lights, const DirectLight* scene, const Plan& plan);
 
 // What is left to the lighting grid, and how many scatterings it should think that it follows.
 Plan without_scattered_lights(Plan plan);

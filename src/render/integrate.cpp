@@ -240,8 +240,11 @@ RaySum look(const CellField& field, const Ray& ray, const PictureSettings& setti
             std::vector<FoundSurface>& found) {
     const auto integrated = [&](double end) {
         RaySum sum = integrate(field, ray, settings.parts, end);
-        if (settings.light_rays)
-            sum.cells.at(Cell::MM) += settings.light_rays({sample.pixel, sample.number, ray}, end);
+        if (settings.light_rays) {
+            const LightOnRay more = settings.light_rays({sample.pixel, sample.number, ray}, end);
+            sum.cells.at(Cell::MM) += more.scattered;
+            sum.cells.at(Cell::MA) += more.emitters;
+        }
         return sum;
     };
     constexpr double kNowhere = std::numeric_limits<double>::infinity();

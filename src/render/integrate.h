@@ -40,8 +40,11 @@ struct PixelRay {
     Ray ray;
 };
 
-// MM along a ray up to `end` [m], where the field holds none.
-using LightRays = std::function<Rgb(const PixelRay& ray, double end)>;
+// Along a ray up to `end` [m]: MM, and MA where the field holds none.
+struct LightOnRay {
+    Rgb scattered{0.0f}, emitters{0.0f};
+};
+using LightRays = std::function<LightOnRay(const PixelRay& ray, double end)>;
 
 struct PictureSettings {
     int samples_per_axis = 1;                                // anti-aliasing, along a pixel's side
@@ -49,7 +52,7 @@ struct PictureSettings {
     bool cells = true;                                       // layers per ledger cell, ...
     std::array<bool, kCells> layers = layers_of({Cell::V});  // ... of these cells
     const Surroundings* surroundings = nullptr;              // rays end at its surfaces
-    LightRays light_rays = {};                               // empty: the field holds MM
+    LightRays light_rays = {};                               // empty: the field holds MM and MA
     int pass = 0;  // of several pictures that are averaged: each with random numbers of its own
 
     static constexpr std::array<bool, kCells> layers_of(std::initializer_list<Cell> cells) {

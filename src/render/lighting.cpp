@@ -96,7 +96,8 @@ Lighting::Lighting(const Shot& shot, const Plan& plan, const Medium& medium, con
     }
     if (surroundings && plan.needs(Cell::MA)) {
         const Gathered more = light_from_emitters(*surroundings);
-        nodes_.from_emitters = source_function(more);
+        if (!plan.emitters_by_rays)
+            nodes_.from_emitters = source_function(more);
         first.add(more);
     }
     if (plan.multiple)

@@ -1,5 +1,8 @@
 #include "render/plan.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace brisance {
 
 std::vector<std::string> Plan::cells() const {
@@ -40,6 +43,33 @@ void decide(Plan& plan, bool scatters, bool visible, int bounces) {
     plan.multiple = plan.needs(Cell::MM);
 }
 
+// No smoke but boxes of it.
+bool haze_alone(const Shot& shot) {
+    return shot.volume.file.empty() && !shot.volumes.empty() &&
+           std::all_of(shot.volumes.begin(), shot.volumes.end(),
+                       [](const FurtherVolume& v) { return v.volume.box.has_value(); });
+}
+
+struct Choice {
+    ScatteringMethod method;
+    std::string reason;
+};
+
+Choice choose_scattering(const Shot& shot, const Medium& medium) {
+    constexpr float kForward = 0.5f;
+    const ScatteringMethod asked = shot.ray_lights.method;
+    if (asked != ScatteringMethod::Automatic)
+        return {asked, std::string("scattering.method is ") + name_of(asked)};
+    if (shot.lighting.gather == GatherMethod::RayMarch)
+        return {ScatteringMethod::LightingGrid, "scattering.method is auto, and lighting.gather is ray_march"};
+    if (!haze_alone(shot))
+        return {ScatteringMethod::LightingGrid, "scattering.method is auto: smoke from files is the grid's"};
+    if (std::abs(medium.mean_cosine) <= kForward)
+        return {ScatteringMethod::LightingGrid,
+                "scattering.method is auto: haze with a mean cosine of at most 0.5 is the grid's"};
+    return {ScatteringMethod::RayLights, "scattering.method is auto, and haze alone has a mean cosine above 0.5"};
+}
+
 }  // namespace
 
 Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surroundings) {
@@ -51,12 +81,19 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
     const int bounces = shot.scattering.bounces;
     const bool scatters = medium.scatters();
     decide(plan, scatters, plan.emitters && surroundings->emitters().visible(), bounces);
-    const ScatteringMethod scattering = shot.ray_lights.method;
-    const bool by_lights = shot.method == RenderMethod::LightingGrid && scattering != ScatteringMethod::LightingGrid;
-    plan.scattered_lights = by_lights && (plan.multiple || plan.needs(Cell::SM));
+    const Choice choice = choose_scattering(shot, medium);
+    plan.scattering = choice.method;
+    const bool lit_by_grid = shot.method == RenderMethod::LightingGrid;
+    const bool by_lights = lit_by_grid && plan.scattering != ScatteringMethod::LightingGrid;
+    const bool twice = plan.multiple || plan.needs(Cell::SM);
+    plan.scattered_lights = by_lights && twice;
+    plan.emitters_by_rays = lit_by_grid && plan.needs(Cell::MA) && (plan.scattered_lights || haze_alone(shot));
     if (by_lights && !plan.scattered_lights)
-        skip(scattering == ScatteringMethod::RayLights ? "ray lights" : "point lights", "no light is scattered twice");
-    const std::string owners = std::string("scattering.method is ") + name_of(scattering) + ": MM and SM are theirs";
+        skip(plan.scattering == ScatteringMethod::RayLights ? "ray lights" : "point lights",
+             "no light is scattered twice");
+    if (lit_by_grid && twice && !by_lights)
+        skip("ray lights, point lights", choice.reason);
+    const std::string owners = choice.reason + ": MM and SM are theirs";
     if (!plan.surfaces)
         skip("row S, column S", "no surfaces in the shot");
     if (!plan.emitters)
@@ -65,7 +102,6 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
         skip("column V, row M, column M", "no volume in the shot");
         return plan;
     }
-    const bool lit_by_grid = shot.method == RenderMethod::LightingGrid;
     const bool lights_smoke = plan.single || plan.needs(Cell::MA) || plan.needs(Cell::MS);
     plan.directional = lit_by_grid && lights_smoke && medium.mean_cosine != 0.0f;
     if (lit_by_grid && lights_smoke && !plan.directional)

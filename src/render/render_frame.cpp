@@ -146,7 +146,7 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     if (surroundings)
         check_surroundings(shot);
     if (plan.scattered_lights)
-        check_scattered_lights(shot);
+        check_scattered_lights(shot, plan);
     std::optional<PathTracer> paths;
     if (plan.surfaces)
         paths.emplace(medium, shot.tracing, shot.scattering.bounces, surroundings);
@@ -154,14 +154,15 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     if (shot.virtual_lights.count > 0 && (plan.needs(Cell::SS) || plan.needs(Cell::MS)))
         virtual_lights = place_virtual_lights(shot, paths->direct(), camera, statistics, progress);
     std::optional<DirectLight> own_scene;
-    if (plan.scattered_lights && !paths)
+    if ((plan.scattered_lights || plan.emitters_by_rays) && !paths)
         own_scene.emplace(medium, shot.tracing, surroundings);
+    const DirectLight* const scene = paths ? &paths->direct() : own_scene ? &*own_scene : nullptr;
     // Orders of scattering that the grid follows.
     const int grid_bounces = plan.scattered_lights ? bounces_beside_scattered_lights(plan) : shot.scattering.bounces;
     const Plan grid_plan = plan.scattered_lights ? without_scattered_lights(plan) : plan;
     std::unique_ptr<Lighting> lighting;
     std::optional<Medium> similar;
-    if (plan.single || plan.needs(Cell::SV) || plan.needs(Cell::MA)) {
+    if (plan.single || plan.needs(Cell::SV) || grid_plan.needs(Cell::MA) || plan.needs(Cell::MS)) {
         similar = similar_medium(medium, grid_bounces);
         std::optional<PointLights> reflecting;
         if (virtual_lights)
@@ -193,8 +194,7 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
         light_points = [&](const auto& points, auto& out) { lighting->at_points(points, out); };
     const auto picture = [&](const LightsInSmoke* scattered_lights, int pass) {
         settings.pass = pass;
-        if (scattered_lights)
-            settings.light_rays = light_rays_by(*scattered_lights, (paths ? paths->direct() : *own_scene).field());
+        settings.light_rays = light_rays_by(scattered_lights, scene, plan);
         if (!plan.surfaces)
             return render_picture(field, camera, settings, light_points, progress);
         const SurfaceShader shader(plan, field, lighting.get(), virtual_lights.get(), *paths, settings.parts,
@@ -204,9 +204,9 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     };
     double on_lights = 0.0;
     const auto pass = [&](const LightsInSmoke& lights, int number) { return picture(&lights, number); };
-    Image image = plan.scattered_lights ? mean_of_passes(shot, paths ? paths->direct() : *own_scene, camera, pass,
-                                                         on_lights, statistics, progress)
-                                        : picture(nullptr, 0);
+    Image image = plan.scattered_lights
+                      ? mean_of_passes(shot, plan, *scene, camera, pass, on_lights, statistics, progress)
+                      : picture(nullptr, 0);
     if (shot.output.bounce_layers && marching)
         progress.warning("bounce-layers", "output.layers.bounces needs lighting.gather = cache; left out");
     else if (shot.output.bounce_layers && surroundings)
@@ -215,8 +215,8 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
         progress.warning("bounce-layers", "output.layers.bounces needs scattering.method = lighting_grid; left out");
     else if (shot.output.bounce_layers && lighting)
         add_order_layers(image, field, nodes, medium, similar ? &*similar : nullptr, camera, settings, progress);
-    metadata.samples_per_pixel =
-        double(settings.samples_per_axis) * settings.samples_per_axis * (plan.scattered_lights ? passes_of(shot) : 1);
+    metadata.samples_per_pixel = double(settings.samples_per_axis) * settings.samples_per_axis *
+                                 (plan.scattered_lights ? passes_of(shot, plan) : 1);
     statistics.stages.push_back(
         {"camera", watch.seconds() - on_lights, field.bytes(), {{"samples_per_pixel", metadata.samples_per_pixel}}});
     Drawn out{std::move(image), std::nullopt};

@@ -4,12 +4,15 @@
 #include <numbers>
 
 #include "core/parallel.h"
+#include "render/emitters_along_ray.h"
 
 namespace brisance {
 
 namespace {
 
 constexpr std::size_t kSamplesAtOnce = 256;
+// On a ray that a glossy lobe drew, where it asks emitters.
+constexpr int kEmitterPlaces = 4;
 
 bool has_base(const SurfaceMaterial& m) {
     return m.metallic < 1.0f && m.transmission < 1.0f && m.base_colour != Rgb(0.0f);
@@ -110,11 +113,14 @@ void SurfaceShader::reflect_medium(const SurfacePoint& point, const dvec3& towar
     light.at(Cell::SV) += drawn->weight * seen.cells.at(Cell::V);
     for (const Cell cell : {Cell::MV, Cell::MM, Cell::MS, Cell::MA})
         light.at(Cell::SM) += drawn->weight * seen.cells.at(cell);
-    if (!scattered_lights_)
+    if (!scattered_lights_ && !plan_.emitters_by_rays)
         return;
     thread_local SeenMedium medium;
     medium.look(paths_.field(), ray, hit ? hit->distance : std::numeric_limits<double>::infinity());
-    light.at(Cell::SM) += drawn->weight * scattered_lights_->along_ray(medium, ray_rng);
+    if (scattered_lights_)
+        light.at(Cell::SM) += drawn->weight * scattered_lights_->along_ray(medium, ray_rng);
+    if (plan_.emitters_by_rays)
+        light.at(Cell::SM) += drawn->weight * emitters_along_ray(paths_.direct(), medium, ray, kEmitterPlaces, ray_rng);
 }
 
 void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) const {

@@ -8,8 +8,10 @@ void add_ray_light_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "scattering.method",
         "lighting_grid: hierarchies of scattered light; ray_lights: virtual ray lights, unbiased and noisy; "
-        "point_lights: volumetric virtual point lights",
-        choice<ScatteringMethod>({{"lighting_grid", ScatteringMethod::LightingGrid},
+        "point_lights: volumetric virtual point lights; auto: ray lights for boxes of haze alone that scatter forward, "
+        "else the grid",
+        choice<ScatteringMethod>({{"auto", ScatteringMethod::Automatic},
+                                  {"lighting_grid", ScatteringMethod::LightingGrid},
                                   {"ray_lights", ScatteringMethod::RayLights},
                                   {"point_lights", ScatteringMethod::PointLights}}),
         [](Shot & s) -> auto& { return s.ray_lights.method; }));

@@ -68,7 +68,7 @@ TEST(Extremes, RaysWithoutALength) {
         light.segment = none;
         light.scattered = 1.0;
     }
-    const RayLightTree tree(lights, 0.9);
+    const RayLightTree tree(boxes_of(lights), 0.9);
     for (const RayLightReceiver& receiver :
          {RayLightReceiver::along(ray), RayLightReceiver::along({none.start, {0.0, 0.0, 1.0}, 1.0}),
           RayLightReceiver::at(none.start, {0.0, 0.0, 1.0})}) {

@@ -1,0 +1,140 @@
+// The shots of surfaces and media (shots/media), small, by the owners that the plan chooses and by ray lights, against
+// the path tracer.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <numeric>
+#include <string>
+
+#include "core/parallel.h"
+#include "ray_lights/ray_lights.h"
+#include "render/camera.h"
+#include "render/frame_input.h"
+#include "render/render_frame.h"
+#include "shot/read_shot.h"
+
+namespace brisance {
+namespace {
+
+constexpr int kWidth = 32, kHeight = 18;
+
+struct MediaScene {
+    const char* name;
+    double tolerance;
+    friend void PrintTo(const MediaScene& scene, std::ostream* out) { *out << scene.name; }
+};
+
+Shot read(const char* name, std::vector<std::string> more) {
+    more.insert(more.end(), {"camera.width=" + std::to_string(kWidth), "camera.height=" + std::to_string(kHeight),
+                             "camera.samples_per_axis=2", "virtual_lights.count=1500", "virtual_lights.photons=200000",
+                             "output.layers.cells=true"});
+    return read_shot(std::filesystem::path(BRISANCE_SHOTS) / "media" / (std::string(name) + ".json"), {"draft", more});
+}
+
+std::filesystem::path volume_of(const Shot& shot) {
+    return shot.volume.file.empty() ? std::filesystem::path() : shot.folder / shot.volume.file;
+}
+
+RenderedFrame render(const Shot& shot) {
+    Progress silent;
+    return render_frame(shot, volume_of(shot), 1, silent);
+}
+
+double mean_of(const Image& image, const std::string& layer) {
+    const std::vector<float>& pixels = image.layer(layer).pixels;
+    return std::accumulate(pixels.begin(), pixels.end(), 0.0) / double(pixels.size());
+}
+
+struct Truth {
+    double mean, error;
+};
+
+Truth truth_of(const RenderedFrame& paths, const std::string& layer) {
+    const double a = mean_of(paths.halves[0], layer), b = mean_of(paths.halves[1], layer);
+    return {0.5 * (a + b), 0.5 * std::abs(a - b)};
+}
+
+// By ray lights alone: the mean over the picture, and its standard error over sets of lights.
+Truth mm_by_ray_lights(const Shot& shot) {
+    constexpr int kSets = 8;
+    Statistics statistics;
+    Progress silent;
+    const FrameInput input = load_frame(shot, volume_of(shot), 1, statistics, silent);
+    const DirectLight scene(input.medium, shot.tracing, input.surroundings.get());
+    const Camera camera(input.camera, input.medium);
+    std::vector<RayLightReceiver> receivers;
+    std::vector<Ray> rays;
+    for (int y = 0; y < 2 * kHeight; ++y)
+        for (int x = 0; x < 2 * kWidth; ++x)
+            rays.push_back(camera.ray(0.5 * x + 0.25, 0.5 * y + 0.25));
+    for (std::size_t i = 0; i < rays.size(); i += 37) {
+        SeenMedium seen;
+        seen.look(scene.field(), rays[i], scene.segment_along(rays[i]).end);
+        if (!seen.empty())
+            receivers.push_back(receiver_along(seen));
+    }
+    double sum = 0.0, square = 0.0;
+    for (int set = 0; set < kSets; ++set) {
+        RayLightSettings settings;
+        settings.seed = static_cast<std::uint32_t>(set);
+        const RayLights lights(scene, settings, shot.scattering.bounces, receivers);
+        std::vector<double> found(rays.size());
+        parallel_for(rays.size(), [&](std::size_t i) {
+            thread_local SeenMedium seen;
+            seen.look(scene.field(), rays[i], scene.segment_along(rays[i]).end);
+            Rng rng = lights.rng(Stream::RayLightPair, static_cast<std::uint32_t>(i), 0);
+            const Rgb c = lights.along_ray(seen, rng);
+            found[i] = (c.x + c.y + c.z) / 3.0;
+        });
+        const double mean = std::accumulate(found.begin(), found.end(), 0.0) / double(found.size());
+        sum += mean / kSets;
+        square += mean * mean / kSets;
+    }
+    return {sum, std::sqrt(std::max(0.0, square - sum * sum) / (kSets - 1))};
+}
+
+RenderedFrame by_paths(const MediaScene& scene) {
+    return render(read(scene.name, {"method=path", "tracing.samples=64", "tracing.seed=5"}));
+}
+
+class MediaScenes : public ::testing::TestWithParam<MediaScene> {};
+class MediaScenesByRayLights : public ::testing::TestWithParam<MediaScene> {};
+
+TEST_P(MediaScenes, AreWhatPathsSee) {
+    const RenderedFrame truth = by_paths(GetParam()), planned = render(read(GetParam().name, {}));
+    for (const std::string& cell : planned.statistics.cells) {
+        if (cell[0] != 'M' && cell != "SV")
+            continue;
+        const Truth t = truth_of(truth, cell);
+        const double ours = mean_of(planned.image, cell);
+        std::printf("%s, %s: %.5g, paths %.5g +- %.2g (%+.1f %%)\n", GetParam().name, cell.c_str(), ours, t.mean,
+                    t.error, t.mean > 0.0 ? 100.0 * (ours / t.mean - 1.0) : 0.0);
+        EXPECT_NEAR(ours, t.mean, GetParam().tolerance * t.mean + 3.0 * t.error) << cell;
+    }
+}
+
+TEST_P(MediaScenesByRayLights, AreWhatPathsSee) {
+    const Truth t = truth_of(by_paths(GetParam()), "MM");
+    const Truth ours = mm_by_ray_lights(read(GetParam().name, {}));
+    const double error = std::hypot(t.error, ours.error);
+    std::printf("%s, MM by ray lights: %.5g +- %.2g, paths %.5g +- %.2g, %+.1f standard errors\n", GetParam().name,
+                ours.mean, ours.error, t.mean, t.error, error > 0.0 ? (ours.mean - t.mean) / error : 0.0);
+    EXPECT_NEAR(ours.mean, t.mean, 3.0 * error + 0.005 * t.mean);  // the camera's samples differ
+}
+
+// Of the light in the medium by the plan's choice, beside the noise. The door takes minutes by the grid, whose haze has
+// a million nodes there, and is left to ray lights here.
+constexpr MediaScene kScenes[] = {{"cornell_fog", 0.05},     {"cornell_smoke", 0.05}, {"spot_over_floor", 0.05},
+                                  {"mirror_corridor", 0.05}, {"candle", 0.05},        {"glass_room", 0.05}};
+constexpr MediaScene kDoor = {"door_ajar", 0.0};
+
+const auto name = [](const auto& scene) { return std::string(scene.param.name); };
+INSTANTIATE_TEST_SUITE_P(Shots, MediaScenes, ::testing::ValuesIn(kScenes), name);
+INSTANTIATE_TEST_SUITE_P(Shots, MediaScenesByRayLights, ::testing::ValuesIn(kScenes), name);
+INSTANTIATE_TEST_SUITE_P(Door, MediaScenesByRayLights, ::testing::Values(kDoor), name);
+
+}  // namespace
+}  // namespace brisance
