@@ -10,15 +10,6 @@ namespace {
 
 constexpr double kInBall = 8.0;
 
-// Of all bricks that hold some smoke [m^3].
-double volume_of_smoke(const TrackingField& field) {
-    std::size_t bricks = 0;
-    for (std::size_t b = 0; b < field.bricks().brick_count(); ++b)
-        bricks += field.majorant(b) > 0.0f;
-    const double cell = std::abs(glm::determinant(dmat3(field.medium().local_from_index)));
-    return double(bricks) * BrickLattice::kNodes * cell;
-}
-
 }  // namespace
 
 double Bound::radius() const {
@@ -44,7 +35,7 @@ double Bound::share_left_out(double extinction) const {
 Bound bound_of(const PointLightSettings& settings, const TrackingField& field) {
     if (settings.bound != kAutomaticBound)
         return Bound(settings.bound);
-    const double ball = volume_of_smoke(field) * kInBall / settings.paths;
+    const double ball = field.smoke_volume() * kInBall / settings.paths;
     return Bound(ball > 0.0 ? std::pow(0.75 * ball / std::numbers::pi, -2.0 / 3.0) : 0.0);
 }
 

@@ -13,21 +13,13 @@ namespace {
 // What its few places may miss, a light is wanted for by its box.
 constexpr double kByItsBox = 0.1;
 
-// Of the bricks that hold any smoke [m^3].
-double volume_of(const TrackingField& field) {
-    std::size_t bricks = 0;
-    for (std::size_t b = 0; b < field.bricks().brick_count(); ++b)
-        bricks += field.majorant(b) > 0.0f;
-    return double(bricks * BrickLattice::kNodes) * std::abs(glm::determinant(dmat3(field.medium().world_from_index)));
-}
-
 // How far it is to the nearest light from anywhere in the smoke, on average, were they strewn evenly: lines of a total
 // length l in a volume V are as many to an area as l / V, whatever their directions.
 double automatic_radius(std::span<const RayLight> lights, const TrackingField& field) {
     double length = 0.0;
     for (const RayLight& light : lights)
         length += light.segment.length;
-    return length > 0.0 ? 0.5 * std::sqrt(volume_of(field) / length) : 0.0;
+    return length > 0.0 ? 0.5 * std::sqrt(field.smoke_volume() / length) : 0.0;
 }
 
 std::vector<RayLight> thickened(std::vector<RayLight> lights, double radius, const TrackingField& field) {

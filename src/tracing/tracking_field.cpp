@@ -1,5 +1,8 @@
 #include "tracing/tracking_field.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/parallel.h"
 
 namespace brisance {
@@ -147,6 +150,11 @@ Cubic TrackingField::extinction_along(const CellSegment& s) const {
 bool TrackingField::cell_burns(const CellSegment& s) const {
     const std::int32_t fire = fire_index_[s.brick];
     return fire >= 0 && burning_cell_[fire * std::size_t(BrickLattice::kNodes) + BrickLattice::offset_in_brick(s.cube)];
+}
+
+double TrackingField::smoke_volume() const {
+    const auto bricks = std::count_if(majorant_.begin(), majorant_.end(), [](float m) { return m > 0.0f; });
+    return double(bricks) * BrickLattice::kNodes * std::abs(glm::determinant(dmat3(medium().local_from_index)));
 }
 
 std::uint64_t TrackingField::bytes() const {

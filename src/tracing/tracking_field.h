@@ -33,6 +33,7 @@ public:
     bool burns(std::size_t brick) const { return fire_index_[brick] >= 0; }
     float mean_cosine() const { return medium_->mean_cosine; }
     const Medium& medium() const { return *medium_; }
+    double smoke_volume() const;  // of all bricks that hold some [m^3]
     std::uint64_t bytes() const;
 
     // At p in nodes from the brick's first node, each coordinate in [0, 8].

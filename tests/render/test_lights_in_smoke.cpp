@@ -233,6 +233,30 @@ TEST_P(LightsInSmokePictures, NothingIsTracedForWhatIsNotThere) {
         EXPECT_EQ(stage.name.find(kind), std::string::npos);
 }
 
+// By the shot, not by what a frame holds.
+TEST(ScatteringMethods, AreChosenByTheShotAlone) {
+    const auto chosen = [](float mean_cosine, bool box, bool file, ScatteringMethod asked) {
+        Shot shot = small_shot(RenderMethod::LightingGrid, asked);
+        if (box)
+            shot.volumes.emplace_back().volume.box = FogBox{{-1, -1, -1}, {1, 1, 1}, 0.1};
+        if (file)
+            shot.volume.file = "smoke.vdb";
+        const Plan plan = plan_cells(shot, smoke(mean_cosine));
+        EXPECT_EQ(plan.scattered_lights, plan.scattering != ScatteringMethod::LightingGrid);
+        EXPECT_EQ(skips(plan, "ray lights, point lights"), !plan.scattered_lights);
+        return plan.scattering;
+    };
+    const auto automatic = ScatteringMethod::Automatic, grid = ScatteringMethod::LightingGrid,
+               rays = ScatteringMethod::RayLights;
+    EXPECT_EQ(chosen(0.8f, true, false, automatic), rays);
+    EXPECT_EQ(chosen(-0.8f, true, false, automatic), rays);
+    EXPECT_EQ(chosen(0.5f, true, false, automatic), grid);
+    EXPECT_EQ(chosen(0.8f, true, true, automatic), grid);
+    EXPECT_EQ(chosen(0.8f, false, true, automatic), grid);
+    EXPECT_EQ(chosen(0.8f, true, false, grid), grid);
+    EXPECT_EQ(chosen(0.0f, false, true, rays), rays);
+}
+
 TEST_P(LightsInSmokePictures, MarchingIsRefused) {
     Shot shot = small_shot(RenderMethod::LightingGrid, GetParam());
     shot.lighting.gather = GatherMethod::RayMarch;
