@@ -30,10 +30,12 @@ double power(const std::vector<Rgb>& lights) {
     return luminance(Rgb(total(lights)));
 }
 
-// Level on which the series is solved: the finest with at most this many nodes that scatter. Haze around dense smoke
-// does not count, as the smoke would be solved the worse for it; but no level is finer than memory and time allow.
+// Level on which the series is solved: the finest with at most this many nodes that scatter. Where haze around dense
+// smoke makes up a good part of them it does not count, as the smoke would be solved the worse for it; but no level is
+// finer than memory and time allow.
 constexpr std::size_t kMostCoarseNodes = 120000, kMostWithHaze = 1000000;
-constexpr double kHaze = 0.05;  // of the mean extinction that light meets
+constexpr double kHaze = 0.05;     // of the mean extinction that light meets
+constexpr double kGoodPart = 0.4;  // fringes of smoke are less
 
 int choose_level(const ExtinctionPyramid& pyramid, int wish) {
     const int last = pyramid.level_count() - 1;
@@ -51,8 +53,13 @@ int choose_level(const ExtinctionPyramid& pyramid, int wish) {
         }
         return sum > 0.0 ? squares / sum : 0.0;
     };
+    const auto too_many = [&](int level) {
+        const std::size_t all = above(level, 0.0), dense = above(level, kHaze * met(level));
+        const bool haze = double(all - dense) > kGoodPart * double(all);
+        return (haze ? dense : all) > kMostCoarseNodes || all > kMostWithHaze;
+    };
     int level = 0;
-    while (level < last && (above(level, kHaze * met(level)) > kMostCoarseNodes || above(level, 0.0) > kMostWithHaze))
+    while (level < last && too_many(level))
         ++level;
     return level;
 }
