@@ -5,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "gathering/escape.h"
+#include "medium/haze.h"
 
 namespace brisance {
 
@@ -12,9 +13,9 @@ namespace {
 
 // Extinction over the mean that light meets in the smoke (by extinction): above the first a node is smoke proper,
 // below the second thin.
-constexpr float kSmoke = 0.15f, kThin = 0.05f;
-// Thin nodes over all: haze begins to count, and counts in full. Fringes of real smoke are up to a third.
-constexpr float kFewNodes = 0.4f, kManyNodes = 0.6f;
+constexpr float kSmoke = 0.15f, kThin = kThinSmoke;
+// Thin nodes over all: haze begins to count, and counts in full.
+constexpr float kFewNodes = kFringes, kManyNodes = 0.6f;
 // Mean transmittance to the outside: hollows in the smoke see less, and are no haze.
 constexpr float kHollow = 0.02f, kOpen = 0.1f;
 // From the camera, in bricks: nearer, the direction to it turns too fast to be interpolated.
@@ -52,12 +53,7 @@ using OpenPoints = BrickPoints<1>;
 static_assert(LightPoints::kCount <= 2 * Receivers::kGroup);
 
 std::vector<float> thinness(const Medium& medium, const std::vector<std::uint8_t>& needed) {
-    double sum = 0.0, squares = 0.0;
-    for (const float e : medium.extinction) {
-        sum += e;
-        squares += double(e) * e;
-    }
-    const float typical = sum > 0.0 ? float(squares / sum) : 0.0f;
+    const float typical = float(extinction_met(medium.extinction));
     std::vector<float> thin(needed.size(), 0.0f);
     double of_haze = 0.0, all = 0.0;
     for (std::size_t i = 0; i < needed.size(); ++i) {

@@ -7,6 +7,7 @@
 #include "core/stopwatch.h"
 #include "gathering/sh.h"
 #include "lights/voxel_lights.h"
+#include "medium/haze.h"
 #include "medium/phase.h"
 #include "scattering/coarse_operator.h"
 
@@ -34,8 +35,6 @@ double power(const std::vector<Rgb>& lights) {
 // smoke makes up a good part of them it does not count, as the smoke would be solved the worse for it; but no level is
 // finer than memory and time allow.
 constexpr std::size_t kMostCoarseNodes = 120000, kMostWithHaze = 1000000;
-constexpr double kHaze = 0.05;     // of the mean extinction that light meets
-constexpr double kGoodPart = 0.4;  // fringes of smoke are less
 
 int choose_level(const ExtinctionPyramid& pyramid, int wish) {
     const int last = pyramid.level_count() - 1;
@@ -45,17 +44,10 @@ int choose_level(const ExtinctionPyramid& pyramid, int wish) {
         const auto& nodes = pyramid.nodes(level);
         return std::size_t(std::count_if(nodes.begin(), nodes.end(), [&](float e) { return e > extinction; }));
     };
-    const auto met = [&](int level) {
-        double sum = 0.0, squares = 0.0;
-        for (const float e : pyramid.nodes(level)) {
-            sum += e;
-            squares += double(e) * e;
-        }
-        return sum > 0.0 ? squares / sum : 0.0;
-    };
     const auto too_many = [&](int level) {
-        const std::size_t all = above(level, 0.0), dense = above(level, kHaze * met(level));
-        const bool haze = double(all - dense) > kGoodPart * double(all);
+        const std::size_t all = above(level, 0.0),
+                          dense = above(level, kThinSmoke * extinction_met(pyramid.nodes(level)));
+        const bool haze = double(all - dense) > kFringes * double(all);
         return (haze ? dense : all) > kMostCoarseNodes || all > kMostWithHaze;
     };
     int level = 0;

@@ -33,9 +33,8 @@ void add_ray_light_keys(std::vector<Key>& keys) {
         [](Shot & s) -> auto& { return s.ray_lights.seed; }));
     keys.push_back(make_key(
         "ray_lights.radius",
-        "of beams in the first pass [m]: a blur that lowers the noise of sharp lobes; 0: none, without bias; auto: "
-        "from "
-        "how far the lights are apart",
+        "of beams in the first pass [m]: a blur that lowers the noise of sharp lobes; 0: none, without bias; "
+        "auto: from how far the lights are apart",
         or_word(real(at_least(0.0)), "auto", kAutomaticRadius), [](Shot & s) -> auto& { return s.ray_lights.radius; }));
     keys.push_back(make_key(
         "ray_lights.passes", "whole pictures that are averaged, each by ray lights of its own and thinner beams",
