@@ -1,10 +1,11 @@
 #include "render/integrate.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/parallel.h"
+#include "render/first_look.h"
+#include "render/refine_edges.h"
 
 namespace brisance {
 
@@ -104,92 +105,6 @@ void walk_parts(const CellField& field, const Ray& ray, int parts, double end, c
     walk_cells(field, ray, visit_parts, end);
 }
 
-struct PixelSample {
-    double x, y;  // offset from the pixel's centre
-    float weight;
-};
-
-std::vector<PixelSample> pixel_samples(const CameraSettings& camera, int per_axis) {
-    const int n = std::max(1, static_cast<int>(std::ceil(per_axis * camera.filter_width_pixels)));
-    std::vector<PixelSample> samples;
-    float total = 0.0f;
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) {
-            const double x = ((i + 0.5) / n - 0.5) * camera.filter_width_pixels;
-            const double y = ((j + 0.5) / n - 0.5) * camera.filter_width_pixels;
-            const double sigma = 0.25 * camera.filter_width_pixels;
-            const double w =
-                camera.filter == PixelFilter::Box ? 1.0 : std::exp(-(x * x + y * y) / (2.0 * sigma * sigma));
-            samples.push_back({x, y, static_cast<float>(w)});
-            total += samples.back().weight;
-        }
-    for (PixelSample& s : samples)
-        s.weight /= total;
-    return samples;
-}
-
-// Writes finished pixels into the layers.
-class PictureWriter {
-public:
-    PictureWriter(const Camera& camera, const PictureSettings& settings) : camera_(camera) {
-        image_.width = camera.settings().width;
-        image_.height = camera.settings().height;
-        const std::size_t pixels = std::size_t(image_.width) * image_.height;
-        const auto add = [&](const char* name, std::vector<std::string> channels, bool full) {
-            Layer layer{name, std::move(channels), full, {}};
-            layer.pixels.assign(pixels * layer.channels.size(), 0.0f);
-            image_.layers.push_back(std::move(layer));
-            return static_cast<int>(image_.layers.size()) - 1;
-        };
-        beauty_ = add("", {"R", "G", "B", "A"}, false);
-        cells_.fill(-1);
-        for (int cell = 0; cell < kCells; ++cell)
-            if (settings.cells && settings.layers[cell])
-                cells_[cell] = add(kCellNames[cell], {"R", "G", "B"}, false);
-        z_ = add("Z", {"Z"}, true);
-        albedo_ = add("albedo", {"R", "G", "B"}, false);
-    }
-
-    void pixel(int x, int y, const RaySum& s) {
-        const std::size_t i = std::size_t(y) * image_.width + x;
-        Rgb beauty(0.0f);
-        for (const Rgb& cell : s.cells)
-            beauty += cell;
-        float* b = &image_.layers[beauty_].pixels[4 * i];
-        b[0] = beauty.x, b[1] = beauty.y, b[2] = beauty.z, b[3] = s.alpha;
-        for (int cell = 0; cell < kCells; ++cell)
-            put(cells_[cell], i, s.cells[cell]);
-        put(albedo_, i, s.albedo_sum);
-        // Distances are along the ray; Z is along the view axis.
-        const double cosine = glm::dot(camera_.ray(x + 0.5, y + 0.5).direction, camera_.forward());
-        image_.layers[z_].pixels[i] =
-            s.distance_weight > 0.0f ? static_cast<float>(s.distance_sum / s.distance_weight * cosine) : 1e10f;
-    }
-
-    Image take() { return std::move(image_); }
-
-private:
-    void put(int layer, std::size_t pixel, const Rgb& c) {
-        if (layer < 0)
-            return;
-        float* p = &image_.layers[layer].pixels[3 * pixel];
-        p[0] = c.x, p[1] = c.y, p[2] = c.z;
-    }
-
-    const Camera& camera_;
-    Image image_;
-    int beauty_ = -1, z_ = -1, albedo_ = -1;
-    std::array<int, kCells> cells_;  // -1: no such layer
-};
-
-void add_weighted(RaySum& sum, const RaySum& s, float w) {
-    sum.cells.add(s.cells, Rgb(w));
-    sum.alpha += w * s.alpha;
-    sum.distance_weight += w * s.distance_weight;
-    sum.distance_sum += w * s.distance_sum;
-    sum.albedo_sum += w * s.albedo_sum;
-}
-
 // One row of pixels with lighting asked for at the march's own points: collect, light, integrate.
 void marched_row(const CellField& field, const Camera& camera, int y, const std::vector<PixelSample>& samples,
                  int parts, const LightPoints& light_points, PictureWriter& writer) {
@@ -229,56 +144,23 @@ void marched_row(const CellField& field, const Camera& camera, int y, const std:
         writer.pixel(x, y, row[x]);
 }
 
-// What a ray sees up to the first surface, and what that emits; a surface that may scatter light is added to `found`,
-// with how much of its light arrives.
+// A surface that one of a pixel's rays found, with how much of its light arrives.
 struct FoundSurface {
     SurfaceSample sample;
     float weight;
 };
 
-RaySum look(const CellField& field, const Ray& ray, const PictureSettings& settings, SurfaceSample sample, float weight,
-            std::vector<FoundSurface>& found) {
-    const auto integrated = [&](double end) {
-        RaySum sum = integrate(field, ray, settings.parts, end);
-        if (settings.light_rays) {
-            const LightOnRay more = settings.light_rays({sample.pixel, sample.number, ray}, end);
-            sum.cells.at(Cell::MM) += more.scattered;
-            sum.cells.at(Cell::MA) += more.emitters;
-        }
-        return sum;
-    };
-    constexpr double kNowhere = std::numeric_limits<double>::infinity();
-    if (!settings.surroundings)
-        return integrated(kNowhere);
-    const Surroundings& set = *settings.surroundings;
-    const std::optional<SurfaceHit> hit = set.intersector().first_hit(ray);
-    if (!hit) {
-        RaySum sum = integrated(kNowhere);
-        sum.cells.at(Cell::A) += std::exp(-sum.depth) * set.emitters().background(ray.direction);
-        return sum;
-    }
-    RaySum sum = integrated(hit->distance);
-    const float through = std::exp(-sum.depth);
-    const SurfacePoint point = surface_point(set.scene(), *hit, -ray.direction);
-    sum.cells.at(Cell::A) += through * point.emission;
-    sum.alpha = 1.0f;
-    sum.distance_weight += through;
-    sum.distance_sum += through * static_cast<float>(hit->distance);
-    sum.albedo_sum += through * point.material.base_colour;
-    if (sum.depth < kOpaqueDepth) {
-        sample.ray = ray;
-        sample.hit = *hit;
-        found.push_back({sample, weight * through});
-    }
-    return sum;
-}
-
 // Rows of a picture together: their surfaces are lit in one call.
 class Band {
 public:
     Band(const CellField& field, const Camera& camera, const PictureSettings& settings,
-         const std::vector<PixelSample>& samples, const LightSurfaces& light_surfaces)
-        : field_(field), camera_(camera), settings_(settings), samples_(samples), light_surfaces_(light_surfaces) {}
+         const std::vector<PixelSample>& samples, const LightSurfaces& light_surfaces, std::vector<Glare>& glare)
+        : field_(field),
+          camera_(camera),
+          settings_(settings),
+          samples_(samples),
+          light_surfaces_(light_surfaces),
+          glare_(glare) {}
 
     void draw(int begin, int end, PictureWriter& writer) {
         const int width = camera_.settings().width;
@@ -298,11 +180,15 @@ private:
         for (int x = 0; x < width; ++x)
             for (std::uint32_t k = 0; k < samples_.size(); ++k) {
                 const PixelSample& s = samples_[k];
-                const Ray ray = camera_.ray(x + 0.5 + s.x, y + 0.5 + s.y);
                 const std::uint64_t number = static_cast<std::uint64_t>(settings_.pass) << 32 | k;
-                const SurfaceSample sample{static_cast<std::uint32_t>(y * width + x), number, {}, {}};
-                add_weighted(sums_[std::size_t(row) * width + x], look(field_, ray, settings_, sample, s.weight, found),
-                             s.weight);
+                const auto pixel = static_cast<std::uint32_t>(y * width + x);
+                const PixelRay ray{pixel, number, camera_.ray(x + 0.5 + s.x, y + 0.5 + s.y)};
+                const FirstLook seen = first_look(field_, ray, settings_);
+                add_weighted(sums_[std::size_t(row) * width + x], seen.sum, s.weight);
+                if (!glare_.empty())
+                    glare_[pixel].add(seen.sum.cells);
+                if (seen.surface)
+                    found.push_back({{pixel, number, ray.ray, *seen.surface}, s.weight * std::exp(-seen.sum.depth)});
             }
     }
 
@@ -325,6 +211,7 @@ private:
     const PictureSettings& settings_;
     const std::vector<PixelSample>& samples_;
     const LightSurfaces& light_surfaces_;
+    std::vector<Glare>& glare_;  // empty: nobody wants to know
     std::vector<RaySum> sums_;
 };
 
@@ -370,11 +257,15 @@ Image render_picture(const CellField& field, const Camera& camera, const Picture
     }
     const std::size_t per_row = std::max<std::size_t>(1, std::size_t(width) * samples.size());
     const int rows = static_cast<int>(std::clamp<std::size_t>(kRaysAtOnce / per_row, 1, height));
-    Band band(field, camera, settings, samples, light_surfaces);
+    const bool refines = settings.surroundings && settings.edge_refinement > 1;
+    std::vector<Glare> glare(refines ? std::size_t(width) * height : 0);
+    Band band(field, camera, settings, samples, light_surfaces, glare);
     for (int y = 0; y < height; y += rows) {
         band.draw(y, std::min(y + rows, height), writer);
         progress.fraction(double(std::min(y + rows, height)) / height);
     }
+    if (refines)
+        refine_edges(field, camera, settings, samples, glare, writer);
     return writer.take();
 }
 

@@ -47,9 +47,10 @@ struct LightOnRay {
 using LightRays = std::function<LightOnRay(const PixelRay& ray, double end)>;
 
 struct PictureSettings {
-    int samples_per_axis = 1;                                // anti-aliasing, along a pixel's side
-    int parts = 2;                                           // of a cell's segment
-    bool cells = true;                                       // layers per ledger cell, ...
+    int samples_per_axis = 1;  // anti-aliasing, along a pixel's side
+    int edge_refinement = 1;   // as many times more where light has edges (refine_edges.h)
+    int parts = 2;             // of a cell's segment
+    bool cells = true;         // layers per ledger cell, ...
     std::array<bool, kCells> layers = layers_of({Cell::V});  // ... of these cells
     const Surroundings* surroundings = nullptr;              // rays end at its surfaces
     LightRays light_rays = {};                               // empty: the field holds MM and MA

@@ -180,6 +180,7 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     PictureSettings settings;
     settings.samples_per_axis =
         camera.settings().samples_per_axis > 0 ? camera.settings().samples_per_axis : automatic_samples(camera, field);
+    settings.edge_refinement = camera.settings().edge_refinement;
     settings.cells = shot.output.cell_layers;
     settings.layers = plan.needed;
     settings.layers[static_cast<int>(Cell::V)] |= !medium.lattice.empty();

@@ -41,7 +41,7 @@ Affects affected_by(const std::string& path) {
                                 "tracing.", "certify.", "output."})
         if (path.starts_with(section))
             return Affects::Method;
-    for (const char* key : {"$schema", "name", "method", "camera.samples_per_axis"})
+    for (const char* key : {"$schema", "name", "method", "camera.samples_per_axis", "camera.edge_refinement"})
         if (path == key)
             return Affects::Method;
     return Affects::Picture;

@@ -55,6 +55,10 @@ void add_camera_keys(std::vector<Key>& keys) {
         "camera.samples_per_axis", "anti-aliasing samples along each side of a pixel", or_word(whole(1, 64), "auto", 0),
         [](Shot & s) -> auto& { return s.camera.samples_per_axis; }));
     keys.push_back(make_key(
+        "camera.edge_refinement",
+        "as many times more samples along a side, of what shines by itself, where it has edges in a set; 1: none",
+        whole(1, 16), [](Shot & s) -> auto& { return s.camera.edge_refinement; }));
+    keys.push_back(make_key(
         "camera.filter", "of a pixel",
         choice<PixelFilter>({{"box", PixelFilter::Box}, {"gaussian", PixelFilter::Gaussian}}),
         [](Shot & s) -> auto& { return s.camera.filter; }));

@@ -27,8 +27,8 @@ struct Preset {
 const std::vector<Preset>& presets() {
     static const std::vector<Preset> all = {
         {"draft",
-         {"lighting.alpha=1", "lighting.shadow_resolution=8", "camera.samples_per_axis=1", "scattering.alpha=1",
-          "scattering.remainder=0.01"}},
+         {"lighting.alpha=1", "lighting.shadow_resolution=8", "camera.samples_per_axis=1", "camera.edge_refinement=1",
+          "scattering.alpha=1", "scattering.remainder=0.01"}},
         {"final", {}},
     };
     return all;

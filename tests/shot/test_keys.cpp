@@ -84,6 +84,7 @@ TEST(Keys, BoundsAreChecked) {
         "camera.width=20000",
         "camera.height=7.5",
         "camera.samples_per_axis=0",
+        "camera.edge_refinement=0",
         "camera.filter_width_pixels=0",
         "camera.up=[0,1]",
         "lighting.alpha=0.9",

@@ -85,6 +85,7 @@ std::vector<Shot> unusual_shots() {
                                              "fire.temperature_in=[0,2.95]",
                                              "colour_role=emission",
                                              "camera.samples_per_axis=3",
+                                             "camera.edge_refinement=2",
                                              "lighting.levels=7",
                                              "lighting.memory_limit_mebibytes=100.5",
                                              "lighting.shadows=none",

@@ -101,9 +101,11 @@ void compare_layers(const Image& image, const ReportReference& reference, Measur
 
 Shot shot_with(const Shot& shot, const std::string& source, const std::vector<std::string>& settings) {
     Shot result = parse_shot(to_json(shot), source, shot.folder, {"", settings});
-    const int samples_per_axis = result.camera.samples_per_axis;  // of the method, unlike the rest of the camera
+    const CameraSettings asked = result.camera;
     result.camera = shot.camera;
-    result.camera.samples_per_axis = samples_per_axis;
+    // Of the method, unlike the rest of the camera.
+    result.camera.samples_per_axis = asked.samples_per_axis;
+    result.camera.edge_refinement = asked.edge_refinement;
     result.camera_given = shot.camera_given;
     return result;
 }
