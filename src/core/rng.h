@@ -25,7 +25,10 @@ enum class Stream : std::uint32_t {
     RayLightSurface,
     MediumPoint,
     MediumPointRoulette,
-    RayLightPass
+    RayLightPass,
+    Mirror,
+    CastLight,
+    CastLightRoulette
 };
 
 // SplitMix64 (Steele, Lea, Flood 2014), keyed by identity.

@@ -144,7 +144,7 @@ LightPictures make_light_pictures(const VirtualLights& lights, const Surrounding
     const dvec3 origin = surroundings.scene().origin;
     for (const VirtualLight& light : lights.lights())
         out.lights.push_back({light.position + origin, light.frame.normal, light.frame.tangent, light.radius,
-                              light.area, lights.flux(light), light.profile});
+                              light.area, light.flux, light.profile});
     out.image.width = camera.settings().width;
     out.image.height = camera.settings().height;
     draw_discs(out, lights, discs_of(lights, surroundings.intersector(), camera), camera, picture);

@@ -65,7 +65,7 @@ std::vector<vec3> directions_to(const Medium& medium, const vec3& eye) {
 
 Lighting::Lighting(const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera,
                    Statistics& statistics, Progress& progress, const Surroundings* surroundings,
-                   const PointLights* reflecting)
+                   const ReflectedLight& reflected)
     : shot_(shot),
       plan_(plan),
       medium_(medium),
@@ -89,8 +89,8 @@ Lighting::Lighting(const Shot& shot, const Plan& plan, const Medium& medium, con
         first = light_from_fire();
     else
         first.resize(needed_.size(), plan.directional, plan.multiple && plan.directional);
-    if (reflecting && plan.needs(Cell::MS)) {
-        const Gathered more = light_from_surfaces(*reflecting);
+    if ((reflected.lights || reflected.cast) && plan.needs(Cell::MS)) {
+        const Gathered more = light_from_surfaces(reflected);
         nodes_.from_surfaces = source_function(more);
         first.add(more);
     }
@@ -116,21 +116,33 @@ LatticeRequest Lighting::last_request() const {
     return ask;
 }
 
-Gathered Lighting::light_from_surfaces(const PointLights& reflecting) {
+Gathered Lighting::light_from_surfaces(const ReflectedLight& reflected) {
     progress_.stage("light from surfaces (MS)");
     const Stopwatch watch;
-    const LightingGrid grid = build_point_grid(medium_, reflecting, shot_.lighting.alpha);
-    // Lights outside stand for themselves: no voxel has a share in them.
-    const std::vector<float> no_weight(needed_.size(), 0.0f);
-    const LightField field{&pyramid_,      nullptr, nullptr,        &grid, &no_weight, shot_.lighting.alpha,
-                           shot_.lighting, nullptr, surfaces_.get()};
-    std::vector<LevelCost> costs;
-    Gathered g = gather_from_outside(field, request(), costs, progress_);
+    const LatticeRequest ask = request();
+    StageCost stage{"light from surfaces (MS)", 0.0, 0, {}};
+    Gathered g;
+    g.resize(needed_.size(), ask.toward_camera != nullptr, ask.moments);
+    if (reflected.lights && reflected.lights->size() > 0) {
+        const LightingGrid grid = build_point_grid(medium_, *reflected.lights, shot_.lighting.alpha);
+        // Lights outside stand for themselves: no voxel has a share in them.
+        const std::vector<float> no_weight(needed_.size(), 0.0f);
+        const LightField field{&pyramid_,      nullptr, nullptr,        &grid, &no_weight, shot_.lighting.alpha,
+                               shot_.lighting, nullptr, surfaces_.get()};
+        std::vector<LevelCost> costs;
+        g = gather_from_outside(field, ask, costs, progress_);
+        stage.bytes = grid.bytes() + most_held(costs);
+        stage.detail = {{"lights", reflected.lights->size()}, {"levels", level_table(costs)}};
+    }
+    if (reflected.cast) {
+        const Stopwatch cast;
+        g.add(reflected.cast->on(medium_, ask));
+        stage.detail["particles"] = reflected.cast->particles();
+        stage.detail["particle_seconds"] = cast.seconds();
+    }
     prepare_interpolation(medium_.lattice, needed_, g);
-    statistics_.stages.push_back({"light from surfaces (MS)",
-                                  watch.seconds(),
-                                  grid.bytes() + most_held(costs),
-                                  {{"lights", reflecting.size()}, {"levels", level_table(costs)}}});
+    stage.seconds = watch.seconds();
+    statistics_.stages.push_back(std::move(stage));
     return g;
 }
 

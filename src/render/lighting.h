@@ -7,6 +7,7 @@
 #include "gathering/gather.h"
 #include "lights/point_grid.h"
 #include "render/camera.h"
+#include "render/cast_light.h"
 #include "render/cell_field.h"
 #include "render/extended_light.h"
 #include "render/haze.h"
@@ -30,12 +31,18 @@ struct SurfaceReceiver {
     Rgb fire{0.0f}, smoke{0.0f};  // [W/(m^2 sr)]
 };
 
+// What surfaces send into the medium.
+struct ReflectedLight {
+    const PointLights* lights = nullptr;  // null: none
+    const CastLight* cast = nullptr;      // null: none
+};
+
 class Lighting {
 public:
-    // Keeps references: the medium must outlive it. `surroundings`: null where there are none; `reflecting`: what
-    // surfaces send into the medium, as lights.
+    // Keeps references: the medium must outlive it. `surroundings`: null where there are none; `reflected`: what
+    // surfaces send into the medium.
     Lighting(const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera, Statistics& statistics,
-             Progress& progress, const Surroundings* surroundings = nullptr, const PointLights* reflecting = nullptr);
+             Progress& progress, const Surroundings* surroundings = nullptr, const ReflectedLight& reflected = {});
 
     // For GatherMethod::Cache.
     const NodeLighting& at_nodes() const { return nodes_; }
@@ -50,7 +57,7 @@ public:
 
 private:
     Gathered light_from_fire();
-    Gathered light_from_surfaces(const PointLights& reflecting);
+    Gathered light_from_surfaces(const ReflectedLight& reflected);
     Gathered light_from_emitters(const Surroundings& surroundings);
     LatticeRequest request() const;
     LatticeRequest last_request() const;

@@ -50,13 +50,17 @@ bool haze_alone(const Shot& shot) {
                        [](const FurtherVolume& v) { return v.volume.box.has_value(); });
 }
 
+// Phase functions that spherical harmonics of degree 2, by which lights know directions, are too blunt for.
+bool scatters_sharply(const Medium& medium) {
+    return std::abs(medium.mean_cosine) > 0.5f;
+}
+
 struct Choice {
     ScatteringMethod method;
     std::string reason;
 };
 
 Choice choose_scattering(const Shot& shot, const Medium& medium) {
-    constexpr float kForward = 0.5f;
     const ScatteringMethod asked = shot.ray_lights.method;
     if (asked != ScatteringMethod::Automatic)
         return {asked, std::string("scattering.method is ") + name_of(asked)};
@@ -64,7 +68,7 @@ Choice choose_scattering(const Shot& shot, const Medium& medium) {
         return {ScatteringMethod::LightingGrid, "scattering.method is auto, and lighting.gather is ray_march"};
     if (!haze_alone(shot))
         return {ScatteringMethod::LightingGrid, "scattering.method is auto: smoke from files is the grid's"};
-    if (std::abs(medium.mean_cosine) <= kForward)
+    if (!scatters_sharply(medium))
         return {ScatteringMethod::LightingGrid,
                 "scattering.method is auto: haze with a mean cosine of at most 0.5 is the grid's"};
     return {ScatteringMethod::RayLights, "scattering.method is auto, and haze alone has a mean cosine above 0.5"};
@@ -88,6 +92,7 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
     const bool twice = plan.multiple || plan.needs(Cell::SM);
     plan.scattered_lights = by_lights && twice;
     plan.emitters_by_rays = lit_by_grid && plan.needs(Cell::MA) && (plan.scattered_lights || haze_alone(shot));
+    plan.reflected_by_particles = lit_by_grid && plan.needs(Cell::MS) && scatters_sharply(medium);
     if (by_lights && !plan.scattered_lights)
         skip(plan.scattering == ScatteringMethod::RayLights ? "ray lights" : "point lights",
              "no light is scattered twice");

@@ -26,11 +26,12 @@ struct Plan {
     bool multiple = false;                                         // MM
     bool directional = false;                                      // anisotropic phase function: directional storage
     ScatteringMethod scattering = ScatteringMethod::LightingGrid;  // never Automatic
-    bool scattered_lights = false;      // virtual lights in the smoke, rays or points, own MM and SM
-    bool emitters_by_rays = false;      // MA by the camera's rays, not at the medium's nodes
-    bool surfaces = false;              // there are some
-    bool emitters = false;              // there are lights, emissive surfaces or an environment
-    std::array<bool, kCells> needed{};  // the cells that can be other than zero, those above among them
+    bool scattered_lights = false;        // virtual lights in the smoke, rays or points, own MM and SM
+    bool emitters_by_rays = false;        // MA by the camera's rays, not at the medium's nodes
+    bool reflected_by_particles = false;  // MS by particles alone, without virtual lights
+    bool surfaces = false;                // there are some
+    bool emitters = false;                // there are lights, emissive surfaces or an environment
+    std::array<bool, kCells> needed{};    // the cells that can be other than zero, those above among them
     std::vector<SkippedPart> skipped;
     bool needs(Cell cell) const { return needed[static_cast<int>(cell)]; }
     std::vector<std::string> cells() const;

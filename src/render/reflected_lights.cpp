@@ -17,7 +17,7 @@ constexpr float kDegree1 = 2.0f / 3.0f, kDegree2 = 0.25f;
 PointLights reflected_lights(const VirtualLights& lights) {
     PointLights out;
     for (const VirtualLight& light : lights.lights()) {
-        const Rgb flux = lights.flux(light);
+        const Rgb flux = light.base_flux;
         if (!(luminance(flux) > 0.0f))
             continue;
         out.position.emplace_back(light.position);

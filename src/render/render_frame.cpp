@@ -165,10 +165,16 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     if (plan.single || plan.needs(Cell::SV) || grid_plan.needs(Cell::MA) || plan.needs(Cell::MS)) {
         similar = similar_medium(medium, grid_bounces);
         std::optional<PointLights> reflecting;
-        if (virtual_lights)
-            reflecting = reflected_lights(*virtual_lights);
+        std::optional<CastLight> cast;
+        if (plan.needs(Cell::MS)) {
+            const VirtualLights* const shining = plan.reflected_by_particles ? nullptr : virtual_lights.get();
+            if (shining)
+                reflecting = reflected_lights(*shining);
+            cast.emplace(paths->direct(), shining, shot.virtual_lights);
+        }
+        const ReflectedLight reflected{reflecting ? &*reflecting : nullptr, cast && !cast->empty() ? &*cast : nullptr};
         lighting = std::make_unique<Lighting>(shot, grid_plan, similar ? *similar : medium, camera, statistics,
-                                              progress, surroundings, reflecting ? &*reflecting : nullptr);
+                                              progress, surroundings, reflected);
     }
     progress.stage("camera");
     const Stopwatch watch;

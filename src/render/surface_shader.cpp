@@ -4,15 +4,12 @@
 #include <numbers>
 
 #include "core/parallel.h"
-#include "render/emitters_along_ray.h"
 
 namespace brisance {
 
 namespace {
 
 constexpr std::size_t kSamplesAtOnce = 256;
-// On a ray that a glossy lobe drew, where it asks emitters.
-constexpr int kEmitterPlaces = 4;
 
 bool has_base(const SurfaceMaterial& m) {
     return m.metallic < 1.0f && m.transmission < 1.0f && m.base_colour != Rgb(0.0f);
@@ -28,14 +25,21 @@ SurfaceShader::SurfaceShader(const Plan& plan, const CellField& field, Lighting*
                              const PathTracer& paths, int parts, const LightsInSmoke* scattered_lights,
                              PathLengths* lengths)
     : plan_(plan),
-      field_(field),
       lighting_(lighting),
       lights_(lights),
       paths_(paths),
       surroundings_(*paths.direct().surroundings()),
-      parts_(parts),
       scattered_lights_(scattered_lights),
-      lengths_(lengths) {}
+      lengths_(lengths),
+      medium_(plan, field, paths.direct(), parts, scattered_lights),
+      mirrors_(paths.direct(), medium_, plan.needs(Cell::SS)) {}
+
+// Who is lit, and what draws its random numbers.
+struct SurfaceShader::Place {
+    BehindMirrors seen;
+    Rng ray_rng;  // for rays through the medium
+    int vertices;
+};
 
 Rgb SurfaceShader::from_emitters(const Scatterer& place, Rng& rng) const {
     const DirectLight& direct = paths_.direct();
@@ -52,20 +56,22 @@ Rgb SurfaceShader::from_emitters(const Scatterer& place, Rng& rng) const {
     return sum;
 }
 
-void SurfaceShader::light_bases(const std::vector<SurfaceSample>& samples, std::vector<SurfacePoint>& points,
-                                std::vector<SurfaceReceiver>& receivers) const {
-    points.resize(samples.size());
-    receivers.resize(samples.size());
+std::vector<SurfaceShader::Place> SurfaceShader::places(const std::vector<SurfaceSample>& samples,
+                                                        std::vector<CellSum>& light) const {
+    std::vector<Place> places(samples.size(), Place{{}, Rng(Stream::RayLightSurface, 0), 0});
     parallel_for(
         samples.size(),
         [&](std::size_t i) {
-            points[i] = surface_point(surroundings_.scene(), samples[i].hit, -samples[i].ray.direction);
-            receivers[i].local = vec3(points[i].position);
-            receivers[i].normal = vec3(points[i].frame.normal);
+            const SurfaceSample& s = samples[i];
+            Place& place = places[i];
+            place.ray_rng = scattered_lights_ ? scattered_lights_->rng(Stream::RayLightSurface, s.pixel, s.number)
+                                              : Rng(Stream::RayLightSurface, s.pixel, s.number);
+            const SurfacePoint point = surface_point(surroundings_.scene(), s.hit, -s.ray.direction);
+            place.seen = mirrors_.follow(s, point, place.ray_rng, light[i]);
+            place.vertices = place.seen.mirrors;
         },
         kSamplesAtOnce);
-    if (lighting_)
-        lighting_->at_surfaces(receivers);
+    return places;
 }
 
 // What the base reflects of the light that arrives past other surfaces, over what a white Lambert surface would reflect
@@ -108,63 +114,67 @@ void SurfaceShader::reflect_medium(const SurfacePoint& point, const dvec3& towar
     if (!drawn)
         return;
     const Ray ray = point.leaving(drawn->wi);
-    const std::optional<SurfaceHit> hit = surroundings_.intersector().first_hit(ray);
-    const RaySum seen = hit ? integrate(field_, ray, parts_, hit->distance) : integrate(field_, ray, parts_);
+    const RaySegment segment = paths_.direct().segment_along(ray);
+    const RaySum seen = medium_.look(ray, segment.end, ray_rng);
     light.at(Cell::SV) += drawn->weight * seen.cells.at(Cell::V);
-    for (const Cell cell : {Cell::MV, Cell::MM, Cell::MS, Cell::MA})
-        light.at(Cell::SM) += drawn->weight * seen.cells.at(cell);
-    if (!scattered_lights_ && !plan_.emitters_by_rays)
+    light.at(Cell::SM) += drawn->weight * scattered_by_medium(seen.cells);
+}
+
+void SurfaceShader::shade_place(const SurfaceSample& sample, const SurfaceReceiver& receiver, Place& at,
+                                CellSum& out) const {
+    const SurfacePoint& point = at.seen.point;
+    const dvec3 toward_viewer = -at.seen.arriving;
+    Rng rng(Stream::Surface, sample.pixel, sample.number);
+    if (lighting_ && has_base(point.material)) {
+        out.at(Cell::SV) += receiver.fire * seen_part(lighting_->fire_to_aim_at(), point, toward_viewer, rng);
+        out.at(Cell::SM) += receiver.smoke * seen_part(lighting_->smoke_to_aim_at(), point, toward_viewer, rng);
+    }
+    if (scattered_lights_ && has_base(point.material))
+        out.at(Cell::SM) += scattered_lights_->at_surface(point, Bsdf(point.material, point.frame, Lobes::Base),
+                                                          toward_viewer, at.ray_rng);
+    if (lighting_ && has_specular(point.material))
+        reflect_medium(point, toward_viewer, rng, at.ray_rng, out);
+    const Scatterer place(point, at.seen.arriving);
+    if (plan_.needs(Cell::SA))
+        out.at(Cell::SA) += from_emitters(place, rng);
+    if (!plan_.needs(Cell::SS))
         return;
-    thread_local SeenMedium medium;
-    medium.look(paths_.field(), ray, hit ? hit->distance : std::numeric_limits<double>::infinity());
-    if (scattered_lights_)
-        light.at(Cell::SM) += drawn->weight * scattered_lights_->along_ray(medium, ray_rng);
-    if (plan_.emitters_by_rays)
-        light.at(Cell::SM) += drawn->weight * emitters_along_ray(paths_.direct(), medium, ray, kEmitterPlaces, ray_rng);
+    if (lights_) {
+        out.at(Cell::SS) += lights_->shade(place, rng, &at.vertices);
+        return;
+    }
+    PathSum path{};
+    paths_.trace_from_surface(point, at.seen.arriving, rng, path);
+    out.at(Cell::SS) += path.cells.at(Cell::SS);
 }
 
 void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) const {
-    std::vector<SurfacePoint> points;
-    std::vector<SurfaceReceiver> receivers;
-    light_bases(samples, points, receivers);
-    std::vector<int> vertices(lengths_ ? samples.size() : 0);
+    std::vector<Place> places = this->places(samples, light);
+    std::vector<SurfaceReceiver> receivers(samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        receivers[i].local = vec3(places[i].seen.point.position);
+        receivers[i].normal = vec3(places[i].seen.point.frame.normal);
+    }
+    if (lighting_)
+        lighting_->at_surfaces(receivers);
     parallel_for(
         samples.size(),
         [&](std::size_t i) {
-            const SurfacePoint& point = points[i];
-            const dvec3 toward_viewer = -samples[i].ray.direction;
-            Rng rng(Stream::Surface, samples[i].pixel, samples[i].number);
-            Rng ray_rng = scattered_lights_
-                              ? scattered_lights_->rng(Stream::RayLightSurface, samples[i].pixel, samples[i].number)
-                              : Rng(Stream::RayLightSurface, samples[i].pixel, samples[i].number);
-            CellSum& out = light[i];
-            if (lighting_ && has_base(point.material)) {
-                out.at(Cell::SV) +=
-                    receivers[i].fire * seen_part(lighting_->fire_to_aim_at(), point, toward_viewer, rng);
-                out.at(Cell::SM) +=
-                    receivers[i].smoke * seen_part(lighting_->smoke_to_aim_at(), point, toward_viewer, rng);
-            }
-            if (scattered_lights_ && has_base(point.material))
-                out.at(Cell::SM) += scattered_lights_->at_surface(point, Bsdf(point.material, point.frame, Lobes::Base),
-                                                                  toward_viewer, ray_rng);
-            if (lighting_ && has_specular(point.material))
-                reflect_medium(point, toward_viewer, rng, ray_rng, out);
-            const Scatterer place(point, samples[i].ray.direction);
-            if (plan_.needs(Cell::SA))
-                out.at(Cell::SA) += from_emitters(place, rng);
-            if (!plan_.needs(Cell::SS))
+            const BehindMirrors& seen = places[i].seen;
+            if (seen.lost)
                 return;
-            if (lights_) {
-                out.at(Cell::SS) += lights_->shade(place, rng, lengths_ ? &vertices[i] : nullptr);
+            if (seen.mirrors == 0) {
+                shade_place(samples[i], receivers[i], places[i], light[i]);
                 return;
             }
-            PathSum path{};
-            paths_.trace_from_surface(point, samples[i].ray.direction, rng, path);
-            out.at(Cell::SS) += path.cells.at(Cell::SS);
+            CellSum there;
+            shade_place(samples[i], receivers[i], places[i], there);
+            for (const Rgb& cell : there)
+                light[i].at(Cell::SS) += seen.throughput * cell;
         },
         kSamplesAtOnce);
-    for (std::size_t i = 0; i < vertices.size(); ++i)
-        lengths_->add(samples[i].pixel, vertices[i]);
+    for (std::size_t i = 0; lengths_ && i < samples.size(); ++i)
+        lengths_->add(samples[i].pixel, places[i].vertices);
 }
 
 }  // namespace brisance

@@ -7,7 +7,8 @@
 // rays. A light that the base does not show is thus never asked by a glossy lobe: what the lobe mirrors of smoke that
 // was lit once comes without noise from the grid, which sharing with a light's own places would only add to; of the
 // rest, a ray that the lobe drew asks the lights all along, as the camera's do. SA: a place on one of the emitters, and
-// a ray by the BSDF. SS: the virtual lights; without them, paths.
+// a ray by the BSDF. SS: the virtual lights; without them, paths. Behind mirrors and clear glass the same is done where
+// a surface scatters (mirrors.h), and all of that is SS.
 #pragma once
 
 #include <span>
@@ -17,6 +18,7 @@
 #include "render/cell_field.h"
 #include "render/integrate.h"
 #include "render/lighting.h"
+#include "render/mirrors.h"
 #include "render/path_lengths.h"
 #include "render/plan.h"
 #include "tracing/path_tracer.h"
@@ -36,22 +38,23 @@ public:
     void shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) const;
 
 private:
-    void light_bases(const std::vector<SurfaceSample>& samples, std::vector<SurfacePoint>& points,
-                     std::vector<SurfaceReceiver>& receivers) const;
+    struct Place;
+    std::vector<Place> places(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) const;
+    void shade_place(const SurfaceSample& sample, const SurfaceReceiver& receiver, Place& place, CellSum& light) const;
     Rgb seen_part(const ExtendedLight* light, const SurfacePoint& point, const dvec3& toward_viewer, Rng& rng) const;
     Rgb from_emitters(const Scatterer& place, Rng& rng) const;
     void reflect_medium(const SurfacePoint& point, const dvec3& toward_viewer, Rng& rng, Rng& ray_rng,
                         CellSum& light) const;
 
     const Plan& plan_;
-    const CellField& field_;
     Lighting* lighting_;
     const VirtualLights* lights_;
     const PathTracer& paths_;
     const Surroundings& surroundings_;
-    int parts_;
     const LightsInSmoke* scattered_lights_;
     PathLengths* lengths_;
+    MediumAlongRay medium_;
+    Mirrors mirrors_;
 };
 
 }  // namespace brisance

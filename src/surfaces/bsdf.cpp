@@ -192,6 +192,11 @@ Bsdf::View Bsdf::view_from(const dvec3& world) const {
     return view;
 }
 
+Rgb Bsdf::base_albedo(const dvec3& wo) const {
+    const View view = view_from(wo);
+    return view.side == 0 && has_base_ ? coated_ * base_ * view.base_share : Rgb(0.0f);
+}
+
 // What goes on as if there were no surface: through matched media, and through sheets.
 Rgb Bsdf::straight_weight(const View& view) const {
     const float through = matched_ ? glass_ : 0.0f;

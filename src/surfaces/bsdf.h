@@ -63,6 +63,9 @@ public:
     // facets that send light into their neighbours (its energy is in the lobes of evaluate()).
     std::optional<BsdfSample> sample(const dvec3& wo, const dvec3& u, Transport transport = Transport::Radiance) const;
 
+    // Share of the power that arrives along wo which the Lambert base scatters.
+    Rgb base_albedo(const dvec3& wo) const;
+
 private:
     // What depends on wo alone. Directions are local and turned over where wo comes from inside: wo.z >= 0.
     struct View {

@@ -34,7 +34,7 @@ void follow_particle(const DirectLight& scene, const EmittedParticle& particle, 
     for (int before = 0; most_before < 0 || before <= most_before; ++before) {
         const RaySegment segment = scene.segment_along(ray);
         const std::optional<Collision> collision = null_collision_flight(scene.field(), ray, segment.end, rng);
-        visit({ray, segment.end, collision, power, before});
+        visit({ray, segment.end, collision, power, before, &segment});
         if (!collision && !segment.point)
             return;
         const Scatterer place = collision ? scene.in_smoke(ray, *collision) : Scatterer(*segment.point, ray.direction);

@@ -16,6 +16,7 @@ struct ParticleFlight {
     std::optional<Collision> collision;  // before it
     Rgb power;                           // that sets out [W]
     int before;                          // scatterings before this flight
+    const RaySegment* segment;           // to that surface
 };
 
 struct FlightReport {

@@ -46,6 +46,7 @@ VirtualLight light_of(const Scene& scene, const PhotonArrival& arrival, std::uin
     light.area = 1.0;
     light.irradiance = arrival.power;
     light.flux = arrival.power * reflectance(light, index, seed);
+    light.base_flux = arrival.power * Bsdf(light.material, light.frame).base_albedo(light.toward_source);
     light.power = luminance(glm::max(light.flux, kLeastPower * arrival.power));
     light.intensity = light.power / std::numbers::pi;
     return light;

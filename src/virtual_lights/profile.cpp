@@ -111,6 +111,18 @@ Profiles::Profiles(std::span<VirtualLight> lights, const LightAccounts& accounts
     }
 }
 
+Rgb base_flux(const VirtualLight& light, std::size_t index, const LightAccounts& accounts, int resolution) {
+    const Bsdf bsdf(light.material, {});
+    const auto side = static_cast<std::size_t>(resolution);
+    Rgb sum(0.0f);
+    for (std::size_t y = 0; y < side; ++y)
+        for (std::size_t x = 0; x < side; ++x) {
+            const dvec3 in = hemisphere_of_square((double(x) + 0.5) / resolution, (double(y) + 0.5) / resolution);
+            sum += accounts.texel(index, y * side + x) * bsdf.base_albedo(in);
+        }
+    return sum;
+}
+
 Rgb Profiles::radiance(const VirtualLight& light, const dvec3& toward) const {
     const Rgb* const map = map_of(light);
     const glm::dvec2 p = square_of_hemisphere(light.frame.local_from_world(toward)) * double(side_) - 0.5;

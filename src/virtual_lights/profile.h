@@ -8,6 +8,9 @@
 
 namespace brisance {
 
+// Of the power that arrived at light `index`, what the Lambert base of its material reflects [W].
+Rgb base_flux(const VirtualLight& light, std::size_t index, const LightAccounts& accounts, int resolution);
+
 // The radiance that lights with profiles reflect, by direction in the light's own frame (hemisphere_map.h).
 class Profiles {
 public:

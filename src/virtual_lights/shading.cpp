@@ -25,6 +25,11 @@ LightShares VirtualLights::shares_at(const SurfaceHit& hit, const SurfacePoint& 
     return cover_.shares(point.position, lit_normal(point), material);
 }
 
+bool VirtualLights::hold_base(const SurfaceHit& hit, const SurfacePoint& point) const {
+    return settings_.flux == LightFlux::Own ? holds_light(point.material) && !lights_.empty()
+                                            : speaking_for(hit, point) > 0;
+}
+
 VirtualLights::Seen VirtualLights::seen_by(const RaySegment& segment) const {
     return {segment, shares_at(*segment.hit, *segment.point)};
 }

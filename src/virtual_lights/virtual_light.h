@@ -19,6 +19,7 @@ struct VirtualLight {
     dvec3 toward_source{0.0};   // of flux of its own: unit, where that came from
     std::int32_t profile = -1;  // of light reflected, by direction; -1: plain Lambert, `irradiance` is all there is
     Rgb flux{0.0f};             // reflected in all directions [W]
+    Rgb base_flux{0.0f};        // ... by the Lambert base alone [W]
     double power = 0.0;         // luminance of the flux [W]
     double intensity = 0.0;     // the largest in any direction, luminance [W/sr]
 };

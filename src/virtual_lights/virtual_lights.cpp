@@ -174,10 +174,11 @@ void VirtualLights::finish_lights(const LightAccounts& accounts) {
         VirtualLight& light = lights_[i];
         if (light.profile >= 0) {
             light.flux = profiles_.exitance(light) * float(light.area);
+            light.base_flux = base_flux(light, i, accounts, settings_.profile_resolution);
             light.intensity = profiles_.brightest(light) * light.area;
         } else {
             light.irradiance = accounts.whole(i) / float(light.area);
-            light.flux = light.irradiance * light.material.base_colour * float(light.area);
+            light.flux = light.base_flux = light.irradiance * light.material.base_colour * float(light.area);
             light.intensity = luminance(light.flux) / std::numbers::pi;
         }
         light.power = luminance(light.flux);

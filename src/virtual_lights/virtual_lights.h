@@ -47,12 +47,12 @@ public:
     Rgb shade(const Scatterer& place, Rng& rng, int* vertices = nullptr) const;
 
     const std::vector<VirtualLight>& lights() const { return lights_; }
-    // What a light reflects in all directions [W].
-    Rgb flux(const VirtualLight& light) const { return light.flux; }
     // What a light of its own surface's colour sends that way [W/(m^2 sr)]. `toward`: unit, world.
     Rgb radiance(const VirtualLight& light, const dvec3& toward) const;
     // How many lights speak for a place where a ray has met a surface, up to LightShares::kMost; 0: paths go on there.
     int speaking_for(const SurfaceHit& hit, const SurfacePoint& point) const { return shares_at(hit, point).count; }
+    // Whether the Lambert base of a place that a ray has met is among what the lights reflect, by their base_flux.
+    bool hold_base(const SurfaceHit& hit, const SurfacePoint& point) const;
     const Profiles& profiles() const { return profiles_; }
     const VirtualLightReport& report() const { return report_; }
 
