@@ -18,6 +18,9 @@ dvec3 middle(const RayLightBounds& b) {
 constexpr double kBelowHorizon = 0.05;
 // Phase functions are no sharper than this, so that none of a box is left out that might shine after all.
 constexpr double kSharpest = 0.8;
+// Of all choices, by power alone: where boxes hold lights of many headings, one that shines straight at the camera may
+// look to the tree as if it were a million times weaker than it is, and then outshines all others when it is found.
+constexpr double kByPower = 0.125;
 // Directions from a box to a ray at which the phase functions are asked.
 constexpr int kDirections = 2;
 
@@ -153,17 +156,37 @@ double RayLightTree::share_of_left(const Node& node, const RayLightReceiver& rec
     return left + right > 0.0 ? left / (left + right) : -1.0;
 }
 
+double RayLightTree::share_of_power(const Node& node) const {
+    const double left = nodes_[node.left].bounds.scattered, right = nodes_[node.right].bounds.scattered;
+    return left + right > 0.0 ? left / (left + right) : -1.0;
+}
+
 std::optional<RayLightTree::Choice> RayLightTree::choose(const RayLightReceiver& receiver, double u) const {
     if (nodes_.empty())
         return std::nullopt;
-    const auto found = descend(nodes_, u, [&](const Node& n) { return share_of_left(n, receiver); });
+    const bool by_power = u < kByPower;
+    const auto found = by_power ? descend(nodes_, u / kByPower, [&](const Node& n) { return share_of_power(n); })
+                                : descend(nodes_, (u - kByPower) / (1.0 - kByPower),
+                                          [&](const Node& n) { return share_of_left(n, receiver); });
     if (!found)
         return std::nullopt;
-    return Choice{nodes_[found->leaf].right, found->probability, 1 + 2 * found->branches};
+    const std::size_t light = nodes_[found->leaf].right;
+    const double by_receiver = by_power ? probability_by_receiver(receiver, light) : found->probability;
+    return Choice{light, mixed(by_receiver, light), 1 + 2 * found->branches};
+}
+
+double RayLightTree::probability_by_receiver(const RayLightReceiver& receiver, std::size_t light) const {
+    return descent_probability(nodes_, leaf_of_[light], [&](const Node& n) { return share_of_left(n, receiver); });
+}
+
+double RayLightTree::mixed(double by_receiver, std::size_t light) const {
+    const double all = nodes_[0].bounds.scattered;
+    const double by_power = all > 0.0 ? nodes_[leaf_of_[light]].bounds.scattered / all : 0.0;
+    return std::lerp(by_receiver, by_power, kByPower);
 }
 
 double RayLightTree::probability(const RayLightReceiver& receiver, std::size_t light) const {
-    return descent_probability(nodes_, leaf_of_[light], [&](const Node& n) { return share_of_left(n, receiver); });
+    return mixed(probability_by_receiver(receiver, light), light);
 }
 
 }  // namespace brisance

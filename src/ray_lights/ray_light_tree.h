@@ -64,6 +64,9 @@ private:
     };
     std::uint32_t build(std::span<const RayLightBounds> lights, std::span<std::uint32_t> order, std::uint32_t parent);
     double share_of_left(const Node& node, const RayLightReceiver& receiver) const;
+    double share_of_power(const Node& node) const;
+    double probability_by_receiver(const RayLightReceiver& receiver, std::size_t light) const;
+    double mixed(double by_receiver, std::size_t light) const;
 
     double mean_cosine_;
     std::vector<Node> nodes_;
