@@ -16,6 +16,7 @@ namespace brisance {
 namespace {
 
 constexpr std::size_t kLeastBatch = 2048;  // lights with maps at once, below which resolution is given up instead
+constexpr float kNearestOfBalls = 0.25f;  // first distance of the maps of the finest level's lights, over their spacing
 
 // From any light of the level to the farthest corner of the medium: beyond, nothing dims the light any more.
 float farthest_distance(const GridLevel& level, const Medium& medium) {
@@ -36,7 +37,7 @@ ShadowMapLayout layout_of(const LightField& field, const GridLevel& level, bool 
         std::min(128, 2 * static_cast<int>(std::lround(0.5f * growth * field.settings.shadow_resolution)));
     layout.distances = field.settings.shadow_distances;
     const float radius = field.alpha * level.spacing;
-    layout.near_distance = 0.5f * radius;
+    layout.near_distance = level.level == field.bottom ? kNearestOfBalls * level.spacing : 0.5f * radius;
     layout.far_distance = 2.0f * radius;
     layout.for_outside = field.escape != nullptr;
     layout.range = layout.for_outside ? 1.0f / FootprintPicker::kLeastShare : 1.0f;
@@ -158,9 +159,9 @@ private:
             lights.intensity = level.intensity.data();
             lights.directional = level.directional.empty() ? nullptr : level.directional.data();
             lights.radius = field_.alpha * level.spacing;
-            lights.bottom = level.level == 0;
+            lights.bottom = level.level == field_.bottom;
             lights.top = top;
-            lights.ball = std::cbrt(3.0f / (4.0f * kPi)) * field_.pyramid->medium().spacing;
+            lights.ball = std::cbrt(3.0f / (4.0f * kPi)) * field_.pyramid->medium().spacing * float(1 << level.level);
             lights.shadow = field_.settings.shadows == ShadowMethod::None ? FarLights::Shadow::None
                             : maps && level.level > 0                     ? FarLights::Shadow::Maps
                                                                           : FarLights::Shadow::Exact;
@@ -314,7 +315,8 @@ Gathered gather_at_points(const LightField& field, const GridLevel& bottom, cons
     Gathered out;
     out.resize(receivers.size(), !receivers.out_x.empty(), moments);
     FarGather gather(field, receivers, mean_cosine, out, progress, kind);
-    costs.push_back(gather.run(bottom, false));
+    if (field.bottom == 0)
+        costs.push_back(gather.run(bottom, false));
     gather_upper_levels(field, gather, costs);
     return out;
 }

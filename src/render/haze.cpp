@@ -152,12 +152,14 @@ std::size_t Haze::point_count() const {
            static_cast<std::size_t>(std::count(single_.begin(), single_.end(), std::uint8_t{1}));
 }
 
-Gathered Haze::gather(const LightField& field, const GridLevel& bottom, const LatticeRequest& request,
-                      std::vector<LevelCost>& costs, Progress& progress) const {
+Gathered Haze::gather(const LightField& field, const GridLevel& bottom, const LightField* of_haze,
+                      const LatticeRequest& request, std::vector<LevelCost>& costs, Progress& progress) const {
     const Medium& medium = field.pyramid->medium();
     LatticeRequest single = request;
     single.needed = &single_;
     Gathered out = gather_at_nodes(field, single, costs, progress);
+    if (of_haze)
+        out.add(gather_from_outside(*of_haze, single, costs, progress));
     Receivers receivers;
     for (const std::uint32_t b : even_) {
         std::vector<vec3> points, directions;
@@ -168,8 +170,11 @@ Gathered Haze::gather(const LightField& field, const GridLevel& bottom, const La
         }
         receivers.add_block(points, directions);
     }
-    const Gathered few = gather_at_points(field, bottom, receivers, request.mean_cosine, costs, progress,
-                                          ReceiverKind::Medium, request.moments);
+    Gathered few = gather_at_points(field, bottom, receivers, request.mean_cosine, costs, progress,
+                                    ReceiverKind::Medium, request.moments);
+    if (of_haze)
+        few.add(gather_at_points(*of_haze, {}, receivers, request.mean_cosine, costs, progress, ReceiverKind::Medium,
+                                 request.moments));
     const std::size_t nodes = nodes_.size(), asked = receivers.size();
     const auto spread = [&](const std::vector<float>& from, std::vector<float>& to) {
         parallel_for(even_.size(), [&](std::size_t k) {

@@ -31,10 +31,13 @@ public:
     // Of thin nodes the mean transmittance to the outside (gathering/escape.h), below 0 for others.
     const std::vector<float>& open() const { return open_; }
 
+    // In which, and around which, nothing is smoke proper.
+    const std::vector<std::uint32_t>& even_bricks() const { return even_; }
+
     // What arrives at nodes of haze from lights that serve receivers outside; as gather_at_nodes(), unsharpened.
-    // `bottom`: bottom_level() of the field.
-    Gathered gather(const LightField& field, const GridLevel& bottom, const LatticeRequest& request,
-                    std::vector<LevelCost>& costs, Progress& progress) const;
+    // `bottom`: bottom_level() of the field; `of_haze`: the lights of even bricks where they stand apart, or null.
+    Gathered gather(const LightField& field, const GridLevel& bottom, const LightField* of_haze,
+                    const LatticeRequest& request, std::vector<LevelCost>& costs, Progress& progress) const;
     // Puts it in the place of `all` by weight; both planar over the nodes.
     void mix(const Gathered& of_haze, Gathered& all) const;
     const std::vector<std::uint8_t>& nodes() const { return nodes_; }

@@ -10,6 +10,7 @@
 #include "render/cell_field.h"
 #include "render/extended_light.h"
 #include "render/haze.h"
+#include "render/haze_lights.h"
 #include "render/integrate.h"
 #include "render/plan.h"
 #include "render/statistics.h"
@@ -85,6 +86,7 @@ private:
         ShadowMapCache maps;
         std::vector<float> escape;  // for receivers outside: per node, how likely light is to leave the medium
         LightingGrid for_haze;
+        std::unique_ptr<HazeLights> of_haze;  // of even haze, apart from the rest; or none
         Rgb scale{1.0f};
         std::unique_ptr<ExtendedLight> aim;  // for surfaces
         Rgb escape_scale{1.0f};              // for receivers outside
@@ -93,7 +95,10 @@ private:
     void keep(KeptLights& lights, float alpha);
     // Where nodes are haze: from lights that were kept, in the place of what was gathered.
     void light_haze(KeptLights& from, const LatticeRequest& ask, Gathered& gathered);
-    void balance_escape(KeptLights& lights);
+    void part_haze_lights(KeptLights& lights, float alpha);
+    // At points outside, or on surfaces.
+    Gathered from_outside(const KeptLights& lights, const Receivers& receivers) const;
+    void balance_escape(KeptLights& lights, const dvec3& power, const EscapeEstimate& escape);
     std::unique_ptr<KeptLights> fire_, smoke_;
 };
 
