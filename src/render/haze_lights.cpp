@@ -20,15 +20,23 @@ bool thin_enough(const Medium& medium, const std::vector<std::uint32_t>& bricks)
     return most * medium.spacing * float(1 << kFinestHazeLights) <= kMostAcross;
 }
 
+// `width` values per node.
 template <class T>
-void move_bricks(const std::vector<std::uint32_t>& bricks, std::vector<T>& from, std::vector<T>& to, std::size_t width) {
-    to.assign(from.size(), T(0.0f));
-    for (const std::uint32_t b : from.empty() ? std::vector<std::uint32_t>{} : bricks) {
-        const auto first = std::ptrdiff_t(b * width * BrickLattice::kNodes);
-        const auto count = std::ptrdiff_t(width * BrickLattice::kNodes);
-        std::copy_n(from.begin() + first, count, to.begin() + first);
-        std::fill_n(from.begin() + first, count, T(0.0f));
-    }
+void copy_bricks(const std::vector<std::uint32_t>& bricks, const std::vector<T>& from, std::vector<T>& to,
+                 std::size_t width) {
+    const std::size_t count = from.empty() ? 0 : width * BrickLattice::kNodes;
+    for (const std::uint32_t b : bricks)
+        std::copy_n(from.begin() + std::ptrdiff_t(b * count), count, to.begin() + std::ptrdiff_t(b * count));
+}
+
+template <class T>
+std::vector<T> take_bricks(const std::vector<std::uint32_t>& bricks, std::vector<T>& from, std::size_t width) {
+    std::vector<T> taken(from.size(), T(0.0f));
+    copy_bricks(bricks, from, taken, width);
+    const std::size_t count = from.empty() ? 0 : width * BrickLattice::kNodes;
+    for (const std::uint32_t b : bricks)
+        std::fill_n(from.begin() + std::ptrdiff_t(b * count), count, T(0.0f));
+    return taken;
 }
 
 }  // namespace
@@ -44,17 +52,18 @@ std::unique_ptr<HazeLights> take_haze_lights(const Medium& medium, const std::ve
     });
     if (dark)
         return nullptr;
-    ScatteredLight taken;
-    move_bricks(bricks, from.light.intensity, taken.intensity, 1);
-    move_bricks(bricks, from.light.directional, taken.directional, 24);
-    for (const std::uint32_t b : bricks)
-        std::fill_n(from.weight.begin() + std::ptrdiff_t(b) * BrickLattice::kNodes, BrickLattice::kNodes, 0.0f);
+    ScatteredLight taken{take_bricks(bricks, from.light.intensity, 1), take_bricks(bricks, from.light.directional, 24)};
+    from = build_hierarchy(medium, std::move(from.light), levels);
     auto haze = std::make_unique<HazeLights>();
     haze->lights = build_hierarchy(medium, std::move(taken), levels);
     auto& grid = haze->lights.grid.levels;
     grid.erase(grid.begin(), grid.begin() + kFinestHazeLights - 1);
-    drop_coarse_levels(haze->lights.grid, kLeastLightsForHaze);
     return haze;
+}
+
+void give_back(const HazeLights& taken, const std::vector<std::uint32_t>& bricks, ScatteredLight& light) {
+    copy_bricks(bricks, taken.lights.light.intensity, light.intensity, 1);
+    copy_bricks(bricks, taken.lights.light.directional, light.directional, 24);
 }
 
 }  // namespace brisance

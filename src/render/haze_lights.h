@@ -24,9 +24,12 @@ struct HazeLights {
     ShadowMapCache maps;
 };
 
-// Takes the light of `bricks` out of `from`, whose grid is left to be built anew. Null where they send none, or where
+// Takes the light of `bricks` out of `from`, which becomes a hierarchy of the rest. Null where they send none, or where
 // they are too dense for it; then `from` stays as it is.
 std::unique_ptr<HazeLights> take_haze_lights(const Medium& medium, const std::vector<std::uint32_t>& bricks,
                                              HierarchyLights& from);
+
+// What was taken shines again in `light`.
+void give_back(const HazeLights& taken, const std::vector<std::uint32_t>& bricks, ScatteredLight& light);
 
 }  // namespace brisance

@@ -57,7 +57,9 @@ private:
     LatticeRequest last_request() const;
     std::vector<ScatteredLight> orders_of_scattering(const Gathered& first);
     void light_from_smoke(const Gathered& first);
-    Gathered gather_last_flight(const HierarchyLights& lights, int order, nlohmann::ordered_json& balances,
+    Gathered gather_from_smoke(HierarchyLights& lights, std::vector<LevelCost>& costs);
+    // Leaves the lights themselves, but not always their grid.
+    Gathered gather_last_flight(HierarchyLights& lights, int order, nlohmann::ordered_json& balances,
                                 std::vector<LevelCost>& costs);
     std::vector<Rgb> source_function(const Gathered& gathered) const;
     bool orders_apart() const { return shot_.output.bounce_layers && !marching() && !lights_surfaces(); }

@@ -103,6 +103,7 @@ void Lighting::part_haze_lights(KeptLights& lights, float alpha) {
     if (!lights.of_haze)
         return;
     HazeLights& haze = *lights.of_haze;
+    drop_coarse_levels(haze.lights.grid, kLeastLightsForHaze);
     haze.field = haze.lights.field(pyramid_, alpha, shot_.lighting, &haze.maps);
     haze.field.bottom = kFinestHazeLights;
     haze.field.occluders = nullptr;
