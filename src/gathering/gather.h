@@ -33,7 +33,13 @@ struct LevelCost {
 
 // Shadow maps kept for a second gather from the same grid: its positions and medium must not have changed.
 struct ShadowMapCache {
-    std::vector<std::vector<std::uint16_t>> levels;  // empty until made
+    struct Level {
+        std::vector<std::uint16_t> maps;    // empty until made
+        std::vector<std::uint32_t> map_of;  // on demand: of each light, its number among the maps (far_kernels.h)
+    };
+    std::vector<Level> levels;
+    // Only those of lights that some receiver asks, which changes no bit: for few receivers among many lights.
+    bool on_demand = false;
 };
 
 // Lights of all levels in one medium.

@@ -106,15 +106,12 @@ void Haze::find_even_bricks(const Medium& medium, const std::vector<float>& thin
                 wholly[b] &= thin[i] == fullest || medium.extinction[i] == 0.0f;
         },
         64);
+    even_parts_ = EvenParts(lattice, medium.reference_node, wholly);
     const float brick = BrickLattice::kSize * medium.spacing;
     for (std::uint32_t b = 0; b < wholly.size(); ++b) {
         const vec3 middle = medium.local_of_node(lattice.first_node(b) + BrickLattice::kSize / 2);
-        bool even = !eye_ || glm::distance(*eye_, middle) > kAroundCamera * brick;
-        for (int k = 0; k < 27 && even; ++k) {
-            const int next = lattice.find(lattice.brick(b) + ivec3(k / 9, k / 3 % 3, k % 3) - 1);
-            even = next < 0 || wholly[next];
-        }
-        if (even)
+        const bool slow = !eye_ || glm::distance(*eye_, middle) > kAroundCamera * brick;
+        if (slow && even_parts_.at(lattice.brick(b) - (medium.reference_node >> 3)))
             even_.push_back(b);
     }
 }

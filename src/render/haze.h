@@ -15,6 +15,7 @@
 
 #include "gathering/gather.h"
 #include "gathering/point_depths.h"
+#include "medium/even_parts.h"
 
 namespace brisance {
 
@@ -33,6 +34,7 @@ public:
 
     // In which, and around which, nothing is smoke proper.
     const std::vector<std::uint32_t>& even_bricks() const { return even_; }
+    const EvenParts& even_parts() const { return even_parts_; }  // the same, but not for the camera's sake
 
     // What arrives at nodes of haze from lights that serve receivers outside; as gather_at_nodes(), unsharpened.
     // `bottom`: bottom_level() of the field; `of_haze`: the lights of even bricks where they stand apart, or null.
@@ -52,6 +54,7 @@ private:
     std::vector<std::uint8_t> nodes_;   // with a weight above zero
     std::vector<std::uint8_t> single_;  // those among them that ask themselves
     std::vector<std::uint32_t> even_;   // bricks that ask at a few points
+    EvenParts even_parts_;
 };
 
 }  // namespace brisance

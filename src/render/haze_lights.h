@@ -21,7 +21,7 @@ constexpr int kFinestHazeLights = 2;
 struct HazeLights {
     HierarchyLights lights;
     LightField field;
-    ShadowMapCache maps;
+    ShadowMapCache maps{{}, true};
 };
 
 // Takes the light of `bricks` out of `from`, which becomes a hierarchy of the rest. Null where they send none, or where

@@ -84,6 +84,8 @@ Lighting::Lighting(const Shot& shot, const Plan& plan, const Medium& medium, con
     if (!marching() && (plan.single || plan.multiple))
         haze_ =
             Haze(medium, depths_, needed_, plan.directional ? std::optional(vec3(camera.eye_local())) : std::nullopt);
+    if (!haze_.empty())
+        pyramid_.set_even_parts(&haze_.even_parts());
     Gathered first;
     if (plan.emission)
         first = light_from_fire();

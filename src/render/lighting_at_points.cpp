@@ -131,6 +131,7 @@ void Lighting::keep(KeptLights& lights, float alpha) {
             drop_coarse_levels(lights.lights.grid, kLeastLightsForSurfaces);
     }
     lights.maps = {};
+    lights.maps.on_demand = true;
     lights.field = lights.lights.field(pyramid_, alpha, shot_.lighting, &lights.maps);
     if (outside) {
         lights.field.escape = &lights.escape;
@@ -152,7 +153,7 @@ void Lighting::light_haze(KeptLights& from, const LatticeRequest& ask, Gathered&
         return;
     const Stopwatch watch;
     LightField field = from.field;
-    ShadowMapCache maps, maps_of_haze;
+    ShadowMapCache maps{{}, true}, maps_of_haze{{}, true};
     if (lights_surfaces()) {
         field.grid = &from.for_haze;
         field.occluders = pyramid_.occluders();
