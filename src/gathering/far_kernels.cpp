@@ -14,18 +14,22 @@
 #include "medium/extinction_sampler-inl.h"
 #include "medium/phase-inl.h"
 
-#ifndef BRISANCE_GATHERING_IN_RANGE_
-#define BRISANCE_GATHERING_IN_RANGE_
+#ifndef BRISANCE_GATHERING_ASKED_RANGE_
+#define BRISANCE_GATHERING_ASKED_RANGE_
 namespace brisance {
 
-// Whether a point of the box may be as far from the light at `p` as its level is asked at.
-inline bool in_range(const FarLights& l, const Box& box, const vec3& p) {
-    const float inner = l.bottom ? -1.0f : 0.25f * l.radius * l.radius;
-    const float outer = l.top ? 1e38f : 4.0f * l.radius * l.radius;
-    const vec3 nearest = glm::max(glm::max(box.low - p, p - box.high), vec3(0.0f));
-    const vec3 farthest = glm::max(glm::abs(box.low - p), glm::abs(box.high - p));
-    return glm::dot(nearest, nearest) < outer && glm::dot(farthest, farthest) > inner;
-}
+// Squares of the distances between which a level's lights are asked.
+struct AskedRange {
+    explicit AskedRange(const FarLights& l)
+        : inner(l.bottom ? -1.0f : 0.25f * l.radius * l.radius), outer(l.top ? 1e38f : 4.0f * l.radius * l.radius) {}
+    // May a point of the box be as far from `p`?
+    bool meets(const Box& box, const vec3& p) const {
+        const vec3 nearest = glm::max(glm::max(box.low - p, p - box.high), vec3(0.0f));
+        const vec3 farthest = glm::max(glm::abs(box.low - p), glm::abs(box.high - p));
+        return glm::dot(nearest, nearest) < outer && glm::dot(farthest, farthest) > inner;
+    }
+    float inner, outer;
+};
 
 }  // namespace brisance
 #endif
@@ -248,12 +252,13 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Rece
 std::uint64_t gather(const FarLights& l, const Receivers& r, const ReceiverBlock& block, const FarOutput& out) {
     const D d;
     const std::size_t lanes = hn::Lanes(d);
+    const AskedRange range(l);
     std::uint64_t evaluations = 0;
     for (const std::uint32_t i : l.list) {
         if (l.map_of && l.map_of[i] == FarLights::kNoMap)  // nobody asks
             continue;
         for (std::size_t g = block.first_group; g < block.first_group + block.group_count; ++g) {
-            if (!in_range(l, r.group_bounds[g], l.position[i]))
+            if (!range.meets(r.group_bounds[g], l.position[i]))
                 continue;
             for (std::size_t k = 0; k < Receivers::kGroup; k += lanes)
                 light_group(d, l, i, r, g * Receivers::kGroup + k, out);
@@ -283,8 +288,9 @@ std::uint64_t gather_far(const FarLights& lights, const Receivers& receivers, co
 }
 
 bool asks(const FarLights& lights, std::uint32_t light, const Receivers& receivers, const ReceiverBlock& block) {
+    const AskedRange range(lights);
     for (std::size_t g = block.first_group; g < block.first_group + block.group_count; ++g)
-        if (in_range(lights, receivers.group_bounds[g], lights.position[light]))
+        if (range.meets(receivers.group_bounds[g], lights.position[light]))
             return true;
     return false;
 }
