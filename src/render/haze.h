@@ -6,7 +6,8 @@
 // haze fades in with its share of the medium, so that neither space nor time has a seam.
 //
 // These lights are many, and so may be haze's nodes; but where all is haze for some voxels around, light changes
-// slowly: such bricks ask at 27 points and interpolate. Neighbours share the points of their common face.
+// slowly: such bricks ask at 27 points and interpolate. Neighbours share the points of their common face. What they
+// scatter themselves has lights of its own (haze_lights.h), and shadow rays cross them in long steps (even_parts.h).
 #pragma once
 
 #include <cstdint>

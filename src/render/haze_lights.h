@@ -3,7 +3,7 @@
 // It is most of the nodes and little of the light, and changes slowly from one node to the next. Its lights therefore
 // begin at a coarser level of the hierarchy, of which every light is a ball of its own spacing and asks its shadow map
 // from close by on, and are spared the care that dense smoke's skin needs (outside_lights.h): a light's rays start at
-// its centre, and the coarsest level is as coarse as haze bears. In a room full of haze they are a tenth as many, each
+// its centre, and the coarsest level is as coarse as haze bears. In a room full of haze they are a sixth as many, each
 // with an eighth of the rays.
 #pragma once
 
