@@ -14,6 +14,26 @@
 #include "medium/extinction_sampler-inl.h"
 #include "medium/phase-inl.h"
 
+#ifndef BRISANCE_GATHERING_ASKED_RANGE_
+#define BRISANCE_GATHERING_ASKED_RANGE_
+namespace brisance {
+
+// Squares of the distances between which a level's lights are asked.
+struct AskedRange {
+    explicit AskedRange(const FarLights& l)
+        : inner(l.bottom ? -1.0f : 0.25f * l.radius * l.radius), outer(l.top ? 1e38f : 4.0f * l.radius * l.radius) {}
+    // May a point of the box be as far from `p`?
+    bool meets(const Box& box, const vec3& p) const {
+        const vec3 nearest = glm::max(glm::max(box.low - p, p - box.high), vec3(0.0f));
+        const vec3 farthest = glm::max(glm::abs(box.low - p), glm::abs(box.high - p));
+        return glm::dot(nearest, nearest) < outer && glm::dot(farthest, farthest) > inner;
+    }
+    float inner, outer;
+};
+
+}  // namespace brisance
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace brisance {
 namespace HWY_NAMESPACE {
@@ -192,10 +212,10 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Rece
     V w = hn::Mul(b, l.bottom ? ball_kernel(d, l.ball, distance) : hn::Mul(inverse, inverse));
     const V minus = hn::Neg(inverse);
     const V wx = hn::Mul(way[0], minus), wy = hn::Mul(way[1], minus), wz = hn::Mul(way[2], minus);
-    if (l.shadow == FarLights::Shadow::Maps)
-        w = hn::Mul(
-            w, map_transmittance(d, l.layout, l.maps + (i - l.list_base) * l.layout.stride(), wx, wy, wz, distance));
-    else if (l.shadow == FarLights::Shadow::Exact) {
+    if (l.shadow == FarLights::Shadow::Maps) {
+        const std::size_t map = l.map_of ? l.map_of[i] : i - l.list_base;
+        w = hn::Mul(w, map_transmittance(d, l.layout, l.maps + map * l.layout.stride(), wx, wy, wz, distance));
+    } else if (l.shadow == FarLights::Shadow::Exact) {
         V t = exact_transmittance(d, l, p, way, distance);
         if (l.bottom)
             t = ball_transmittance(d, l.ball, distance, t, radius_depth(d, l, r, at));
@@ -229,25 +249,16 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Rece
     }
 }
 
-// Squares of the least and greatest distance from a point to a box.
-HWY_INLINE void distances_to(const Box& box, const vec3& p, float& least, float& greatest) {
-    const vec3 nearest = glm::max(glm::max(box.low - p, p - box.high), vec3(0.0f));
-    const vec3 farthest = glm::max(glm::abs(box.low - p), glm::abs(box.high - p));
-    least = glm::dot(nearest, nearest);
-    greatest = glm::dot(farthest, farthest);
-}
-
 std::uint64_t gather(const FarLights& l, const Receivers& r, const ReceiverBlock& block, const FarOutput& out) {
     const D d;
     const std::size_t lanes = hn::Lanes(d);
-    const float inner = l.bottom ? -1.0f : 0.25f * l.radius * l.radius;
-    const float outer = l.top ? 1e38f : 4.0f * l.radius * l.radius;
+    const AskedRange range(l);
     std::uint64_t evaluations = 0;
     for (const std::uint32_t i : l.list) {
+        if (l.map_of && l.map_of[i] == FarLights::kNoMap)  // nobody asks
+            continue;
         for (std::size_t g = block.first_group; g < block.first_group + block.group_count; ++g) {
-            float least, greatest;
-            distances_to(r.group_bounds[g], l.position[i], least, greatest);
-            if (least >= outer || greatest <= inner)
+            if (!range.meets(r.group_bounds[g], l.position[i]))
                 continue;
             for (std::size_t k = 0; k < Receivers::kGroup; k += lanes)
                 light_group(d, l, i, r, g * Receivers::kGroup + k, out);
@@ -274,6 +285,14 @@ HWY_EXPORT(instruction_set);
 std::uint64_t gather_far(const FarLights& lights, const Receivers& receivers, const ReceiverBlock& block,
                          const FarOutput& output) {
     return HWY_DYNAMIC_DISPATCH(gather)(lights, receivers, block, output);
+}
+
+bool asks(const FarLights& lights, std::uint32_t light, const Receivers& receivers, const ReceiverBlock& block) {
+    const AskedRange range(lights);
+    for (std::size_t g = block.first_group; g < block.first_group + block.group_count; ++g)
+        if (range.meets(receivers.group_bounds[g], lights.position[light]))
+            return true;
+    return false;
 }
 
 const char* gather_instruction_set() {

@@ -26,6 +26,8 @@ struct FarLights {
     enum class Shadow { Maps, Exact, None } shadow;
     const std::uint16_t* maps;  // of light list_base and the following ones
     std::uint32_t list_base;
+    static constexpr std::uint32_t kNoMap = ~0u;
+    const std::uint32_t* map_of;  // of each light, its number among `maps` or kNoMap; null: as above
     ShadowMapLayout layout;
     const PackedExtinction* extinction;  // level 0, for exact shadows
     mat3 index_from_local;
@@ -45,6 +47,9 @@ struct FarOutput {
 // blend weight did not exclude for a whole group).
 std::uint64_t gather_far(const FarLights& lights, const Receivers& receivers, const ReceiverBlock& block,
                          const FarOutput& output);
+
+// Whether some receiver of the block may be as far from the light as its level is asked at.
+bool asks(const FarLights& lights, std::uint32_t light, const Receivers& receivers, const ReceiverBlock& block);
 
 // Name of the instruction set in use, for reports.
 const char* gather_instruction_set();

@@ -16,6 +16,7 @@ namespace brisance {
 namespace {
 
 constexpr std::size_t kLeastBatch = 2048;  // lights with maps at once, below which resolution is given up instead
+constexpr float kNearestOfBalls = 0.25f;  // first distance of the maps of the finest level's lights, over their spacing
 
 // From any light of the level to the farthest corner of the medium: beyond, nothing dims the light any more.
 float farthest_distance(const GridLevel& level, const Medium& medium) {
@@ -36,7 +37,7 @@ ShadowMapLayout layout_of(const LightField& field, const GridLevel& level, bool 
         std::min(128, 2 * static_cast<int>(std::lround(0.5f * growth * field.settings.shadow_resolution)));
     layout.distances = field.settings.shadow_distances;
     const float radius = field.alpha * level.spacing;
-    layout.near_distance = 0.5f * radius;
+    layout.near_distance = level.level == field.bottom ? kNearestOfBalls * level.spacing : 0.5f * radius;
     layout.far_distance = 2.0f * radius;
     layout.for_outside = field.escape != nullptr;
     layout.range = layout.for_outside ? 1.0f / FootprintPicker::kLeastShare : 1.0f;
@@ -109,7 +110,7 @@ public:
         cost.lights = level.size();
         if (level.size() == 0 || receivers_.size() == 0)
             return cost;
-        const bool maps = field_.settings.shadows == ShadowMethod::Maps && level.level > 0;
+        const bool maps = has_maps(level);
         ShadowMapLayout layout;
         std::size_t batch = level.size();
         if (maps) {
@@ -122,54 +123,96 @@ public:
             cost.map_bytes = layout.bytes_per_light() * level.size();
             cost.held_bytes = layout.bytes_per_light() * batch;
         }
-        std::vector<std::uint16_t> own;
         const bool keep = maps && field_.cache && batch == level.size();
         if (keep)
             field_.cache->levels.resize(std::max<std::size_t>(field_.cache->levels.size(), level.level + 1));
-        std::vector<std::uint16_t>& transmittance = keep ? field_.cache->levels[level.level] : own;
-        const bool made = keep && !transmittance.empty();
+        ShadowMapCache::Level own;
+        ShadowMapCache::Level& made = keep ? field_.cache->levels[level.level] : own;
+        const bool on_demand = keep && field_.cache->on_demand;
         for (std::size_t first = 0; first < level.size(); first += batch) {
             const std::size_t count = std::min(batch, level.size() - first);
+            const FarLights lights = far_lights(level, top, layout, first);
             Stopwatch watch;
-            if (maps && !made)
+            if (on_demand)
+                make_asked_maps(level, lights, made);
+            else if (maps && !(keep && !made.maps.empty()))
                 build_shadow_maps(*field_.pyramid, level, *field_.weight, field_.escape, layout, first, count,
-                                  transmittance, field_.occluders);
+                                  made.maps, field_.occluders);
             cost.map_seconds += watch.seconds();
             watch = Stopwatch();
-            cost.evaluations += gather_batch(level, top, layout, first, count, transmittance.data());
+            cost.evaluations += gather_batch(level, lights, count, made);
             cost.gather_seconds += watch.seconds();
             progress_.fraction(double(first + count) / level.size());
         }
+        if (on_demand)
+            cost.map_bytes = cost.held_bytes = made.maps.size() * sizeof(std::uint16_t);
         return cost;
     }
 
 private:
-    std::uint64_t gather_batch(const GridLevel& level, bool top, const ShadowMapLayout& layout, std::size_t first,
-                               std::size_t count, const std::uint16_t* maps) {
+    FarLights far_lights(const GridLevel& level, bool top, const ShadowMapLayout& layout, std::size_t first) const {
+        FarLights lights{};
+        lights.position = level.position.data();
+        lights.intensity = level.intensity.data();
+        lights.directional = level.directional.empty() ? nullptr : level.directional.data();
+        lights.radius = field_.alpha * level.spacing;
+        lights.bottom = level.level == field_.bottom;
+        lights.top = top;
+        lights.ball = std::cbrt(3.0f / (4.0f * kPi)) * field_.pyramid->medium().spacing * float(1 << level.level);
+        lights.shadow = field_.settings.shadows == ShadowMethod::None ? FarLights::Shadow::None
+                        : has_maps(level)                             ? FarLights::Shadow::Maps
+                                                                      : FarLights::Shadow::Exact;
+        lights.list_base = static_cast<std::uint32_t>(first);
+        lights.layout = layout;
+        lights.extinction = &fine_;
+        lights.index_from_local = field_.pyramid->medium().index_from_local;
+        lights.step_nodes = 0.5f;
+        return lights;
+    }
+
+    bool has_maps(const GridLevel& level) const {
+        return field_.settings.shadows == ShadowMethod::Maps && level.level > 0;
+    }
+
+    // Adds to `made` the maps of lights that some receiver asks and that have none yet.
+    void make_asked_maps(const GridLevel& level, const FarLights& lights, ShadowMapCache::Level& made) {
+        made.map_of.resize(level.size(), FarLights::kNoMap);
+        std::vector<std::uint8_t> asked(level.size(), 0);
+        parallel_for(receivers_.blocks().size(), [&](std::size_t b) {
+            thread_local std::vector<std::uint32_t> near;
+            const ReceiverBlock& block = receivers_.blocks()[b];
+            interaction_list(field_, level, lights.top, block.bounds, near);
+            for (const std::uint32_t i : near) {
+                std::atomic_ref<std::uint8_t> mark(asked[i]);
+                if (made.map_of[i] == FarLights::kNoMap && mark.load(std::memory_order_relaxed) == 0 &&
+                    asks(lights, i, receivers_, block))
+                    mark.store(1, std::memory_order_relaxed);
+            }
+        });
+        std::vector<std::uint32_t> list;
+        const std::size_t stride = lights.layout.stride(), before = made.maps.size();
+        for (std::uint32_t i = 0; i < asked.size(); ++i)
+            if (asked[i]) {
+                made.map_of[i] = static_cast<std::uint32_t>(before / stride + list.size());
+                list.push_back(i);
+            }
+        made.maps.resize(before + list.size() * stride);
+        build_shadow_maps(*field_.pyramid, level, *field_.weight, field_.escape, lights.layout, list,
+                          made.maps.data() + before, field_.occluders);
+    }
+
+    std::uint64_t gather_batch(const GridLevel& level, const FarLights& all, std::size_t count,
+                               const ShadowMapCache::Level& made) {
         std::vector<std::uint64_t> evaluations(receivers_.blocks().size(), 0);
         parallel_for(receivers_.blocks().size(), [&](std::size_t b) {
             thread_local std::vector<std::uint32_t> list;
             const ReceiverBlock& block = receivers_.blocks()[b];
-            interaction_list(field_, level, top, block.bounds, list);
-            std::erase_if(list, [&](std::uint32_t i) { return i < first || i >= first + count; });
-            FarLights lights{};
+            interaction_list(field_, level, all.top, block.bounds, list);
+            std::erase_if(list, [&](std::uint32_t i) { return i < all.list_base || i >= all.list_base + count; });
+            FarLights lights = all;
             lights.list = list;
-            lights.position = level.position.data();
-            lights.intensity = level.intensity.data();
-            lights.directional = level.directional.empty() ? nullptr : level.directional.data();
-            lights.radius = field_.alpha * level.spacing;
-            lights.bottom = level.level == 0;
-            lights.top = top;
-            lights.ball = std::cbrt(3.0f / (4.0f * kPi)) * field_.pyramid->medium().spacing;
-            lights.shadow = field_.settings.shadows == ShadowMethod::None ? FarLights::Shadow::None
-                            : maps && level.level > 0                     ? FarLights::Shadow::Maps
-                                                                          : FarLights::Shadow::Exact;
-            lights.maps = maps;
-            lights.list_base = static_cast<std::uint32_t>(first);
-            lights.layout = layout;
-            lights.extinction = &fine_;
-            lights.index_from_local = field_.pyramid->medium().index_from_local;
-            lights.step_nodes = 0.5f;
+            lights.maps = made.maps.data();
+            lights.map_of = made.map_of.empty() ? nullptr : made.map_of.data();
             const FarOutput output{receivers_.size(),
                                    out_.fluence.data(),
                                    out_.scattered.empty() ? nullptr : out_.scattered.data(),
@@ -314,7 +357,8 @@ Gathered gather_at_points(const LightField& field, const GridLevel& bottom, cons
     Gathered out;
     out.resize(receivers.size(), !receivers.out_x.empty(), moments);
     FarGather gather(field, receivers, mean_cosine, out, progress, kind);
-    costs.push_back(gather.run(bottom, false));
+    if (field.bottom == 0)
+        costs.push_back(gather.run(bottom, false));
     gather_upper_levels(field, gather, costs);
     return out;
 }

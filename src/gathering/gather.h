@@ -33,7 +33,13 @@ struct LevelCost {
 
 // Shadow maps kept for a second gather from the same grid: its positions and medium must not have changed.
 struct ShadowMapCache {
-    std::vector<std::vector<std::uint16_t>> levels;  // empty until made
+    struct Level {
+        std::vector<std::uint16_t> maps;    // empty until made
+        std::vector<std::uint32_t> map_of;  // on demand: of each light, its number among the maps (far_kernels.h)
+    };
+    std::vector<Level> levels;
+    // Only those of lights that some receiver asks, which changes no bit: for few receivers among many lights.
+    bool on_demand = false;
 };
 
 // Lights of all levels in one medium.
@@ -49,6 +55,7 @@ struct LightField {
     const Occluders* occluders = nullptr;  // surfaces between lights and receivers
     // For receivers outside of the medium: per node, how likely its light is to get there. Null: receivers are inside.
     const std::vector<float>* escape = nullptr;
+    int bottom = 0;  // the finest level: does not fade in, its lights are balls
 };
 
 // Which nodes ask, and for what.
@@ -64,8 +71,9 @@ struct LatticeRequest {
 Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
                          Progress& progress);
 
-// At the nodes of the medium from lights outside of its lattice, all of whose levels `field.grid` holds from level 0 on
-// (point_grid.h); field.intensity and field.directional are not asked for.
+// At the nodes of the medium from the lights in `field.grid` alone, which holds all levels from field.bottom on: lights
+// outside of its lattice (point_grid.h), where field.intensity and field.directional are null, or such as begin at a
+// coarser level.
 Gathered gather_from_outside(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
                              Progress& progress);
 
@@ -73,7 +81,8 @@ Gathered gather_from_outside(const LightField& field, const LatticeRequest& requ
 GridLevel bottom_level(const LightField& field);
 
 // At any points (local [m]) given as receivers, of the medium or on surfaces, which stop no light here; level 0
-// (`bottom`, made once) by marched shadows and the ball kernel. Planar over receivers.
+// (`bottom`, made once; not asked where field.bottom is a coarser level) by marched shadows and the ball kernel. Planar
+// over receivers.
 Gathered gather_at_points(const LightField& field, const GridLevel& bottom, const Receivers& receivers,
                           float mean_cosine, std::vector<LevelCost>& costs, Progress& progress,
                           ReceiverKind kind = ReceiverKind::Medium, bool moments = false);

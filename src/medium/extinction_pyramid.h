@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "medium/even_parts.h"
 #include "medium/medium.h"
 #include "medium/occluders.h"
 
@@ -41,6 +42,10 @@ public:
     void set_occluders(const Occluders* occluders) { occluders_ = occluders; }
     const Occluders* occluders() const { return occluders_; }
 
+    // Where rays may take long steps; null (the default): nowhere. Kept.
+    void set_even_parts(const EvenParts* even_parts) { even_parts_ = even_parts; }
+    const EvenParts* even_parts() const { return even_parts_; }
+
     // Optical depth between two local points [m], sampled on level 0 at steps of about half a voxel. Scalar; for checks
     // and few rays.
     float optical_depth(const vec3& from, const vec3& to) const;
@@ -58,6 +63,7 @@ private:
 
     const Medium* medium_;
     const Occluders* occluders_ = nullptr;
+    const EvenParts* even_parts_ = nullptr;
     std::vector<BrickLattice> lattices_;
     std::vector<std::vector<float>> nodes_;
     std::vector<Packed> packed_;

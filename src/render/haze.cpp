@@ -106,15 +106,12 @@ void Haze::find_even_bricks(const Medium& medium, const std::vector<float>& thin
                 wholly[b] &= thin[i] == fullest || medium.extinction[i] == 0.0f;
         },
         64);
+    even_parts_ = EvenParts(lattice, medium.reference_node, wholly);
     const float brick = BrickLattice::kSize * medium.spacing;
     for (std::uint32_t b = 0; b < wholly.size(); ++b) {
         const vec3 middle = medium.local_of_node(lattice.first_node(b) + BrickLattice::kSize / 2);
-        bool even = !eye_ || glm::distance(*eye_, middle) > kAroundCamera * brick;
-        for (int k = 0; k < 27 && even; ++k) {
-            const int next = lattice.find(lattice.brick(b) + ivec3(k / 9, k / 3 % 3, k % 3) - 1);
-            even = next < 0 || wholly[next];
-        }
-        if (even)
+        const bool slow = !eye_ || glm::distance(*eye_, middle) > kAroundCamera * brick;
+        if (slow && even_parts_.at(lattice.brick(b) - (medium.reference_node >> 3)))
             even_.push_back(b);
     }
 }
@@ -152,12 +149,14 @@ std::size_t Haze::point_count() const {
            static_cast<std::size_t>(std::count(single_.begin(), single_.end(), std::uint8_t{1}));
 }
 
-Gathered Haze::gather(const LightField& field, const GridLevel& bottom, const LatticeRequest& request,
-                      std::vector<LevelCost>& costs, Progress& progress) const {
+Gathered Haze::gather(const LightField& field, const GridLevel& bottom, const LightField* of_haze,
+                      const LatticeRequest& request, std::vector<LevelCost>& costs, Progress& progress) const {
     const Medium& medium = field.pyramid->medium();
     LatticeRequest single = request;
     single.needed = &single_;
     Gathered out = gather_at_nodes(field, single, costs, progress);
+    if (of_haze)
+        out.add(gather_from_outside(*of_haze, single, costs, progress));
     Receivers receivers;
     for (const std::uint32_t b : even_) {
         std::vector<vec3> points, directions;
@@ -168,8 +167,11 @@ Gathered Haze::gather(const LightField& field, const GridLevel& bottom, const La
         }
         receivers.add_block(points, directions);
     }
-    const Gathered few = gather_at_points(field, bottom, receivers, request.mean_cosine, costs, progress,
-                                          ReceiverKind::Medium, request.moments);
+    Gathered few = gather_at_points(field, bottom, receivers, request.mean_cosine, costs, progress,
+                                    ReceiverKind::Medium, request.moments);
+    if (of_haze)
+        few.add(gather_at_points(*of_haze, {}, receivers, request.mean_cosine, costs, progress, ReceiverKind::Medium,
+                                 request.moments));
     const std::size_t nodes = nodes_.size(), asked = receivers.size();
     const auto spread = [&](const std::vector<float>& from, std::vector<float>& to) {
         parallel_for(even_.size(), [&](std::size_t k) {

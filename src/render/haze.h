@@ -6,7 +6,8 @@
 // haze fades in with its share of the medium, so that neither space nor time has a seam.
 //
 // These lights are many, and so may be haze's nodes; but where all is haze for some voxels around, light changes
-// slowly: such bricks ask at 27 points and interpolate. Neighbours share the points of their common face.
+// slowly: such bricks ask at 27 points and interpolate. Neighbours share the points of their common face. What they
+// scatter themselves has lights of its own (haze_lights.h), and shadow rays cross them in long steps (even_parts.h).
 #pragma once
 
 #include <cstdint>
@@ -15,6 +16,7 @@
 
 #include "gathering/gather.h"
 #include "gathering/point_depths.h"
+#include "medium/even_parts.h"
 
 namespace brisance {
 
@@ -31,10 +33,14 @@ public:
     // Of thin nodes the mean transmittance to the outside (gathering/escape.h), below 0 for others.
     const std::vector<float>& open() const { return open_; }
 
+    // In which, and around which, nothing is smoke proper.
+    const std::vector<std::uint32_t>& even_bricks() const { return even_; }
+    const EvenParts& even_parts() const { return even_parts_; }  // the same, but not for the camera's sake
+
     // What arrives at nodes of haze from lights that serve receivers outside; as gather_at_nodes(), unsharpened.
-    // `bottom`: bottom_level() of the field.
-    Gathered gather(const LightField& field, const GridLevel& bottom, const LatticeRequest& request,
-                    std::vector<LevelCost>& costs, Progress& progress) const;
+    // `bottom`: bottom_level() of the field; `of_haze`: the lights of even bricks where they stand apart, or null.
+    Gathered gather(const LightField& field, const GridLevel& bottom, const LightField* of_haze,
+                    const LatticeRequest& request, std::vector<LevelCost>& costs, Progress& progress) const;
     // Puts it in the place of `all` by weight; both planar over the nodes.
     void mix(const Gathered& of_haze, Gathered& all) const;
     const std::vector<std::uint8_t>& nodes() const { return nodes_; }
@@ -49,6 +55,7 @@ private:
     std::vector<std::uint8_t> nodes_;   // with a weight above zero
     std::vector<std::uint8_t> single_;  // those among them that ask themselves
     std::vector<std::uint32_t> even_;   // bricks that ask at a few points
+    EvenParts even_parts_;
 };
 
 }  // namespace brisance

@@ -84,6 +84,8 @@ Lighting::Lighting(const Shot& shot, const Plan& plan, const Medium& medium, con
     if (!marching() && (plan.single || plan.multiple))
         haze_ =
             Haze(medium, depths_, needed_, plan.directional ? std::optional(vec3(camera.eye_local())) : std::nullopt);
+    if (!haze_.empty())
+        pyramid_.set_even_parts(&haze_.even_parts());
     Gathered first;
     if (plan.emission)
         first = light_from_fire();
@@ -220,10 +222,25 @@ Gathered Lighting::light_from_fire() {
     return first;
 }
 
-Gathered Lighting::gather_last_flight(const HierarchyLights& lights, int order, nlohmann::ordered_json& balances,
+// Even haze's lights apart from the rest.
+Gathered Lighting::gather_from_smoke(HierarchyLights& lights, std::vector<LevelCost>& costs) {
+    const auto of_haze = take_haze_lights(medium_, haze_.even_bricks(), lights);
+    const auto field = [&](const HierarchyLights& h) {
+        return h.field(pyramid_, shot_.scattering.alpha, shot_.lighting, nullptr);
+    };
+    Gathered g = gather_at_nodes(field(lights), last_request(), costs, progress_);
+    if (!of_haze)
+        return g;
+    LightField haze = field(of_haze->lights);
+    haze.bottom = kFinestHazeLights;
+    g.add(gather_from_outside(haze, last_request(), costs, progress_));
+    give_back(*of_haze, haze_.even_bricks(), lights.light);
+    return g;
+}
+
+Gathered Lighting::gather_last_flight(HierarchyLights& lights, int order, nlohmann::ordered_json& balances,
                                       std::vector<LevelCost>& costs) {
-    const LightField field = lights.field(pyramid_, shot_.scattering.alpha, shot_.lighting, nullptr);
-    Gathered g = gather_at_nodes(field, last_request(), costs, progress_);
+    Gathered g = gather_from_smoke(lights, costs);
     prepare_interpolation(medium_.lattice, needed_, g);
     if (!shot_.lighting.energy_balance)
         return g;

@@ -11,6 +11,7 @@
 #include "render/cell_field.h"
 #include "render/extended_light.h"
 #include "render/haze.h"
+#include "render/haze_lights.h"
 #include "render/integrate.h"
 #include "render/plan.h"
 #include "render/statistics.h"
@@ -63,7 +64,9 @@ private:
     LatticeRequest last_request() const;
     std::vector<ScatteredLight> orders_of_scattering(const Gathered& first);
     void light_from_smoke(const Gathered& first);
-    Gathered gather_last_flight(const HierarchyLights& lights, int order, nlohmann::ordered_json& balances,
+    Gathered gather_from_smoke(HierarchyLights& lights, std::vector<LevelCost>& costs);
+    // Leaves the lights themselves, but not always their grid.
+    Gathered gather_last_flight(HierarchyLights& lights, int order, nlohmann::ordered_json& balances,
                                 std::vector<LevelCost>& costs);
     std::vector<Rgb> source_function(const Gathered& gathered) const;
     bool orders_apart() const { return shot_.output.bounce_layers && !marching() && !lights_surfaces(); }
@@ -92,6 +95,7 @@ private:
         ShadowMapCache maps;
         std::vector<float> escape;  // for receivers outside: per node, how likely light is to leave the medium
         LightingGrid for_haze;
+        std::unique_ptr<HazeLights> of_haze;  // of even haze, apart from the rest; or none
         Rgb scale{1.0f};
         std::unique_ptr<ExtendedLight> aim;  // for surfaces
         Rgb escape_scale{1.0f};              // for receivers outside
@@ -100,7 +104,10 @@ private:
     void keep(KeptLights& lights, float alpha);
     // Where nodes are haze: from lights that were kept, in the place of what was gathered.
     void light_haze(KeptLights& from, const LatticeRequest& ask, Gathered& gathered);
-    void balance_escape(KeptLights& lights);
+    void part_haze_lights(KeptLights& lights, float alpha);
+    // At points outside, or on surfaces.
+    Gathered from_outside(const KeptLights& lights, const Receivers& receivers) const;
+    void balance_escape(KeptLights& lights, const dvec3& power, const EscapeEstimate& escape);
     std::unique_ptr<KeptLights> fire_, smoke_;
 };
 

@@ -97,12 +97,33 @@ NodeWeights Lighting::escape_of(const std::vector<Rgb>& intensity) const {
     return escape;
 }
 
+// Even haze's lights, where they stand apart.
+void Lighting::part_haze_lights(KeptLights& lights, float alpha) {
+    lights.of_haze = take_haze_lights(medium_, haze_.even_bricks(), lights.lights);
+    if (!lights.of_haze)
+        return;
+    HazeLights& haze = *lights.of_haze;
+    drop_coarse_levels(haze.lights.grid, kLeastLightsForHaze);
+    haze.field = haze.lights.field(pyramid_, alpha, shot_.lighting, &haze.maps);
+    haze.field.bottom = kFinestHazeLights;
+    haze.field.occluders = nullptr;
+}
+
 // Makes what gathering at points asks for, from lights that have found their place.
 void Lighting::keep(KeptLights& lights, float alpha) {
     const Stopwatch watch;
     const bool outside = lights_outside();
+    EscapeEstimate escape;
+    dvec3 power(0.0);
     if (outside) {
-        lights.escape = escape_of(lights.lights.light.intensity);
+        const ScatteredLight& light = lights.lights.light;
+        lights.escape = escape_of(light.intensity);
+        if (lights_surfaces())
+            lights.aim = std::make_unique<ExtendedLight>(medium_, depths_, light.intensity, lights.escape);
+        if (shot_.lighting.energy_balance)
+            escape = estimate_escape(pyramid_, light.intensity, light.directional, lights.escape, kEscapeRays);
+        power = total(light.intensity);
+        part_haze_lights(lights, alpha);
         serve_outside(lights.lights, medium_, lights.escape);
         if (!haze_.empty() && lights_surfaces())
             lights.for_haze = lights.lights.grid;
@@ -110,6 +131,7 @@ void Lighting::keep(KeptLights& lights, float alpha) {
             drop_coarse_levels(lights.lights.grid, kLeastLightsForSurfaces);
     }
     lights.maps = {};
+    lights.maps.on_demand = true;
     lights.field = lights.lights.field(pyramid_, alpha, shot_.lighting, &lights.maps);
     if (outside) {
         lights.field.escape = &lights.escape;
@@ -118,10 +140,8 @@ void Lighting::keep(KeptLights& lights, float alpha) {
     lights.bottom = bottom_level(lights.field);
     if (!outside)
         return;
-    if (lights_surfaces())
-        lights.aim = std::make_unique<ExtendedLight>(medium_, depths_, lights.lights.light.intensity, lights.escape);
     if (shot_.lighting.energy_balance)
-        balance_escape(lights);
+        balance_escape(lights, power, escape);
     statistics_.stages.push_back({lights_surfaces() ? "lights for surfaces" : "lights for haze",
                                   watch.seconds(),
                                   lights.lights.grid.bytes() + (lights.aim ? lights.aim->bytes() : 0),
@@ -133,14 +153,20 @@ void Lighting::light_haze(KeptLights& from, const LatticeRequest& ask, Gathered&
         return;
     const Stopwatch watch;
     LightField field = from.field;
-    ShadowMapCache maps;
+    ShadowMapCache maps{{}, true}, maps_of_haze{{}, true};
     if (lights_surfaces()) {
         field.grid = &from.for_haze;
         field.occluders = pyramid_.occluders();
         field.cache = &maps;
     }
+    LightField of_haze;
+    if (from.of_haze) {
+        of_haze = from.of_haze->field;
+        of_haze.occluders = pyramid_.occluders();
+        of_haze.cache = &maps_of_haze;
+    }
     std::vector<LevelCost> costs;
-    Gathered g = haze_.gather(field, from.bottom, ask, costs, progress_);
+    Gathered g = haze_.gather(field, from.bottom, from.of_haze ? &of_haze : nullptr, ask, costs, progress_);
     prepare_interpolation(medium_.lattice, haze_.nodes(), g);
     g.scale(from.escape_scale);
     haze_.mix(g, gathered);
@@ -151,11 +177,17 @@ void Lighting::light_haze(KeptLights& from, const LatticeRequest& ask, Gathered&
     statistics_.stages.back().detail["levels"] = level_table(costs);
 }
 
-// What passes through the sphere around the medium must be what rays say escapes.
-void Lighting::balance_escape(KeptLights& lights) {
-    const ScatteredLight& light = lights.lights.light;
-    const EscapeEstimate escape =
-        estimate_escape(pyramid_, light.intensity, light.directional, lights.escape, kEscapeRays);
+Gathered Lighting::from_outside(const KeptLights& lights, const Receivers& receivers) const {
+    std::vector<LevelCost> costs;
+    Progress silent;
+    Gathered g = gather_at_points(lights.field, lights.bottom, receivers, 0.0f, costs, silent, ReceiverKind::Surface);
+    if (lights.of_haze)
+        g.add(gather_at_points(lights.of_haze->field, {}, receivers, 0.0f, costs, silent, ReceiverKind::Surface));
+    return g;
+}
+
+// What passes through the sphere around the medium must be what rays say escapes, of all the lights' `power`.
+void Lighting::balance_escape(KeptLights& lights, const dvec3& power, const EscapeEstimate& escape) {
     const LocalBounds bounds = local_bounds(medium_);
     const float radius = 0.5f * bounds.diagonal();
     std::vector<MarchPoint> sphere;
@@ -167,10 +199,7 @@ void Lighting::balance_escape(KeptLights& lights) {
     }
     std::vector<std::uint32_t> order;
     const Receivers receivers = point_receivers(medium_, sphere, true, order);
-    std::vector<LevelCost> costs;
-    Progress silent;
-    const Gathered g =
-        gather_at_points(lights.field, lights.bottom, receivers, 0.0f, costs, silent, ReceiverKind::Surface);
+    const Gathered g = from_outside(lights, receivers);
     dvec3 through(0.0);
     std::vector<bool> counted(sphere.size(), false);
     for (std::size_t i = 0; i < order.size(); ++i) {
@@ -187,7 +216,7 @@ void Lighting::balance_escape(KeptLights& lights) {
     statistics_.stages.push_back({"balance of what escapes",
                                   0.0,
                                   0,
-                                  {{"escaped", luminance(Rgb(escape.power / total(light.intensity)))},
+                                  {{"escaped", luminance(Rgb(escape.power / power))},
                                    {"relative_standard_error", escape.standard_error},
                                    {"scale", luminance(lights.escape_scale)}}});
 }
@@ -204,10 +233,7 @@ void Lighting::at_surfaces(std::vector<SurfaceReceiver>& points) {
     const auto gather = [&](const std::unique_ptr<KeptLights>& lights, Rgb SurfaceReceiver::*slot) {
         if (!lights)
             return;
-        std::vector<LevelCost> costs;
-        Progress silent;
-        const Gathered g =
-            gather_at_points(lights->field, lights->bottom, receivers, 0.0f, costs, silent, ReceiverKind::Surface);
+        const Gathered g = from_outside(*lights, receivers);
         // Scaled by the balance of what escapes, not of what collides.
         for (std::size_t i = 0; i < n; ++i)
             for (int c = 0; c < 3; ++c)

@@ -176,7 +176,7 @@ std::uint64_t CoarseOperator::bytes() const {
     std::uint64_t sum =
         medium_.bytes() + pyramid_->bytes() + grid_.bytes() + weight_.size() * 13 + collision_.size() * 4;
     for (const auto& m : maps_.levels)
-        sum += m.size() * 2;
+        sum += m.maps.size() * 2;
     return sum;
 }
 

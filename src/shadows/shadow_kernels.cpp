@@ -108,9 +108,62 @@ HWY_INLINE V mean_transmittance(D d, Bundle& b) {
     return hn::Mul(sum, hn::Set(d, 1.0f / kParallelRays));
 }
 
+constexpr std::size_t kMostStepsAtOnce = 4;  // one voxel long each
+
+// Are all lanes where the medium is even?
+HWY_INLINE bool all_even(D d, const EvenParts::View& parts, const ShadowStep& s, const V origin[3],
+                         const V direction[3]) {
+    const hn::RebindToSigned<D> di;
+    auto entry = hn::Zero(di);
+    for (int a = 0; a < 3; ++a) {
+        const V node = hn::Floor(hn::MulAdd(hn::Set(d, s.distance), direction[a], origin[a]));
+        const auto brick = hn::Sub(hn::ShiftRight<3>(hn::ConvertTo(di, node)), hn::Set(di, parts.min_brick[a]));
+        const auto inside = hn::Min(hn::Max(brick, hn::Zero(di)), hn::Set(di, parts.extent[a] - 1));
+        entry = hn::Add(hn::Mul(entry, hn::Set(di, parts.extent[a])), inside);
+    }
+    return hn::AllTrue(di, hn::Ne(hn::GatherIndex(di, parts.even, entry), hn::Zero(di)));
+}
+
+// All of `steps` in one.
+inline ShadowStep stride_over(std::span<const ShadowStep> steps, int mip) {
+    const float begin = steps.front().distance - 0.5f * steps.front().length;
+    const float end = steps.back().distance + 0.5f * steps.back().length;
+    return {0.5f * (begin + end), end - begin, mip, steps.back().store};
+}
+
+// Takes all of `steps` in one, if all lanes are where the medium is even.
+HWY_INLINE bool stride(D d, const PackedExtinction* mips, std::span<const ShadowStep> steps, const V start[3],
+                       const V direction[3], const EvenStrides& strides, Bundle& bundle) {
+    const ShadowStep s = stride_over(steps, strides.mip);
+    if (!all_even(d, strides.parts, s, start, direction))
+        return false;
+    const V depth = step_depth(d, mips, s, start, direction, start, 0.0f);
+    for (V& sum : bundle.depth)
+        sum = hn::Add(sum, depth);
+    return true;
+}
+
+HWY_INLINE void march_bundle(D d, const PackedExtinction* mips, std::span<const ShadowStep> steps, const V start[3],
+                             const V direction[3], Bundle& bundle) {
+    for (const ShadowStep& s : steps)
+        for (int k = 0; k < kParallelRays; ++k)
+            if (!bundle.opaque[k])
+                bundle.depth[k] =
+                    hn::Add(bundle.depth[k], step_depth(d, mips, s, start, direction, bundle.offset[k], 1.0f));
+}
+
+// The steps that lead to the next stored distance, or as many of them as a stride may take: no longer than a brick's
+// half.
+inline std::size_t steps_at_once(std::span<const ShadowStep> steps, const EvenStrides* strides) {
+    std::size_t n = 1;
+    while (n < steps.size() && steps[n - 1].store < 0 && (!strides || n < kMostStepsAtOnce))
+        ++n;
+    return n;
+}
+
 void march_parallel(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
                     std::span<const ShadowStep> steps, const vec3& origin, const ShadowRays& rays, int distances,
-                    float scale, std::uint16_t* out) {
+                    float scale, std::uint16_t* out, const EvenStrides* strides) {
     const D d;
     const hn::RebindToSigned<D> di;
     const std::size_t lanes = hn::Lanes(d);
@@ -123,17 +176,19 @@ void march_parallel(const PackedExtinction* mips, std::span<const ShadowStep> ne
         Bundle bundle;
         open_bundle(d, rays, r, bundle);
         for (const std::span<const ShadowStep> part : {near_steps, steps})
-            for (const ShadowStep& s : part) {
-                for (int k = 0; k < kParallelRays; ++k)
-                    if (!bundle.opaque[k])
-                        bundle.depth[k] =
-                            hn::Add(bundle.depth[k], step_depth(d, mips, s, start, direction, bundle.offset[k], 1.0f));
-                if (s.store < 0)
+            for (std::size_t first = 0; first < part.size();) {
+                const auto these = part.subspan(first, steps_at_once(part.subspan(first), strides));
+                const int store = these.back().store;
+                first += these.size();
+                const bool fine = these.size() > 1 && these.front().mip == 0;
+                if (!(strides && fine && stride(d, mips, these, start, direction, *strides, bundle)))
+                    march_bundle(d, mips, these, start, direction, bundle);
+                if (store < 0)
                     continue;
                 const V t = hn::Mul(mean_transmittance(d, bundle), hn::Set(d, scale));
                 hn::Store(hn::NearestInt(hn::Min(t, hn::Set(d, 65535.0f))), di, quantised);
                 for (std::size_t i = 0; i < lanes; ++i)
-                    out[(r + i) * distances + s.store] = static_cast<std::uint16_t>(quantised[i]);
+                    out[(r + i) * distances + store] = static_cast<std::uint16_t>(quantised[i]);
             }
     }
 }
@@ -181,8 +236,8 @@ void march_shadow_rays(const PackedExtinction* mips, std::span<const ShadowStep>
 
 void march_parallel_rays(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
                          std::span<const ShadowStep> steps, const vec3& origin, const ShadowRays& rays, int distances,
-                         float scale, std::uint16_t* out) {
-    HWY_DYNAMIC_DISPATCH(march_parallel)(mips, near_steps, steps, origin, rays, distances, scale, out);
+                         float scale, std::uint16_t* out, const EvenStrides* strides) {
+    HWY_DYNAMIC_DISPATCH(march_parallel)(mips, near_steps, steps, origin, rays, distances, scale, out, strides);
 }
 
 void segment_optical_depths(const PackedExtinction& level, const float* const begin[3], const float* const end[3],

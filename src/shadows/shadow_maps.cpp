@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "core/parallel.h"
 #include "shadows/octahedral.h"
@@ -25,6 +26,9 @@ float finest_step(const Medium& medium) {
 // Rays see density averaged over this share of the light's spacing at the light. Wide averages save steps and lose the
 // clumps of smoke in which fire burns: half a spacing let 5 % too much light through on real smoke, a sixteenth 1 %.
 constexpr float kFilterShare = 0.0625f;
+
+// Of the pyramid that rays through even parts see: its averages reach no farther than such a part does.
+constexpr int kStrideLevel = 2;
 
 // Steps one averaged voxel long over [begin, end]; averages shrink to single voxels at the far end of the range.
 void add_steps(const ExtinctionPyramid& pyramid, const GridLevel& level, float far, float begin, float end, int store,
@@ -138,6 +142,15 @@ void place_with_border(const std::uint16_t* interior, const ShadowMapLayout& lay
 void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const NodeWeights& weights,
                        const NodeWeights* escape, const ShadowMapLayout& layout, std::size_t first, std::size_t count,
                        std::vector<std::uint16_t>& maps, const Occluders* occluders) {
+    std::vector<std::uint32_t> list(count);
+    std::iota(list.begin(), list.end(), static_cast<std::uint32_t>(first));
+    maps.resize(count * layout.stride());
+    build_shadow_maps(pyramid, level, weights, escape, layout, list, maps.data(), occluders);
+}
+
+void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const NodeWeights& weights,
+                       const NodeWeights* escape, const ShadowMapLayout& layout, std::span<const std::uint32_t> list,
+                       std::uint16_t* maps, const Occluders* occluders) {
     const Medium& medium = pyramid.medium();
     const float far = layout.far_distance;
     std::vector<ShadowStep> near_steps, steps;
@@ -150,13 +163,15 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
     std::vector<PackedExtinction> mips;
     for (int l = 0; l < pyramid.level_count(); ++l)
         mips.push_back(pyramid.view(l));
-    maps.resize(count * layout.stride());
-    parallel_blocks(count, 8, [&](std::size_t begin, std::size_t end) {
+    const EvenParts* even = pyramid.even_parts();
+    const EvenStrides strides{even ? even->view() : EvenParts::View{},
+                              std::min(kStrideLevel, pyramid.level_count() - 1)};
+    parallel_blocks(list.size(), 8, [&](std::size_t begin, std::size_t end) {
         std::vector<std::uint16_t> interior(texels.padded * layout.distances);
         Starts starts;
         FootprintPicker picker(medium, weights, level.level);
         for (std::size_t k = begin; k < end; ++k) {
-            const std::size_t light = first + k;
+            const std::size_t light = list[k];
             pick_starts(picker, medium, level, light, layout.for_outside ? escape : nullptr, starts);
             const ShadowRays rays{{texels.direction[0].data(), texels.direction[1].data(), texels.direction[2].data()},
                                   {starts.offset[0].data(), starts.offset[1].data(), starts.offset[2].data()},
@@ -165,13 +180,13 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
             const vec3 centre = medium.index_from_local * level.position[light];
             if (layout.for_outside)
                 march_parallel_rays(mips.data(), near_steps, steps, centre, rays, layout.distances,
-                                    65535.0f / layout.range, interior.data());
+                                    65535.0f / layout.range, interior.data(), even ? &strides : nullptr);
             else
                 march_shadow_rays(mips.data(), near_steps, steps, centre, rays, layout.distances, interior.data());
             if (occluders)
                 cut_at_surfaces(*occluders, {level.position[light], starts.places(medium, level.position[light])},
                                 layout, interior);
-            place_with_border(interior.data(), layout, &maps[k * layout.stride()]);
+            place_with_border(interior.data(), layout, maps + k * layout.stride());
         }
     });
 }

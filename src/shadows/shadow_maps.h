@@ -15,11 +15,15 @@
 //  - For receivers outside of the medium, where a ray ends matters less than where it begins: rays from kParallelRays
 //    such voxels stay parallel all along. Voxels from which light escapes are picked more often, and count for less: in
 //    dense smoke few others would be among them.
+//  - Such rays take four steps in one where the medium is even around them (even_parts.h), if they are told where:
+//  through
+//    a room full of haze they are long.
 //  - Rays see density averaged over a sixteenth of the light's spacing near the light, shrinking to single voxels at
 //    the far end.
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "lights/footprint.h"
@@ -50,5 +54,10 @@ struct ShadowMapLayout {
 void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const NodeWeights& weights,
                        const NodeWeights* escape, const ShadowMapLayout& layout, std::size_t first, std::size_t count,
                        std::vector<std::uint16_t>& maps, const Occluders* occluders = nullptr);
+
+// Those of the lights in `list`, from `maps` on.
+void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const NodeWeights& weights,
+                       const NodeWeights* escape, const ShadowMapLayout& layout, std::span<const std::uint32_t> list,
+                       std::uint16_t* maps, const Occluders* occluders = nullptr);
 
 }  // namespace brisance

@@ -76,6 +76,33 @@ TEST(Agreement, NodesThatAskAloneGetWhatTheyGetTogether) {
     EXPECT_EQ(costs.size(), lit.grid.levels.size() + 1);
 }
 
+TEST(Agreement, MapsMadeOnDemandAreThoseThatAreAsked) {
+    const Lit lit(make_medium(fireball(2.0f)));
+    LightField all = field_of(lit, lighting(ShadowMethod::Maps, 1.0f)), asked = all;
+    ShadowMapCache cache;
+    cache.on_demand = true;
+    asked.cache = &cache;
+    const GridLevel bottom = bottom_level(all);
+    const auto gathered = [&](const LightField& field, const vec3& place, std::uint64_t& map_bytes) {
+        Receivers receivers;
+        receivers.add_block({place, place + vec3(0.05f, 0.0f, 0.0f)}, {});
+        std::vector<LevelCost> costs;
+        Progress silent;
+        const Gathered g = gather_at_points(field, bottom, receivers, 0.0f, costs, silent);
+        map_bytes = costs[1].map_bytes;
+        return g.fluence;
+    };
+    // The second asks for more; the third for what is there.
+    std::uint64_t before = 0, bytes = 0, of_all = 0;
+    for (const vec3 place : {vec3(0.4f, 0.1f, -0.2f), vec3(-0.5f, 0.3f, 0.1f), vec3(0.4f, 0.1f, -0.2f)}) {
+        EXPECT_EQ(gathered(asked, place, bytes), gathered(all, place, of_all));
+        EXPECT_GE(bytes, before);
+        EXPECT_LT(bytes, of_all);
+        before = bytes;
+    }
+    EXPECT_GT(before, 0u);
+}
+
 TEST(Agreement, TheNumberOfThreadsDoesNotShow) {
     const Medium medium = make_medium(fireball(2.0f));
     std::vector<std::vector<float>> nodes, points;

@@ -206,5 +206,46 @@ TEST(ShadowMaps, APartOfTheLevelHasTheMapsOfTheWholeWhateverTheThreads) {
     }
 }
 
+// Rays that stride through even parts.
+TEST(ShadowMaps, StridesThroughEvenSmokeLoseNothing) {
+    Medium medium = make_medium(block(0.1f));
+    const std::size_t nodes = medium.lattice.node_count();
+    Lit lit(std::move(medium), std::vector<Rgb>(nodes, Rgb(1.0f)));
+    const GridLevel& level = lit.grid.levels[1];
+    ShadowMapLayout layout = layout_of(level);
+    layout.for_outside = true;
+    layout.far_distance = 8.0f;
+    const NodeWeights escape(lit.weight.size(), 1.0f);
+    std::vector<std::uint16_t> steps, strides, nowhere;
+    const auto build = [&](std::vector<std::uint16_t>& maps) {
+        build_shadow_maps(lit.pyramid, level, lit.weight, &escape, layout, 0, std::min<std::size_t>(level.size(), 64),
+                          maps);
+    };
+    build(steps);
+    const EvenParts everywhere(lit.medium.lattice, lit.medium.reference_node,
+                               std::vector<std::uint8_t>(lit.medium.lattice.brick_count(), 1));
+    const EvenParts none(lit.medium.lattice, lit.medium.reference_node,
+                         std::vector<std::uint8_t>(lit.medium.lattice.brick_count(), 0));
+    lit.pyramid.set_even_parts(&everywhere);
+    build(strides);
+    lit.pyramid.set_even_parts(&none);
+    build(nowhere);
+    ASSERT_EQ(steps.size(), strides.size());
+    double sum = 0.0, square = 0.0;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        const double difference = (double(strides[i]) - double(steps[i])) / 65535.0;
+        sum += difference;
+        square += difference * difference;
+    }
+    // Most of it where rays graze the faces of the block, from beside which a light's voxels look past it.
+    EXPECT_LT(std::sqrt(square / double(steps.size())), 0.015);
+    EXPECT_NEAR(sum / double(steps.size()), 0.0, 1.5e-3);
+    EXPECT_NE(steps, strides);
+    // Beyond the medium all is even: what lies in it is seen as before.
+    ASSERT_EQ(steps.size(), nowhere.size());
+    for (std::size_t i = 0; i < steps.size(); ++i)
+        EXPECT_NEAR(nowhere[i], steps[i], 1);
+}
+
 }  // namespace
 }  // namespace brisance
