@@ -30,8 +30,8 @@ struct MediaScene {
 
 Shot read(const char* name, std::vector<std::string> more) {
     more.insert(more.end(), {"camera.width=" + std::to_string(kWidth), "camera.height=" + std::to_string(kHeight),
-                             "camera.samples_per_axis=2", "lighting.shadow_resolution=20", "virtual_lights.count=1500",
-                             "virtual_lights.photons=200000", "output.layers.cells=true"});
+                             "camera.samples_per_axis=4", "camera.edge_refinement=4", "lighting.shadow_resolution=20",
+                             "virtual_lights.count=1500", "virtual_lights.photons=200000", "output.layers.cells=true"});
     return read_shot(std::filesystem::path(BRISANCE_SHOTS) / "media" / (std::string(name) + ".json"), {"draft", more});
 }
 
