@@ -58,6 +58,33 @@ TEST(Bsdf, ImportanceIsTheAdjoint) {
                 1.0 / (1.5 * 1.5), 1e-6);
 }
 
+// Whoever lights base and other lobes apart lights the whole surface; and the base's share of power is its integral.
+TEST(Bsdf, LobesAddUpToTheWhole) {
+    Rng rng(Stream::Path, 7);
+    for (NamedSurface surface : coloured_surfaces())
+        for (const float roughness : {0.05f, 0.25f, 0.6f}) {
+            surface.material.roughness = roughness;
+            const Bsdf all(surface.material, {}), base(surface.material, {}, Lobes::Base),
+                others(surface.material, {}, Lobes::Specular);
+            for (int i = 0; i < 100; ++i) {
+                const dvec3 a = any_direction(rng), b = any_direction(rng);
+                const Rgb whole = all.evaluate(a, b), sum = base.evaluate(a, b) + others.evaluate(a, b);
+                for (int c = 0; c < 3; ++c)
+                    EXPECT_NEAR(sum[c], whole[c], 1e-5f * (1e-3f + whole[c])) << surface.name;
+            }
+            const dvec3 wo = direction(0.1 + 0.8 * rng.next_double());
+            dvec3 drawn(0.0);
+            constexpr int kSamples = 20000;
+            for (int i = 0; i < kSamples; ++i) {
+                const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
+                if (const std::optional<BsdfSample> s = base.sample(wo, {x, y, z}))
+                    drawn += dvec3(s->weight) / double(kSamples);
+            }
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(base.base_albedo(wo)[c], drawn[c], 0.01) << surface.name << " " << roughness;
+        }
+}
+
 TEST(Bsdf, IsFiniteEverywhere) {
     Rng rng(Stream::Path, 6);
     const double cosines[] = {-1.0, -0.5, -1e-9, -0.0, 0.0, 1e-300, 1e-9, 1e-4, 0.5, 1.0};
