@@ -136,7 +136,7 @@ TEST(PlainLights, AreAboutAsManyAsAsked) {
     EXPECT_NEAR(double(lights.lights().size()), 500.0, 75.0);
     double flux = 0.0;
     for (const VirtualLight& light : lights.lights())
-        flux += luminance(lights.flux(light));
+        flux += luminance(light.flux);
     // Reflected is what arrived, times colours between 0.1 and 0.7.
     EXPECT_GT(flux, 0.1 * lights.report().photons.shared);
     EXPECT_LT(flux, 0.7 * lights.report().photons.shared);
