@@ -38,7 +38,9 @@ void look(const CellField& field, const Camera& camera, const PictureSettings& s
           const std::vector<PixelSample>& samples, float sign, RaySum& sum) {
     for (const PixelSample& s : samples) {
         const PixelRay ray{0, 0, camera.ray(p.x + 0.5 + s.x, p.y + 0.5 + s.y)};
-        add_weighted(sum, first_look(field, ray, settings).sum, sign * s.weight);
+        RaySum seen = first_look(field, ray, settings).sum;
+        seen.alpha -= 1.0f;  // the same for the difference, and exact where all is covered
+        add_weighted(sum, seen, sign * s.weight);
     }
 }
 

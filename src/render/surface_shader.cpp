@@ -1,6 +1,7 @@
 #include "render/surface_shader.h"
 
 #include <array>
+#include <cmath>
 #include <numbers>
 
 #include "core/parallel.h"
@@ -32,6 +33,7 @@ SurfaceShader::SurfaceShader(const Plan& plan, const CellField& field, Lighting*
       scattered_lights_(scattered_lights),
       lengths_(lengths),
       medium_(plan, field, paths.direct(), parts, scattered_lights),
+      panes_(surroundings_),
       mirrors_(paths.direct(), medium_, plan.needs(Cell::SS)) {}
 
 // Who is lit, and what draws its random numbers.
@@ -76,14 +78,14 @@ std::vector<SurfaceShader::Place> SurfaceShader::places(const std::vector<Surfac
 
 // What the base reflects of the light that arrives past other surfaces, over what a white Lambert surface would reflect
 // of all of it.
-Rgb SurfaceShader::seen_part(const ExtendedLight* light, const SurfacePoint& point, const dvec3& toward_viewer,
-                             Rng& rng) const {
+SurfaceShader::SeenPart SurfaceShader::seen_part(const ExtendedLight* light, const SurfacePoint& point,
+                                                 const dvec3& toward_viewer, Rng& rng) const {
     std::array<ExtendedLight::Draw, ExtendedLight::kDraws> draws;
     const LitPoint lit{point.position, point.frame.normal, LitPoint::Kind::Surface};
     if (!light || !light->draw(lit, rng, draws))
-        return Rgb(0.0f);
+        return {};
     const Bsdf base(point.material, point.frame, Lobes::Base);
-    Rgb reflected(0.0f);
+    SeenPart seen;
     float white = 0.0f;
     for (const ExtendedLight::Draw& d : draws) {
         if (!(d.weight > 0.0f))
@@ -98,11 +100,14 @@ Rgb SurfaceShader::seen_part(const ExtendedLight* light, const SurfacePoint& poi
         const dvec3 from = point.start_toward(dvec3(d.place));
         const dvec3 way = dvec3(d.place) - from;
         const double distance = glm::length(way);
-        if (surroundings_.intersector().occluded({from, way / distance}, distance))
-            continue;
-        reflected += base.evaluate(toward_viewer, direction) * (d.weight / cosine);
+        const Panes::Passage passage = panes_.along({from, way / distance}, distance);
+        if (!passage.blocked)
+            (passage.panes > 0 ? seen.through_panes : seen.clear) +=
+                base.evaluate(toward_viewer, direction) * (d.weight / cosine) * passage.weight;
     }
-    return white > 0.0f ? reflected / white : Rgb(0.0f);
+    if (!(white > 0.0f))
+        return {};
+    return {seen.clear / white, seen.through_panes / white};
 }
 
 // One direction of the lobes that are not the base, and all that glows and scatters along it.
@@ -113,11 +118,19 @@ void SurfaceShader::reflect_medium(const SurfacePoint& point, const dvec3& towar
     const std::optional<BsdfSample> drawn = specular.sample(toward_viewer, {x, y, z});
     if (!drawn)
         return;
-    const Ray ray = point.leaving(drawn->wi);
-    const RaySegment segment = paths_.direct().segment_along(ray);
-    const RaySum seen = medium_.look(ray, segment.end, ray_rng);
-    light.at(Cell::SV) += drawn->weight * seen.cells.at(Cell::V);
-    light.at(Cell::SM) += drawn->weight * scattered_by_medium(seen.cells);
+    Rgb weight = drawn->weight;
+    RaySegment segment = paths_.direct().segment_along(point.leaving(drawn->wi));
+    for (int panes = 0;; ++panes) {
+        const RaySum seen = medium_.look(segment.ray, segment.end, ray_rng);
+        light.at(panes == 0 ? Cell::SV : Cell::SS) += weight * seen.cells.at(Cell::V);
+        light.at(panes == 0 ? Cell::SM : Cell::SS) += weight * scattered_by_medium(seen.cells);
+        if (!asks_through_panes() || !segment.point || seen.depth > kOpaqueDepth)
+            return;
+        weight *= std::exp(-seen.depth) * Panes::straight_on(*segment.point, segment.ray.direction);
+        if (weight == Rgb(0.0f))
+            return;
+        segment = paths_.direct().segment_along(segment.point->leaving(segment.ray.direction));
+    }
 }
 
 void SurfaceShader::shade_place(const SurfaceSample& sample, const SurfaceReceiver& receiver, Place& at,
@@ -126,8 +139,12 @@ void SurfaceShader::shade_place(const SurfaceSample& sample, const SurfaceReceiv
     const dvec3 toward_viewer = -at.seen.arriving;
     Rng rng(Stream::Surface, sample.pixel, sample.number);
     if (lighting_ && has_base(point.material)) {
-        out.at(Cell::SV) += receiver.fire * seen_part(lighting_->fire_to_aim_at(), point, toward_viewer, rng);
-        out.at(Cell::SM) += receiver.smoke * seen_part(lighting_->smoke_to_aim_at(), point, toward_viewer, rng);
+        const SeenPart fire = seen_part(lighting_->fire_to_aim_at(), point, toward_viewer, rng);
+        const SeenPart smoke = seen_part(lighting_->smoke_to_aim_at(), point, toward_viewer, rng);
+        out.at(Cell::SV) += receiver.fire * fire.clear;
+        out.at(Cell::SM) += receiver.smoke * smoke.clear;
+        if (asks_through_panes())
+            out.at(Cell::SS) += receiver.fire * fire.through_panes + receiver.smoke * smoke.through_panes;
     }
     if (scattered_lights_ && has_base(point.material))
         out.at(Cell::SM) += scattered_lights_->at_surface(point, Bsdf(point.material, point.frame, Lobes::Base),
@@ -140,7 +157,9 @@ void SurfaceShader::shade_place(const SurfaceSample& sample, const SurfaceReceiv
     if (!plan_.needs(Cell::SS))
         return;
     if (lights_) {
-        out.at(Cell::SS) += lights_->shade(place, rng, &at.vertices);
+        out.at(Cell::SS) +=
+            lights_->shade(place, rng, &at.vertices,
+                           asks_through_panes() ? VirtualLights::Panes::Asked : VirtualLights::Panes::Followed);
         return;
     }
     PathSum path{};

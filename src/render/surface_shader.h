@@ -8,7 +8,8 @@
 // was lit once comes without noise from the grid, which sharing with a light's own places would only add to; of the
 // rest, a ray that the lobe drew asks the lights all along, as the camera's do. SA: a place on one of the emitters, and
 // a ray by the BSDF. SS: the virtual lights; without them, paths. Behind mirrors and clear glass the same is done where
-// a surface scatters (mirrors.h), and all of that is SS.
+// a surface scatters (mirrors.h), and all of that is SS; so is light of fire and smoke that comes straight through
+// panes (panes.h), which base and other lobes ask for in the same two ways.
 #pragma once
 
 #include <span>
@@ -19,6 +20,7 @@
 #include "render/integrate.h"
 #include "render/lighting.h"
 #include "render/mirrors.h"
+#include "render/panes.h"
 #include "render/path_lengths.h"
 #include "render/plan.h"
 #include "tracing/path_tracer.h"
@@ -41,10 +43,17 @@ private:
     struct Place;
     std::vector<Place> places(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) const;
     void shade_place(const SurfaceSample& sample, const SurfaceReceiver& receiver, Place& place, CellSum& light) const;
-    Rgb seen_part(const ExtendedLight* light, const SurfacePoint& point, const dvec3& toward_viewer, Rng& rng) const;
+    struct SeenPart {
+        Rgb clear{0.0f}, through_panes{0.0f};
+    };
+    SeenPart seen_part(const ExtendedLight* light, const SurfacePoint& point, const dvec3& toward_viewer,
+                       Rng& rng) const;
     Rgb from_emitters(const Scatterer& place, Rng& rng) const;
     void reflect_medium(const SurfacePoint& point, const dvec3& toward_viewer, Rng& rng, Rng& ray_rng,
                         CellSum& light) const;
+
+    // Virtual lights in the smoke know no panes, nor do paths without virtual lights.
+    bool asks_through_panes() const { return panes_.any() && lighting_ && lights_ && !scattered_lights_; }
 
     const Plan& plan_;
     Lighting* lighting_;
@@ -54,6 +63,7 @@ private:
     const LightsInSmoke* scattered_lights_;
     PathLengths* lengths_;
     MediumAlongRay medium_;
+    Panes panes_;
     Mirrors mirrors_;
 };
 

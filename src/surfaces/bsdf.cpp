@@ -192,6 +192,10 @@ Bsdf::View Bsdf::view_from(const dvec3& world) const {
     return view;
 }
 
+Rgb Bsdf::straight_on(const dvec3& wo) const {
+    return has_specular_ ? straight_weight(view_from(wo)) : Rgb(0.0f);
+}
+
 Rgb Bsdf::base_albedo(const dvec3& wo) const {
     const View view = view_from(wo);
     return view.side == 0 && has_base_ ? coated_ * base_ * view.base_share : Rgb(0.0f);

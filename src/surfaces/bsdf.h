@@ -63,6 +63,9 @@ public:
     // facets that send light into their neighbours (its energy is in the lobes of evaluate()).
     std::optional<BsdfSample> sample(const dvec3& wo, const dvec3& u, Transport transport = Transport::Radiance) const;
 
+    // What of the light against wo goes on as if there were no surface: through sheets and matched media.
+    Rgb straight_on(const dvec3& wo) const;
+
     // Share of the power that arrives along wo which the Lambert base scatters.
     Rgb base_albedo(const dvec3& wo) const;
 

@@ -10,6 +10,10 @@ namespace brisance {
 
 namespace {
 
+bool goes_straight_on(const Scatterer& place, const Scatterer::Sample& turn) {
+    return turn.delta && glm::dot(turn.wi, place.arriving()) > 1.0 - 1e-12;
+}
+
 // A base colour in place of another.
 Rgb recoloured(const Rgb& to, const Rgb& from) {
     return {from.x > 0.0f ? to.x / from.x : 0.0f, from.y > 0.0f ? to.y / from.y : 0.0f,
@@ -81,12 +85,13 @@ Rgb VirtualLights::at_end_of_ray(const Scatterer& place, const Seen& seen, doubl
 }
 
 // The place itself asks for what surfaces reflect toward it; places along an extended path for everything.
-Rgb VirtualLights::shade(const Scatterer& asking, Rng& rng, int* vertices) const {
+Rgb VirtualLights::shade(const Scatterer& asking, Rng& rng, int* vertices, Panes panes) const {
     Rgb sum(0.0f), throughput(1.0f);
     if (!shines_)
         return sum;
     Scatterer place = asking;
     float light_lines = 0.0f;
+    bool lit_before = true;  // the asking place, by the medium along this segment
     for (int order = 0; survives(throughput, 1.0f, order > kManyScatterings, rng); ++order) {
         if (vertices)
             ++*vertices;
@@ -101,18 +106,19 @@ Rgb VirtualLights::shade(const Scatterer& asking, Rng& rng, int* vertices) const
             break;
         const RaySegment segment = scene_.segment_along(place.leaving(turn->wi));
         throughput *= turn->weight;
+        lit_before = order == 0 || (lit_before && panes == Panes::Asked && goes_straight_on(place, *turn));
         std::optional<Collision> collision;
-        if (order > 0) {
+        if (!lit_before) {
             const LineResult line = scene_.lines().follow_path(segment.ray, rng, segment.end);
             collision = line.collision;
             if (line.radiance != Rgb(0.0f))
                 sum += throughput * line.radiance *
                        (turn->delta ? 1.0f : scene_.share_of_sample(light_lines, segment.ray, turn->pdf));
-            if (!collision)
-                sum += throughput * scene_.at_end(segment, turn->pdf, turn->delta, &place);
-        } else if (segment.hit) {
+        } else if (segment.hit || order > 0) {
             throughput *= float(scene_.lines().transmittance(segment.ray, segment.end, rng));
         }
+        if (order > 0 && !collision)
+            sum += throughput * scene_.at_end(segment, turn->pdf, turn->delta, &place);
         if (collision) {
             place = scene_.in_smoke(segment.ray, *collision);
             throughput *= scene_.field().albedo(collision->brick, collision->position);

@@ -43,8 +43,10 @@ public:
     // cell SS for a surface, MS for smoke (without its albedo). Light that emitters or the fire send straight to the
     // place is not part of it. Its mean is right up to the lights' own blur and noise; with extension, that is only
     // found where many lights lie in a ray's footprint. `vertices`: is raised by the number of places that the path
-    // had, the asking one among them.
-    Rgb shade(const Scatterer& place, Rng& rng, int* vertices = nullptr) const;
+    // had, the asking one among them. `panes`: who may see fire and smoke straight through panes, which are surfaces:
+    // if Asked, the place has been lit by that already.
+    enum class Panes { Followed, Asked };
+    Rgb shade(const Scatterer& place, Rng& rng, int* vertices = nullptr, Panes panes = Panes::Followed) const;
 
     const std::vector<VirtualLight>& lights() const { return lights_; }
     // What a light of its own surface's colour sends that way [W/(m^2 sr)]. `toward`: unit, world.

@@ -150,5 +150,38 @@ TEST(Mirrors, EveryCellIsThePathTracers) {
     }
 }
 
+// A floor beside a ball of fire and smoke, and between them nothing or a sheet of what is as good as air.
+Image lit_floor(const Medium& medium, bool sheet) {
+    Scene scene;
+    scene.origin = medium.world_of_local(vec3(0.0f));
+    add_quad(scene, {-3, -3, -1.4f}, {6, 0, 0}, {0, 6, 0}, lambert(0.6f));
+    if (sheet) {
+        SceneMaterial air = pane();
+        air.surface.ior = 1.0f;
+        add_quad(scene, {-3, -3, -1.2f}, {6, 0, 0}, {0, 6, 0}, air);
+    }
+    const Surroundings surroundings(std::move(scene), {});
+    Shot shot = hall_shot(RenderMethod::LightingGrid);
+    shot.camera.eye = {0.5, -4.0, -1.3};
+    shot.camera.target = {0.0, 0.0, -1.45};
+    Progress silent;
+    return render_medium(shot, medium, silent, &surroundings).image;
+}
+
+// Seen under the sheet, light comes by SV and SM without it, and straight through it by SS.
+TEST(Panes, OfAirAreAsIfTheyWereNotThere) {
+    const Medium medium = make_medium(glowing_ball(16, 2.0f));
+    const Image without = lit_floor(medium, false), with = lit_floor(medium, true);
+    const std::vector<float>&a = without.layer("").pixels, &b = with.layer("").pixels;
+    double difference = 0.0, sum = 0.0, squares = 0.0, bias = 0.0;
+    for (std::size_t i = 0; i < a.size(); i += 4) {
+        sum += a[i], bias += b[i] - a[i];
+        squares += double(a[i]) * a[i], difference += double(b[i] - a[i]) * (b[i] - a[i]);
+    }
+    EXPECT_GT(mean_of(without, "SV"), 10.0 * mean_of(with, "SV"));
+    EXPECT_NEAR(bias / sum, 0.0, 0.003);
+    EXPECT_LT(std::sqrt(difference / squares), 0.01);
+}
+
 }  // namespace
 }  // namespace brisance
