@@ -1,15 +1,16 @@
 #include "render/cast_light.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
+#include "core/fixed_sums.h"
 #include "core/parallel.h"
 #include "gathering/sh.h"
 #include "medium/cell_walk.h"
 #include "medium/phase.h"
 #include "render/march.h"
 #include "tracing/particle_flights.h"
+#include "tracing/roulette.h"
 
 namespace brisance {
 
@@ -18,8 +19,6 @@ namespace {
 constexpr std::size_t kParticlesAtOnce = 1024;
 // Parts of a way through a cell, each of which counts for the node nearest to it.
 constexpr int kParts = 2;
-// Sums hold 2^16 times the power emitted along a voxel, in steps of 2^-46 of it.
-constexpr double kSteps = 0x1p46;
 // Of the light that arrives where virtual lights were made.
 constexpr double kUnsharedLeft = 0.01;
 
@@ -37,9 +36,8 @@ public:
           request_(request),
           cells_(cell_lattice(medium)),
           index_from_local_(glm::inverse(dmat3(medium.local_from_index))),
-          unit_(std::max(power * medium.spacing, 1e-300) / kSteps),
-          channels_(3 * (1 + (request.toward_camera ? 1 : 0) + (request.moments ? kShMoments : 0))),
-          sums_(channels_ * medium.lattice.node_count()) {}
+          kinds_(1 + (request.toward_camera ? 1 : 0) + (request.moments ? kShMoments : 0)),
+          sums_(kinds_ * medium.lattice.node_count(), power * medium.spacing) {}
 
     void add(const Ray& ray, double end, const Rgb& power) {
         float depth = 0.0f;
@@ -67,29 +65,27 @@ public:
         const std::size_t nodes = medium_.lattice.node_count();
         Gathered out;
         out.resize(nodes, request_.toward_camera != nullptr, request_.moments);
-        const double scale = unit_ / medium_.voxel_volume;
         const auto read = [&](std::vector<float>& values, std::size_t first, std::size_t count) {
-            for (std::size_t c = 0; c < count; ++c)
-                for (std::size_t i = 0; i < nodes; ++i)
-                    values[c * nodes + i] = float(double(sums_[i * channels_ + first + c]) * scale);
+            for (std::size_t k = 0; k < count; ++k)
+                for (std::size_t i = 0; i < nodes; ++i) {
+                    const dvec3 sum = sums_.read(i * kinds_ + first + k) / double(medium_.voxel_volume);
+                    for (int c = 0; c < 3; ++c)
+                        values[(3 * k + c) * nodes + i] = float(sum[c]);
+                }
         };
-        read(out.fluence, 0, 3);
+        read(out.fluence, 0, 1);
         if (request_.toward_camera)
-            read(out.scattered, 3, 3);
+            read(out.scattered, 1, 1);
         if (request_.moments)
-            read(out.moments, channels_ - 3 * kShMoments, 3 * kShMoments);
+            read(out.moments, kinds_ - kShMoments, kShMoments);
         return out;
     }
 
 private:
     void add_to(std::int64_t node, const Rgb& track, const vec3& direction,
                 const std::array<float, kShMoments>& basis) {
-        std::int64_t* sum = sums_.data() + node * std::int64_t(channels_);
-        const auto put = [&](float factor) {
-            for (int c = 0; c < 3; ++c, ++sum)
-                std::atomic_ref<std::int64_t>(*sum).fetch_add(std::llround(double(track[c]) * factor / unit_),
-                                                              std::memory_order_relaxed);
-        };
+        std::size_t sum = std::size_t(node) * kinds_;
+        const auto put = [&](float factor) { sums_.add(sum++, dvec3(track) * double(factor)); };
         put(1.0f);
         if (request_.toward_camera)
             put(henyey_greenstein(glm::dot(direction, (*request_.toward_camera)[node]), request_.mean_cosine));
@@ -101,17 +97,16 @@ private:
     const LatticeRequest& request_;
     BrickLattice cells_;
     dmat3 index_from_local_;
-    double unit_;  // [W m]
-    std::size_t channels_;
-    std::vector<std::int64_t> sums_;  // per node
+    std::size_t kinds_;  // of sums at each node: fluence, toward the camera, moments
+    FixedSums sums_;     // [W m]
 };
 
 CastLight::CastLight(const DirectLight& scene, const VirtualLights* lights, const VirtualLightSettings& settings)
     : scene_(scene), lights_(lights), seed_(settings.seed) {
-    const Surroundings* const set = scene.surroundings();
-    if (!set || !set->has_surfaces() || !(scene.has_emitters() || !scene.fire().empty()))
+    if (!scene.lights_surfaces())
         return;
-    if (!lights || is_glossy(set->scene()) || lights->report().photons.unshared_fraction() > kUnsharedLeft)
+    if (!lights || is_glossy(scene.surroundings()->scene()) ||
+        lights->report().photons.unshared_fraction() > kUnsharedLeft)
         particles_ = static_cast<std::size_t>(settings.photons);
 }
 
@@ -127,11 +122,12 @@ void CastLight::cast(const RaySegment& segment, const Rgb& power, Rng& rng, Ways
     if (!next)
         return;
     const Rgb sent = power * next->weight;
-    const float part = std::min(1.0f, std::max({sent.x, sent.y, sent.z}) / std::max({power.x, power.y, power.z}));
+    const float part = std::min(1.0f, largest(sent) / largest(power));
     if (!(rng.next() < part))
         return;
     const Ray ray = place.leaving(next->wi);
-    ways.add(ray, scene_.segment_along(ray).end, sent / part);
+    const std::optional<SurfaceHit> hit = scene_.surroundings()->intersector().first_hit(ray);
+    ways.add(ray, hit ? hit->distance : kNoEnd, sent / part);
 }
 
 void CastLight::follow(std::uint64_t index, const Particles& particles, Ways& ways) const {

@@ -16,8 +16,7 @@
 //    such voxels stay parallel all along. Voxels from which light escapes are picked more often, and count for less: in
 //    dense smoke few others would be among them.
 //  - Such rays take four steps in one where the medium is even around them (even_parts.h), if they are told where:
-//  through
-//    a room full of haze they are long.
+//    through a room full of haze they are long.
 //  - Rays see density averaged over a sixteenth of the light's spacing near the light, shrinking to single voxels at
 //    the far end.
 #pragma once

@@ -32,6 +32,10 @@ public:
     const FireDirections& fire() const { return fire_; }
     const LineTracker& lines() const { return lines_; }
     bool has_emitters() const { return surroundings_ && !surroundings_->emitters().empty(); }
+    // There are surfaces, and something shines.
+    bool lights_surfaces() const {
+        return surroundings_ && surroundings_->has_surfaces() && (has_emitters() || !fire_.empty());
+    }
     std::uint64_t bytes() const { return field_.bytes() + fire_.bytes(); }
 
     RaySegment segment_along(const Ray& ray) const;

@@ -1,7 +1,6 @@
 #include "virtual_lights/photons.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "core/parallel.h"
@@ -15,8 +14,6 @@ namespace {
 constexpr std::size_t kBlock = 1024;
 // Where a shading normal leans far from a surface seen at a grazing angle, one photon would outshine all others.
 constexpr double kMostBrighter = 4.0;
-// Sums hold 2^16 times the power that is emitted, in steps of 2^-46 of it.
-constexpr double kSteps = 0x1p46;
 
 bool finite(const Rgb& c) {
     return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);
@@ -118,28 +115,24 @@ void add(PhotonReport& to, const PhotonReport& r) {
 }  // namespace
 
 LightAccounts::LightAccounts(std::span<const VirtualLight> lights, int profile_resolution, double power)
-    : lights_(lights), resolution_(profile_resolution), unit_(std::max(power, 1e-300) / kSteps) {
+    : lights_(lights), resolution_(profile_resolution), sums_(0, power) {
     std::size_t records = 0;
     for (const VirtualLight& light : lights) {
         first_.push_back(records);
         records += light.profile < 0 ? 1 : static_cast<std::size_t>(resolution_) * resolution_;
     }
-    sums_.resize(3 * records);
+    sums_ = FixedSums(records, power);
 }
 
 void LightAccounts::add(std::size_t light, const dvec3& toward_source, const Rgb& power) {
     std::size_t record = first_[light];
     if (lights_[light].profile >= 0)
         record += texel_of(lights_[light].frame.local_from_world(toward_source), resolution_);
-    for (int c = 0; c < 3; ++c) {
-        std::atomic_ref<std::int64_t> sum(sums_[3 * record + static_cast<std::size_t>(c)]);
-        sum.fetch_add(std::llround(double(power[c]) / unit_), std::memory_order_relaxed);
-    }
+    sums_.add(record, dvec3(power));
 }
 
 Rgb LightAccounts::read(std::size_t record) const {
-    const std::int64_t* const sum = sums_.data() + 3 * record;
-    return {float(double(sum[0]) * unit_), float(double(sum[1]) * unit_), float(double(sum[2]) * unit_)};
+    return Rgb(sums_.read(record));
 }
 
 PhotonArrivals photon_arrivals(const DirectLight& scene, std::size_t paths, Stream stream, std::uint32_t seed) {

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/fixed_sums.h"
 #include "tracing/particles.h"
 #include "virtual_lights/candidates.h"
 #include "virtual_lights/cover.h"
@@ -34,16 +35,15 @@ public:
     // The whole of a light that has no map, and one texel of a map.
     Rgb whole(std::size_t light) const { return read(first_[light]); }
     Rgb texel(std::size_t light, std::size_t texel) const { return read(first_[light] + texel); }
-    std::uint64_t bytes() const { return sums_.size() * sizeof(std::int64_t) + first_.size() * sizeof(std::size_t); }
+    std::uint64_t bytes() const { return sums_.bytes() + first_.size() * sizeof(std::size_t); }
 
 private:
     Rgb read(std::size_t record) const;
 
     std::span<const VirtualLight> lights_;
     int resolution_;
-    double unit_;                     // [W]
-    std::vector<std::size_t> first_;  // record of a light: three sums each
-    std::vector<std::int64_t> sums_;
+    std::vector<std::size_t> first_;  // record of a light
+    FixedSums sums_;                  // of all records [W]
 };
 
 // A particle on a surface that holds light.

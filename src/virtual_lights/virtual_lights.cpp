@@ -78,8 +78,7 @@ private:
 VirtualLights::VirtualLights(const DirectLight& scene, const PixelCamera& camera, const VirtualLightSettings& settings)
     : scene_(scene), settings_(settings), choice_({}, settings) {
     check(settings);
-    shines_ =
-        scene.surroundings() && scene.surroundings()->has_surfaces() && (scene.has_emitters() || !scene.fire().empty());
+    shines_ = scene.lights_surfaces();
     if (shines_ && settings.count > 0 && settings.photons > 0)
         build(camera);
 }

@@ -1,0 +1,35 @@
+// Sums that come out the same in whatever order threads add to them: whole numbers of a small unit.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "core/vec.h"
+
+namespace brisance {
+
+// Each holds up to 2^16 times `whole`, in steps of 2^-46 of it.
+class FixedSums {
+public:
+    FixedSums(std::size_t count, double whole) : unit_(std::max(whole, 1e-300) / 0x1p46), sums_(3 * count) {}
+
+    // From any thread.
+    void add(std::size_t sum, const dvec3& value) {
+        for (std::size_t c = 0; c < 3; ++c)
+            std::atomic_ref<std::int64_t>(sums_[3 * sum + c])
+                .fetch_add(std::llround(value[int(c)] / unit_), std::memory_order_relaxed);
+    }
+    dvec3 read(std::size_t sum) const {
+        return unit_ * dvec3(double(sums_[3 * sum]), double(sums_[3 * sum + 1]), double(sums_[3 * sum + 2]));
+    }
+    std::uint64_t bytes() const { return sums_.size() * sizeof(std::int64_t); }
+
+private:
+    double unit_;
+    std::vector<std::int64_t> sums_;
+};
+
+}  // namespace brisance
