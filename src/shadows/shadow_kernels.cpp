@@ -1,5 +1,7 @@
 #include "shadows/shadow_kernels.h"
 
+#include <cmath>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "shadows/shadow_kernels.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
@@ -28,6 +30,43 @@ HWY_INLINE V step_depth(D d, const PackedExtinction* mips, const ShadowStep& s, 
     }
     return hn::Mul(sample_extinction(d, mips[s.mip], p[0], p[1], p[2]), hn::Set(d, s.length));
 }
+
+// How far along rays of one group of lanes any of them may find extinction [m], level by level of the pyramid as they
+// are asked for: what lies farther need not be sampled to be known as 0. `slack`: how far off its line a ray starts.
+class Exits {
+public:
+    Exits(const PackedExtinction* mips, const V start[3], const V direction[3], const V slack[3])
+        : mips_(mips), start_(start), direction_(direction), slack_(slack) {}
+
+    bool passed(D d, const ShadowStep& s) {
+        if (!(known_ >> s.mip & 1)) {
+            known_ |= 1u << s.mip;
+            exit_[s.mip] = farthest(d, s.mip);
+        }
+        return s.distance > exit_[s.mip];
+    }
+
+private:
+    float farthest(D d, int mip) const {
+        const PackedExtinction& level = mips_[mip];
+        const auto node = [&](int brick) { return std::ldexp(float(brick) * 8.0f, mip); };
+        V exit = hn::Set(d, 1e30f);
+        for (int a = 0; a < 3; ++a) {
+            // Inside of the rim of empty bricks.
+            const V low = hn::Sub(hn::Set(d, node(level.min_brick[a] + 1)), slack_[a]);
+            const V high = hn::Add(hn::Set(d, node(level.min_brick[a] + level.extent[a] - 1)), slack_[a]);
+            const V way = hn::CopySign(hn::Max(hn::Abs(direction_[a]), hn::Set(d, 1e-20f)), direction_[a]);
+            const V bound = hn::IfThenElse(hn::Gt(way, hn::Zero(d)), high, low);
+            exit = hn::Min(exit, hn::Div(hn::Sub(bound, start_[a]), way));
+        }
+        return hn::GetLane(hn::MaxOfLanes(d, exit));
+    }
+
+    const PackedExtinction* mips_;
+    const V *start_, *direction_, *slack_;
+    std::uint32_t known_ = 0;
+    float exit_[ExtinctionPyramid::kMaxLevels] = {};
+};
 
 // Mean transmittance to the first stored distance over starts spread in the light's extent.
 HWY_INLINE V near_transmittance(D d, const PackedExtinction* mips, std::span<const ShadowStep> steps, const V origin[3],
@@ -61,6 +100,7 @@ void march(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
         for (int a = 0; a < 3; ++a)
             direction[a] = hn::LoadU(d, rays.direction[a] + r);
         const V near = near_transmittance(d, mips, near_steps, start, direction, rays, r);
+        Exits exits(mips, start, direction, centre);
         V depth = hn::Zero(d);
         bool opaque = false;
         const auto store = [&](int k) {
@@ -72,7 +112,7 @@ void march(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
         };
         store(0);
         for (const ShadowStep& s : steps) {
-            if (!opaque)
+            if (!opaque && !exits.passed(d, s))
                 depth = hn::Add(depth, step_depth(d, mips, s, start, direction, centre, 0.0f));
             if (s.store >= 0)
                 store(s.store);
@@ -86,13 +126,19 @@ struct Bundle {
     V weight[kParallelRays];
     V depth[kParallelRays];
     bool opaque[kParallelRays];
+    V widest[3];  // of the offsets, without their signs
+    bool changed = true;
 };
 
 HWY_INLINE void open_bundle(D d, const ShadowRays& rays, std::size_t ray, Bundle& b) {
+    for (V& widest : b.widest)
+        widest = hn::Zero(d);
     for (int k = 0; k < kParallelRays; ++k) {
         const std::size_t at = (ray * 5 + k * (kStarts / kParallelRays)) % kStarts;
         for (int a = 0; a < 3; ++a)
             b.offset[k][a] = hn::LoadU(d, rays.starts[a] + at);
+        for (int a = 0; a < 3; ++a)
+            b.widest[a] = hn::Max(b.widest[a], hn::Abs(b.offset[k][a]));
         b.weight[k] = hn::LoadU(d, rays.weights + at);
         b.depth[k] = hn::Zero(d);
         b.opaque[k] = false;
@@ -140,16 +186,21 @@ HWY_INLINE bool stride(D d, const PackedExtinction* mips, std::span<const Shadow
     const V depth = step_depth(d, mips, s, start, direction, start, 0.0f);
     for (V& sum : bundle.depth)
         sum = hn::Add(sum, depth);
+    bundle.changed = true;
     return true;
 }
 
 HWY_INLINE void march_bundle(D d, const PackedExtinction* mips, std::span<const ShadowStep> steps, const V start[3],
-                             const V direction[3], Bundle& bundle) {
-    for (const ShadowStep& s : steps)
+                             const V direction[3], Exits& exits, Bundle& bundle) {
+    for (const ShadowStep& s : steps) {
+        if (exits.passed(d, s))
+            continue;
+        bundle.changed = true;
         for (int k = 0; k < kParallelRays; ++k)
             if (!bundle.opaque[k])
                 bundle.depth[k] =
                     hn::Add(bundle.depth[k], step_depth(d, mips, s, start, direction, bundle.offset[k], 1.0f));
+    }
 }
 
 // The steps that lead to the next stored distance, or as many of them as a stride may take: no longer than a brick's
@@ -175,18 +226,24 @@ void march_parallel(const PackedExtinction* mips, std::span<const ShadowStep> ne
             direction[a] = hn::LoadU(d, rays.direction[a] + r);
         Bundle bundle;
         open_bundle(d, rays, r, bundle);
+        Exits exits(mips, start, direction, bundle.widest);
         for (const std::span<const ShadowStep> part : {near_steps, steps})
             for (std::size_t first = 0; first < part.size();) {
                 const auto these = part.subspan(first, steps_at_once(part.subspan(first), strides));
                 const int store = these.back().store;
                 first += these.size();
                 const bool fine = these.size() > 1 && these.front().mip == 0;
-                if (!(strides && fine && stride(d, mips, these, start, direction, *strides, bundle)))
-                    march_bundle(d, mips, these, start, direction, bundle);
+                const bool strided = strides && fine && !exits.passed(d, these.front()) &&
+                                     stride(d, mips, these, start, direction, *strides, bundle);
+                if (!strided)
+                    march_bundle(d, mips, these, start, direction, exits, bundle);
                 if (store < 0)
                     continue;
-                const V t = hn::Mul(mean_transmittance(d, bundle), hn::Set(d, scale));
-                hn::Store(hn::NearestInt(hn::Min(t, hn::Set(d, 65535.0f))), di, quantised);
+                if (bundle.changed) {
+                    const V t = hn::Mul(mean_transmittance(d, bundle), hn::Set(d, scale));
+                    hn::Store(hn::NearestInt(hn::Min(t, hn::Set(d, 65535.0f))), di, quantised);
+                    bundle.changed = false;
+                }
                 for (std::size_t i = 0; i < lanes; ++i)
                     out[(r + i) * distances + store] = static_cast<std::uint16_t>(quantised[i]);
             }
