@@ -52,6 +52,22 @@ double cost(const LightBounds& b, const dvec3& parent_size, int axis) {
     return b.intensity * orientation_measure(b.spread, b.reach) * longest / std::max(parent_size[axis], 1e-300) * area;
 }
 
+// From 0 to pi.
+struct Angle {
+    double cosine, sine;
+    static Angle of_cosine(double c) { return {c, std::sqrt(std::max(0.0, (1.0 - c) * (1.0 + c)))}; }
+    static Angle of_sine(double s) { return {std::sqrt(std::max(0.0, (1.0 - s) * (1.0 + s))), s}; }  // up to pi / 2
+    // Down to 0.
+    Angle less(const Angle& other) const {
+        if (cosine >= other.cosine)
+            return {1.0, 0.0};
+        return {cosine * other.cosine + sine * other.sine, sine * other.cosine - cosine * other.sine};
+    }
+};
+
+// By how much the cosine of a reach of pi / 2 may be below 0.
+constexpr double kRightAngle = 1e-12;
+
 dvec3 middle(const LightBounds& b) {
     return 0.5 * (b.low + b.high);
 }
@@ -107,31 +123,40 @@ LightBounds united(const LightBounds& a, const LightBounds& b) {
     return out;
 }
 
-double importance(const LightBounds& b, const LitPoint& point) {
-    const dvec3 from = point.position - middle(b);
-    const double radius = 0.5 * glm::length(b.high - b.low), distance2 = glm::dot(from, from);
+LightCone::LightCone(const LightBounds& b)
+    : middle_(middle(b)),
+      axis_(b.axis),
+      radius2_(0.25 * glm::dot(b.high - b.low, b.high - b.low)),
+      intensity_(b.intensity),
+      cos_spread_(std::cos(b.spread)),
+      sin_spread_(std::sin(b.spread)),
+      cos_reach_(std::cos(b.reach)),
+      two_sided_(b.two_sided) {}
+
+double LightCone::importance(const LitPoint& point) const {
+    const dvec3 from = point.position - middle_;
+    const double distance2 = glm::dot(from, from);
     if (!(distance2 > 0.0))
-        return b.intensity / std::max(radius * radius, 1e-300);
-    const double distance = std::sqrt(distance2);
-    const dvec3 direction = from / distance;
+        return intensity_ / std::max(radius2_, 1e-300);
+    if (distance2 <= radius2_)  // inside the ball, which is all around the point
+        return intensity_ / radius2_;
+    const dvec3 direction = from / std::sqrt(distance2);
     // The box as seen from the point, by its ball.
-    const double around = distance <= radius ? kPi : std::asin(std::min(1.0, radius / distance));
-    double cosine = glm::dot(b.axis, direction);
-    if (b.two_sided)
-        cosine = std::abs(cosine);
-    const double off = std::max(0.0, std::acos(std::clamp(cosine, -1.0, 1.0)) - b.spread - around);
-    if (off >= b.reach)
+    const Angle around = Angle::of_sine(std::sqrt(radius2_ / distance2));
+    const double along = glm::dot(axis_, direction);
+    const Angle off =
+        Angle::of_cosine(two_sided_ ? std::abs(along) : along).less({cos_spread_, sin_spread_}).less(around);
+    if (off.cosine <= cos_reach_)
         return 0.0;
     // Full intensity along each light's axis; what lies beyond a right angle emits alike everywhere.
-    const double emitted = b.reach <= kPi / 2.0 ? std::cos(off) : 1.0;
+    const double emitted = cos_reach_ >= -kRightAngle ? off.cosine : 1.0;
     double received = 1.0;
     if (point.kind != LitPoint::Kind::Medium) {
-        double toward = -glm::dot(point.normal, direction);
-        if (point.kind == LitPoint::Kind::Transmitting)
-            toward = std::abs(toward);
-        received = std::cos(std::max(0.0, std::acos(std::clamp(toward, -1.0, 1.0)) - around));
+        const double toward = -glm::dot(point.normal, direction);
+        const bool both = point.kind == LitPoint::Kind::Transmitting;
+        received = Angle::of_cosine(both ? std::abs(toward) : toward).less(around).cosine;
     }
-    return std::max(0.0, b.intensity * emitted * received / std::max(distance2, radius * radius));
+    return std::max(0.0, intensity_ * emitted * received / distance2);
 }
 
 LightTree::LightTree(const std::vector<LightBounds>& lights) : leaf_of_(lights.size()) {
@@ -150,7 +175,7 @@ std::uint32_t LightTree::build(std::vector<std::uint32_t>& order, const std::vec
     nodes_.push_back({});
     nodes_[node].parent = parent;
     if (end - begin == 1) {
-        nodes_[node].bounds = lights[order[begin]];
+        nodes_[node].lights = LightCone(lights[order[begin]]);
         nodes_[node].right = order[begin];
         leaf_of_[order[begin]] = node;
         return node;
@@ -176,7 +201,7 @@ std::uint32_t LightTree::build(std::vector<std::uint32_t>& order, const std::vec
     }
     const std::uint32_t left = build(order, lights, begin, cut, node);
     const std::uint32_t right = build(order, lights, cut, end, node);
-    nodes_[node].bounds = all;
+    nodes_[node].lights = LightCone(all);
     nodes_[node].left = left;
     nodes_[node].right = right;
     return node;
@@ -184,8 +209,8 @@ std::uint32_t LightTree::build(std::vector<std::uint32_t>& order, const std::vec
 
 // Below 0: neither can reach the point.
 double LightTree::share_of_left(const Node& node, const LitPoint& point) const {
-    const double left = importance(nodes_[node.left].bounds, point);
-    const double right = importance(nodes_[node.right].bounds, point);
+    const double left = nodes_[node.left].lights.importance(point);
+    const double right = nodes_[node.right].lights.importance(point);
     return left + right > 0.0 ? left / (left + right) : -1.0;
 }
 
@@ -193,14 +218,14 @@ std::optional<LightTree::Choice> LightTree::choose(const LitPoint& point, double
     if (nodes_.empty())
         return std::nullopt;
     const auto found = descend(nodes_, u, [&](const Node& n) { return share_of_left(n, point); });
-    if (!found || !(importance(nodes_[found->leaf].bounds, point) > 0.0))
+    if (!found || !(nodes_[found->leaf].lights.importance(point) > 0.0))
         return std::nullopt;
     return Choice{nodes_[found->leaf].right, found->probability};
 }
 
 double LightTree::probability(const LitPoint& point, std::size_t light) const {
     const std::uint32_t leaf = leaf_of_[light];
-    if (!(importance(nodes_[leaf].bounds, point) > 0.0))
+    if (!(nodes_[leaf].lights.importance(point) > 0.0))
         return 0.0;
     return descent_probability(nodes_, leaf, [&](const Node& n) { return share_of_left(n, point); });
 }

@@ -28,6 +28,22 @@ struct LitPoint {
     enum class Kind { Medium, Surface, Transmitting } kind = Kind::Medium;
 };
 
+// What bounded lights send to a point at most, by the bounds' own geometry: their importance. Angles by their cosines
+// and sines, since every choice asks at every branch.
+class LightCone {
+public:
+    LightCone() = default;
+    explicit LightCone(const LightBounds& lights);
+    double importance(const LitPoint& point) const;
+
+private:
+    dvec3 middle_{0.0}, axis_{0.0, 0.0, 1.0};
+    double radius2_ = 0.0;  // of the ball around the box [m^2]
+    double intensity_ = 0.0;
+    double cos_spread_ = 1.0, sin_spread_ = 0.0, cos_reach_ = 1.0;
+    bool two_sided_ = false;
+};
+
 class LightTree {
 public:
     explicit LightTree(const std::vector<LightBounds>& lights);
@@ -47,7 +63,7 @@ public:
 
 private:
     struct Node {
-        LightBounds bounds;
+        LightCone lights;
         std::uint32_t parent = 0, left = 0, right = 0;  // left == 0: a leaf of the light `right`
     };
     std::uint32_t build(std::vector<std::uint32_t>& order, const std::vector<LightBounds>& lights, std::size_t begin,
@@ -60,8 +76,5 @@ private:
 
 // Bounds of both.
 LightBounds united(const LightBounds& a, const LightBounds& b);
-
-// What the bounded lights send to the point at most, by the bounds' own geometry: their importance.
-double importance(const LightBounds& lights, const LitPoint& point);
 
 }  // namespace brisance
