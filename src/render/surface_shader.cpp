@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/parallel.h"
+#include "render/shared_receivers.h"
 
 namespace brisance {
 
@@ -169,13 +170,11 @@ void SurfaceShader::shade_place(const SurfaceSample& sample, const SurfaceReceiv
 
 void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) const {
     std::vector<Place> places = this->places(samples, light);
-    std::vector<SurfaceReceiver> receivers(samples.size());
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        receivers[i].local = vec3(places[i].seen.point.position);
-        receivers[i].normal = vec3(places[i].seen.point.frame.normal);
-    }
+    SharedReceivers receivers(paths_.direct().field().medium());
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        receivers.add(samples[i].pixel, vec3(places[i].seen.point.position), vec3(places[i].seen.point.frame.normal));
     if (lighting_)
-        lighting_->at_surfaces(receivers);
+        lighting_->at_surfaces(receivers.receivers());
     parallel_for(
         samples.size(),
         [&](std::size_t i) {
@@ -183,11 +182,11 @@ void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector
             if (seen.lost)
                 return;
             if (seen.mirrors == 0) {
-                shade_place(samples[i], receivers[i], places[i], light[i]);
+                shade_place(samples[i], receivers.of_sample(i), places[i], light[i]);
                 return;
             }
             CellSum there;
-            shade_place(samples[i], receivers[i], places[i], there);
+            shade_place(samples[i], receivers.of_sample(i), places[i], there);
             for (const Rgb& cell : there)
                 light[i].at(Cell::SS) += seen.throughput * cell;
         },
