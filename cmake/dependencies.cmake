@@ -15,6 +15,11 @@ find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
 add_library(tinygltf INTERFACE)
 target_include_directories(tinygltf SYSTEM INTERFACE ${TINYGLTF_INCLUDE_DIR})
 
+# A header alone.
+find_path(NANOFLANN_INCLUDE_DIR nanoflann.hpp REQUIRED)
+add_library(nanoflann INTERFACE)
+target_include_directories(nanoflann SYSTEM INTERFACE ${NANOFLANN_INCLUDE_DIR})
+
 # OpenVDB's find module is not on CMake's own path, and asks for boost's iostreams.
 if(CMAKE_LIBRARY_ARCHITECTURE)
     list(APPEND CMAKE_MODULE_PATH /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB)

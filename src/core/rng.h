@@ -28,7 +28,9 @@ enum class Stream : std::uint32_t {
     RayLightPass,
     Mirror,
     CastLight,
-    CastLightRoulette
+    CastLightRoulette,
+    ParticleTrack,
+    LaidWay
 };
 
 // SplitMix64 (Steele, Lea, Flood 2014), keyed by identity.

@@ -31,10 +31,12 @@ public:
     virtual Rgb at_surface(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer, Rng& rng,
                            RayLightCost* cost = nullptr) const = 0;
 
-    // The same from every light: the check.
-    virtual Rgb along_ray_from_all(const SeenMedium& seen, Rng& rng) const = 0;
+    // The same from every light: the check. Who asks none by chance has nothing to check.
+    virtual Rgb along_ray_from_all(const SeenMedium& seen, Rng& rng) const { return along_ray(seen, rng); }
     virtual Rgb at_surface_from_all(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer,
-                                    Rng& rng) const = 0;
+                                    Rng& rng) const {
+        return at_surface(point, bsdf, toward_viewer, rng);
+    }
 
 private:
     std::uint32_t seed_;

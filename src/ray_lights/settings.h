@@ -7,9 +7,9 @@ namespace brisance {
 
 // Who owns light that was scattered in the medium before its last scattering: MM and SM. Automatic: the plan decides
 // (render/plan.h).
-enum class ScatteringMethod { LightingGrid, RayLights, PointLights, Automatic };
+enum class ScatteringMethod { LightingGrid, RayLights, PointLights, Particles, Automatic };
 constexpr const char* name_of(ScatteringMethod method) {
-    constexpr const char* kNames[] = {"lighting_grid", "ray_lights", "point_lights", "auto"};
+    constexpr const char* kNames[] = {"lighting_grid", "ray_lights", "point_lights", "particles", "auto"};
     return kNames[static_cast<int>(method)];
 }
 

@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/stopwatch.h"
 #include "medium_points/medium_points.h"
+#include "particle_tracks/particle_tracks.h"
 #include "ray_lights/ray_lights.h"
 #include "render/emitters_along_ray.h"
 
@@ -73,6 +74,19 @@ Made point_lights(const DirectLight& scene, const PointLightSettings& settings, 
     return made;
 }
 
+Made particle_tracks(const DirectLight& scene, const ParticleTrackSettings& settings, int bounces,
+                     const Camera& camera) {
+    const Surroundings* const surroundings = scene.surroundings();
+    const bool other_rays = surroundings && surroundings->scene().is_glossy();
+    auto tracks = std::make_unique<ParticleTracks>(scene, settings, bounces, camera.eye_local(), other_rays);
+    const ParticleTrackReport& r = tracks->report();
+    Made made{nullptr, tracks->bytes(), {}, 0.0};
+    made.detail = {
+        {"particles", r.paths}, {"flights", r.flights}, {"landings", r.landings}, {"not_finite", r.not_finite}};
+    made.lights = std::move(tracks);
+    return made;
+}
+
 // What one pass cost, after others: counts add up.
 void add(StageCost& to, const Made& pass, double seconds) {
     to.seconds += seconds;
@@ -93,29 +107,50 @@ void add_to_mean(Image& mean, const Image& next, int count) {
         }
 }
 
-bool by_points(const Plan& plan) {
-    return plan.scattering == ScatteringMethod::PointLights;
+bool by_rays(const Plan& plan) {
+    return plan.scattering == ScatteringMethod::RayLights;
+}
+
+const char* stage_name(const Plan& plan) {
+    switch (plan.scattering) {
+        case ScatteringMethod::PointLights:
+            return "point lights (MM, SM)";
+        case ScatteringMethod::Particles:
+            return "particles (MM, SM)";
+        default:
+            return "ray lights (MM, SM)";
+    }
 }
 
 }  // namespace
 
 int passes_of(const Shot& shot, const Plan& plan) {
-    return by_points(plan) ? 1 : shot.ray_lights.passes;
+    return by_rays(plan) ? shot.ray_lights.passes : 1;
 }
 
 Image mean_of_passes(const Shot& shot, const Plan& plan, const DirectLight& scene, const Camera& camera,
                      const DrawPass& draw, double& seconds, Statistics& statistics, Progress& progress) {
-    const std::vector<RayLightReceiver> receivers = receivers_of(scene, camera);
+    std::vector<RayLightReceiver> receivers;
+    if (plan.scattering != ScatteringMethod::Particles)
+        receivers = receivers_of(scene, camera);
     const int passes = passes_of(shot, plan), bounces = shot.scattering.bounces;
-    StageCost cost{by_points(plan) ? "point lights (MM, SM)" : "ray lights (MM, SM)", 0.0, 0, {}};
+    StageCost cost{stage_name(plan), 0.0, 0, {}};
     double first = 0.0;
+    const auto make = [&](int pass) {
+        switch (plan.scattering) {
+            case ScatteringMethod::PointLights:
+                return point_lights(scene, shot.point_lights, bounces, receivers);
+            case ScatteringMethod::Particles:
+                return particle_tracks(scene, shot.particles, bounces, camera);
+            default:
+                return ray_lights(scene, settings_of_pass(shot.ray_lights, pass, first), bounces, receivers);
+        }
+    };
     Image mean;
     for (int pass = 0; pass < passes; ++pass) {
         progress.stage(passes > 1 ? fmt::format("{}, pass {} of {}", cost.name, pass + 1, passes) : cost.name);
         const Stopwatch watch;
-        const Made made = by_points(plan)
-                              ? point_lights(scene, shot.point_lights, bounces, receivers)
-                              : ray_lights(scene, settings_of_pass(shot.ray_lights, pass, first), bounces, receivers);
+        const Made made = make(pass);
         if (pass == 0)
             first = made.radius;
         add(cost, made, watch.seconds());
@@ -126,7 +161,7 @@ Image mean_of_passes(const Shot& shot, const Plan& plan, const DirectLight& scen
         else
             add_to_mean(mean, picture, pass + 1);
     }
-    if (!by_points(plan)) {
+    if (by_rays(plan)) {
         cost.detail["passes"] = passes;
         cost.detail["first_radius"] = first;
     }

@@ -6,9 +6,8 @@
 #include "core/fixed_sums.h"
 #include "core/parallel.h"
 #include "gathering/sh.h"
-#include "medium/cell_walk.h"
+#include "medium/node_ways.h"
 #include "medium/phase.h"
-#include "render/march.h"
 #include "tracing/particle_flights.h"
 #include "tracing/roulette.h"
 
@@ -17,14 +16,8 @@ namespace brisance {
 namespace {
 
 constexpr std::size_t kParticlesAtOnce = 1024;
-// Parts of a way through a cell, each of which counts for the node nearest to it.
-constexpr int kParts = 2;
 // Of the light that arrives where virtual lights were made.
 constexpr double kUnsharedLeft = 0.01;
-
-bool is_glossy(const Scene& scene) {
-    return std::ranges::any_of(scene.materials, [](const SceneMaterial& m) { return needs_energy_tables(m.surface); });
-}
 
 }  // namespace
 
@@ -34,31 +27,16 @@ public:
     Ways(const Medium& medium, const LatticeRequest& request, double power)
         : medium_(medium),
           request_(request),
-          cells_(cell_lattice(medium)),
-          index_from_local_(glm::inverse(dmat3(medium.local_from_index))),
+          ways_(medium),
           kinds_(1 + (request.toward_camera ? 1 : 0) + (request.moments ? kShMoments : 0)),
           sums_(kinds_ * medium.lattice.node_count(), power * medium.spacing) {}
 
     void add(const Ray& ray, double end, const Rgb& power) {
-        float depth = 0.0f;
         const auto basis = sh_basis(vec3(ray.direction));
-        const auto in_cell = [&](const CellSegment& s) {
-            const double length = (s.end - s.begin) / kParts;
-            for (int part = 0; part < kParts; ++part) {
-                const dvec3 place = s.origin + s.direction * (s.begin + (part + 0.5) * length);
-                const std::int64_t node =
-                    medium_.lattice.find_node(cells_.first_node(s.brick) + ivec3(glm::round(place)));
-                if (node < 0)
-                    continue;
-                const float tau = medium_.extinction[node] * float(length);
-                if ((*request_.needed)[node])
-                    add_to(node, power * (std::exp(-depth) * float(length) * phi1(tau)), vec3(ray.direction), basis);
-                depth += tau;
-            }
-            return depth < kOpaqueDepth;
-        };
-        walk_bricks(cells_, lattice_ray(cells_, index_from_local_, medium_.reference_node, ray, end),
-                    [&](const CellSegment& brick) { return walk_cubes<1>(brick, in_cell); });
+        ways_.along(ray, end, [&](std::int64_t node, float length) {
+            if ((*request_.needed)[node])
+                add_to(node, power * length, vec3(ray.direction), basis);
+        });
     }
 
     Gathered fluence() const {
@@ -95,8 +73,7 @@ private:
 
     const Medium& medium_;
     const LatticeRequest& request_;
-    BrickLattice cells_;
-    dmat3 index_from_local_;
+    NodeWays ways_;
     std::size_t kinds_;  // of sums at each node: fluence, toward the camera, moments
     FixedSums sums_;     // [W m]
 };
@@ -105,7 +82,7 @@ CastLight::CastLight(const DirectLight& scene, const VirtualLights* lights, cons
     : scene_(scene), lights_(lights), seed_(settings.seed) {
     if (!scene.lights_surfaces())
         return;
-    if (!lights || is_glossy(scene.surroundings()->scene()) ||
+    if (!lights || scene.surroundings()->scene().is_glossy() ||
         lights->report().photons.unshared_fraction() > kUnsharedLeft)
         particles_ = static_cast<std::size_t>(settings.photons);
 }

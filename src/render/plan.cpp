@@ -55,6 +55,17 @@ bool scatters_sharply(const Medium& medium) {
     return std::abs(medium.mean_cosine) > 0.5f;
 }
 
+const char* things_of(ScatteringMethod method) {
+    switch (method) {
+        case ScatteringMethod::PointLights:
+            return "point lights";
+        case ScatteringMethod::Particles:
+            return "particles";
+        default:
+            return "ray lights";
+    }
+}
+
 struct Choice {
     ScatteringMethod method;
     std::string reason;
@@ -71,7 +82,7 @@ Choice choose_scattering(const Shot& shot, const Medium& medium) {
     if (!scatters_sharply(medium))
         return {ScatteringMethod::LightingGrid,
                 "scattering.method is auto: haze with a mean cosine of at most 0.5 is the grid's"};
-    return {ScatteringMethod::RayLights, "scattering.method is auto, and haze alone has a mean cosine above 0.5"};
+    return {ScatteringMethod::Particles, "scattering.method is auto, and haze alone has a mean cosine above 0.5"};
 }
 
 }  // namespace
@@ -94,10 +105,9 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
     plan.emitters_by_rays = lit_by_grid && plan.needs(Cell::MA) && (plan.scattered_lights || haze_alone(shot));
     plan.reflected_by_particles = lit_by_grid && plan.needs(Cell::MS) && scatters_sharply(medium);
     if (by_lights && !plan.scattered_lights)
-        skip(plan.scattering == ScatteringMethod::RayLights ? "ray lights" : "point lights",
-             "no light is scattered twice");
+        skip(things_of(plan.scattering), "no light is scattered twice");
     if (lit_by_grid && twice && !by_lights)
-        skip("ray lights, point lights", choice.reason);
+        skip("ray lights, point lights, particles", choice.reason);
     const std::string owners = choice.reason + ": MM and SM are theirs";
     if (!plan.surfaces)
         skip("row S, column S", "no surfaces in the shot");

@@ -2,9 +2,10 @@
 //
 // scattering.method auto looks at the shot and not at the frame, so that no sequence changes its method half way. Boxes
 // of haze without any smoke from files are thin and even. If they scatter forward, hierarchies, which keep directions
-// to degree 2 only, lose a part of MM and SM (a tenth at g = 0.8) where ray lights lose nothing; if they scatter alike
-// to all sides hierarchies are right to a percent, and free of noise. Smoke that is dense, or changes from voxel to
-// voxel, makes pairs of rays see each other rarely: there hierarchies are better by far whatever the phase function. MA
+// to degree 2 only, lose a part of MM and SM (a tenth at g = 0.8) where particles keep the phase function as it is; ray
+// lights do too, and without blur, but in the same time with a hundred times the noise. If haze scatters alike to all
+// sides hierarchies are right to a percent, and free of noise. Smoke from files is finer and larger than particles can
+// fill: there hierarchies are better by far whatever the phase function. MA
 // of haze alone goes by the camera's rays too: beams are narrower than the voxels of a box.
 #pragma once
 
@@ -26,7 +27,7 @@ struct Plan {
     bool multiple = false;                                         // MM
     bool directional = false;                                      // anisotropic phase function: directional storage
     ScatteringMethod scattering = ScatteringMethod::LightingGrid;  // never Automatic
-    bool scattered_lights = false;        // virtual lights in the smoke, rays or points, own MM and SM
+    bool scattered_lights = false;        // lights in the smoke, rays or points, or particles own MM and SM
     bool emitters_by_rays = false;        // MA by the camera's rays, not at the medium's nodes
     bool reflected_by_particles = false;  // MS by particles alone, without virtual lights
     bool surfaces = false;                // there are some

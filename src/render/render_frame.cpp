@@ -289,6 +289,7 @@ std::string checkpoint_key(Shot shot, const std::filesystem::path& volume, int f
     shot.virtual_lights = VirtualLightSettings{};
     shot.ray_lights = RayLightSettings{};
     shot.point_lights = PointLightSettings{};
+    shot.particles = ParticleTrackSettings{};
     shot.output = OutputSettings{};
     shot.output.bounce_layers = bounces;
     const auto size_of = [](const std::filesystem::path& file) {

@@ -24,6 +24,10 @@ std::size_t Scene::triangle_count() const {
     return count;
 }
 
+bool Scene::is_glossy() const {
+    return std::ranges::any_of(materials, [](const SceneMaterial& m) { return needs_energy_tables(m.surface); });
+}
+
 std::uint64_t Scene::bytes() const {
     std::uint64_t sum = bytes_of(meshes) + bytes_of(materials) + bytes_of(textures) + bytes_of(cameras);
     for (const SceneMesh& mesh : meshes)

@@ -75,6 +75,8 @@ struct Scene {
     std::vector<LightSettings> lights;  // of the files: Point, Spot and Sun
 
     std::size_t triangle_count() const;
+    // Whether any surface has lobes other than Lambert's.
+    bool is_glossy() const;
     std::uint64_t bytes() const;
 };
 

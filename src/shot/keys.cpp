@@ -37,7 +37,7 @@ Affects affected_by(const std::string& path) {
     // Leaving out orders of scattering changes what is true.
     if (path == "scattering.bounces")
         return Affects::Picture;
-    for (const char* section : {"lighting.", "scattering.", "ray_lights.", "point_lights.", "virtual_lights.",
+    for (const char* section : {"lighting.", "scattering.", "ray_lights.", "point_lights.", "particles.", "virtual_lights.",
                                 "tracing.", "certify.", "output."})
         if (path.starts_with(section))
             return Affects::Method;
@@ -64,6 +64,7 @@ const std::vector<std::pair<std::string, std::string>>& shot_sections() {
         {"scattering", "light scattered more than once"},
         {"ray_lights", "virtual ray lights, of scattering.method ray_lights"},
         {"point_lights", "volumetric virtual point lights, of scattering.method point_lights"},
+        {"particles", "tracks of particles, of scattering.method particles"},
         {"virtual_lights", "light that surfaces reflect onto surfaces and smoke"},
         {"tracing", "the reference path tracer (method path)"},
         {"certify", "how far the finished frame is from the truth"},

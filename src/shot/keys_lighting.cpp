@@ -8,12 +8,13 @@ void add_ray_light_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "scattering.method",
         "lighting_grid: hierarchies of scattered light; ray_lights: virtual ray lights, unbiased and noisy; "
-        "point_lights: volumetric virtual point lights; auto: ray lights for boxes of haze alone that scatter forward, "
-        "else the grid",
+        "point_lights: volumetric virtual point lights; particles: counted along their ways and where they land; auto: "
+        "particles for boxes of haze alone that scatter forward, else the grid",
         choice<ScatteringMethod>({{"auto", ScatteringMethod::Automatic},
                                   {"lighting_grid", ScatteringMethod::LightingGrid},
                                   {"ray_lights", ScatteringMethod::RayLights},
-                                  {"point_lights", ScatteringMethod::PointLights}}),
+                                  {"point_lights", ScatteringMethod::PointLights},
+                                  {"particles", ScatteringMethod::Particles}}),
         [](Shot & s) -> auto& { return s.ray_lights.method; }));
     keys.push_back(make_key(
         "ray_lights.paths", "particles whose flights through the smoke become ray lights", whole(1, 100000000),
@@ -74,6 +75,18 @@ void add_point_light_keys(std::vector<Key>& keys) {
         [](Shot & s) -> auto& { return s.point_lights.seed; }));
 }
 
+void add_particle_keys(std::vector<Key>& keys) {
+    keys.push_back(make_key(
+        "particles.paths", "particles that are followed through smoke and surfaces", whole(1, 1000000000),
+        [](Shot & s) -> auto& { return s.particles.paths; }));
+    keys.push_back(make_key(
+        "particles.neighbours", "particles that land around a point of a surface and tell how much arrives there",
+        whole(1, 65536), [](Shot & s) -> auto& { return s.particles.neighbours; }));
+    keys.push_back(make_key(
+        "particles.seed", "another number gives other particles", whole(0, 2147483647),
+        [](Shot & s) -> auto& { return s.particles.seed; }));
+}
+
 }  // namespace
 
 void add_lighting_keys(std::vector<Key>& keys) {
@@ -119,6 +132,7 @@ void add_lighting_keys(std::vector<Key>& keys) {
         [](Shot & s) -> auto& { return s.scattering.alpha; }));
     add_ray_light_keys(keys);
     add_point_light_keys(keys);
+    add_particle_keys(keys);
 }
 
 }  // namespace brisance

@@ -9,6 +9,7 @@
 #include "gathering/settings.h"
 #include "medium/settings.h"
 #include "medium_points/settings.h"
+#include "particle_tracks/settings.h"
 #include "ray_lights/settings.h"
 #include "render/camera_settings.h"
 #include "render/certify_settings.h"
@@ -45,6 +46,7 @@ struct Shot {
     ScatteringSettings scattering;
     RayLightSettings ray_lights;
     PointLightSettings point_lights;
+    ParticleTrackSettings particles;
     VirtualLightSettings virtual_lights;
     TracingSettings tracing;
     CertifySettings certify;

@@ -31,10 +31,11 @@ void follow_particle(const DirectLight& scene, const EmittedParticle& particle, 
                      const std::function<void(const ParticleFlight&)>& visit) {
     Ray ray = particle.ray;
     Rgb power = particle.power;
+    bool from_smoke = false;
     for (int before = 0; most_before < 0 || before <= most_before; ++before) {
         const RaySegment segment = scene.segment_along(ray);
         const std::optional<Collision> collision = null_collision_flight(scene.field(), ray, segment.end, rng);
-        visit({ray, segment.end, collision, power, before, &segment});
+        visit({ray, segment.end, collision, power, before, from_smoke, &segment});
         if (!collision && !segment.point)
             return;
         const Scatterer place = collision ? scene.in_smoke(ray, *collision) : Scatterer(*segment.point, ray.direction);
@@ -48,6 +49,7 @@ void follow_particle(const DirectLight& scene, const EmittedParticle& particle, 
             return;
         power = left / part;
         ray = place.leaving(next->wi);
+        from_smoke = collision.has_value();
     }
 }
 

@@ -16,6 +16,7 @@ struct ParticleFlight {
     std::optional<Collision> collision;  // before it
     Rgb power;                           // that sets out [W]
     int before;                          // scatterings before this flight
+    bool from_smoke;                     // the last of them was in the medium
     const RaySegment* segment;           // to that surface
 };
 

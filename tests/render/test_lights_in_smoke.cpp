@@ -1,4 +1,4 @@
-// Pictures whose MM and SM are owned by ray lights, or by point lights.
+// Pictures whose MM and SM are owned by ray lights, by point lights, or by particles.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,6 +37,8 @@ Shot small_shot(RenderMethod method, ScatteringMethod scattering = ScatteringMet
     shot.ray_lights.samples = 4;
     shot.point_lights.paths = 4000;
     shot.point_lights.count = 6000;
+    shot.particles.paths = 100000;
+    shot.particles.neighbours = 32;
     return shot;
 }
 
@@ -78,7 +80,7 @@ Sets over_sets(Shot shot, const Medium& medium, const Surroundings* set, const c
     double sum = 0.0, square = 0.0;
     Progress silent;
     for (int i = 0; i < kSets; ++i) {
-        shot.ray_lights.seed = shot.point_lights.seed = static_cast<std::uint32_t>(i);
+        shot.ray_lights.seed = shot.point_lights.seed = shot.particles.seed = static_cast<std::uint32_t>(i);
         const double mean = mean_of(render_medium(shot, medium, silent, set).image, layer);
         sum += mean / kSets;
         square += mean * mean / kSets;
@@ -104,20 +106,26 @@ void expect_as_paths(const Shot& by_lights, const Medium& medium, const Surround
 class LightsInSmokePictures : public ::testing::TestWithParam<ScatteringMethod> {};
 
 INSTANTIATE_TEST_SUITE_P(Kinds, LightsInSmokePictures,
-                         ::testing::Values(ScatteringMethod::RayLights, ScatteringMethod::PointLights),
+                         ::testing::Values(ScatteringMethod::RayLights, ScatteringMethod::PointLights,
+                                           ScatteringMethod::Particles),
                          [](const auto& kind) { return std::string(name_of(kind.param)); });
+
+// Particles are blurred over voxels, eight of which make the smoke's radius.
+double blur_of(ScatteringMethod method) {
+    return method == ScatteringMethod::Particles ? 0.02 : 0.0;
+}
 
 TEST_P(LightsInSmokePictures, SmokeIsAsPathsSeeIt) {
     const Shot shot = small_shot(RenderMethod::LightingGrid, GetParam());
-    expect_as_paths(shot, smoke(0.0f), nullptr, "MM");
-    expect_as_paths(shot, smoke(0.6f), nullptr, "MM");
+    expect_as_paths(shot, smoke(0.0f), nullptr, "MM", blur_of(GetParam()));
+    expect_as_paths(shot, smoke(0.6f), nullptr, "MM", blur_of(GetParam()));
 }
 
 TEST_P(LightsInSmokePictures, SmokeOverAFloorIsAsPathsSeeIt) {
     const Surroundings set = floor_of_two();
     const Shot shot = small_shot(RenderMethod::LightingGrid, GetParam());
-    expect_as_paths(shot, smoke(0.0f), &set, "MM");
-    expect_as_paths(shot, smoke(0.0f), &set, "SM");
+    expect_as_paths(shot, smoke(0.0f), &set, "MM", blur_of(GetParam()));
+    expect_as_paths(shot, smoke(0.0f), &set, "SM", blur_of(GetParam()));
 }
 
 TEST_P(LightsInSmokePictures, ThreadsChangeNothing) {
@@ -226,7 +234,8 @@ TEST_P(LightsInSmokePictures, NothingIsTracedForWhatIsNotThere) {
     Shot once = shot;
     once.scattering.bounces = 1;
     EXPECT_FALSE(plan_cells(once, medium).scattered_lights);
-    const std::string kind = GetParam() == ScatteringMethod::RayLights ? "ray lights" : "point lights";
+    std::string kind = name_of(GetParam());
+    std::ranges::replace(kind, '_', ' ');
     EXPECT_TRUE(skips(plan_cells(once, medium), kind.c_str()));
     Progress silent;
     for (const StageCost& stage : render_medium(once, medium, silent).statistics.stages)
@@ -243,13 +252,13 @@ TEST(ScatteringMethods, AreChosenByTheShotAlone) {
             shot.volume.file = "smoke.vdb";
         const Plan plan = plan_cells(shot, smoke(mean_cosine));
         EXPECT_EQ(plan.scattered_lights, plan.scattering != ScatteringMethod::LightingGrid);
-        EXPECT_EQ(skips(plan, "ray lights, point lights"), !plan.scattered_lights);
+        EXPECT_EQ(skips(plan, "ray lights, point lights, particles"), !plan.scattered_lights);
         return plan.scattering;
     };
     const auto automatic = ScatteringMethod::Automatic, grid = ScatteringMethod::LightingGrid,
-               rays = ScatteringMethod::RayLights;
-    EXPECT_EQ(chosen(0.8f, true, false, automatic), rays);
-    EXPECT_EQ(chosen(-0.8f, true, false, automatic), rays);
+               rays = ScatteringMethod::RayLights, particles = ScatteringMethod::Particles;
+    EXPECT_EQ(chosen(0.8f, true, false, automatic), particles);
+    EXPECT_EQ(chosen(-0.8f, true, false, automatic), particles);
     EXPECT_EQ(chosen(0.5f, true, false, automatic), grid);
     EXPECT_EQ(chosen(0.8f, true, true, automatic), grid);
     EXPECT_EQ(chosen(0.8f, false, true, automatic), grid);

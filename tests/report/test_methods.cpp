@@ -185,6 +185,7 @@ TEST(Runs, OfVirtualLightsChangeTheirChoicesAndTheSamples) {
                                             "vsl",
                                             "vpl",
                                             "ray_lights",
+                                            "particles",
                                             "point_lights",
                                             "point_lights_bounded",
                                             "point_lights_compensated",

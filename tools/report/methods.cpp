@@ -48,6 +48,7 @@ std::vector<BuiltIn> make_built_ins() {
               "tracing.free_flight=null_collision"},
              StepsOf::Paths},
             {"ray_lights", {"method=lighting_grid", "scattering.method=ray_lights"}, StepsOf::Samples},
+            {"particles", {"method=lighting_grid", "scattering.method=particles"}, StepsOf::Samples},
             by_point_lights("point_lights", {"bound_per_metre2=0"}),
             by_point_lights("point_lights_bounded", {"compensation=none"}),
             by_point_lights("point_lights_compensated", {"compensation=exact"}),

@@ -1,7 +1,8 @@
 // What a report compares: methods, each with a ladder of steps from cheap to good.
 //
 // A method:  NAME, or LABEL=NAME, followed by settings:    exact=path,tracing.free_flight=exact
-//   NAME is lighting_grid, ray_lights (virtual ray lights for what is scattered more than once), point_lights (the same
+//   NAME is lighting_grid, ray_lights (virtual ray lights for what is scattered more than once), particles (the same,
+//   counted along their tracks), point_lights (the same
 //   by volumetric virtual point lights, unbounded), point_lights_bounded (too dark), point_lights_compensated
 //   (exactly), point_lights_local (approximately), path, path_plain (the path tracer without what makes it fast), or
 //   one for light between surfaces: vbnl (virtual blue noise lighting), vbnl_resampled, vbnl_power, vbnl_light_tree,

@@ -1,0 +1,146 @@
+#include "particle_tracks/laid_light.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/parallel.h"
+#include "medium/phase.h"
+
+namespace brisance {
+
+namespace {
+
+constexpr std::size_t kNodesAtOnce = 4096;
+
+ivec3 node_of(const BrickLattice& lattice, std::size_t node) {
+    return lattice.first_node(node / BrickLattice::kNodes) +
+           BrickLattice::node_in_brick(int(node % BrickLattice::kNodes));
+}
+
+// The nodes around a place, and their shares of it.
+struct Corners {
+    std::array<std::int64_t, 8> node;
+    std::array<float, 8> weight;
+};
+
+Corners corners_of(const BrickLattice& lattice, const dvec3& place) {
+    const dvec3 low = glm::floor(place);
+    const vec3 f(place - low);
+    Corners corners;
+    for (int k = 0; k < 8; ++k) {
+        const ivec3 up(k >> 2, k >> 1 & 1, k & 1);
+        corners.node[k] = lattice.find_node(ivec3(low) + up);
+        corners.weight[k] = (up.x ? f.x : 1.0f - f.x) * (up.y ? f.y : 1.0f - f.y) * (up.z ? f.z : 1.0f - f.z);
+    }
+    return corners;
+}
+
+}  // namespace
+
+LaidLight::LaidLight(const Medium& medium, const dvec3& eye, double power, bool other_directions)
+    : medium_(medium),
+      ways_(medium),
+      mean_cosine_(medium.mean_cosine),
+      toward_eye_(medium.lattice.node_count()),
+      sums_(medium.lattice.node_count(), power * medium.spacing),
+      volume_(medium.lattice.node_count()) {
+    parallel_for(
+        toward_eye_.size(),
+        [&](std::size_t i) {
+            const ivec3 node = node_of(medium.lattice, i);
+            const vec3 way = vec3(eye) - medium.local_of_node(node);
+            const float distance = glm::length(way);
+            toward_eye_[i] = distance > 0.0f ? way / distance : vec3(0.0f, 0.0f, 1.0f);
+            volume_[i] = ways_.part_in_cells(node);
+        },
+        kNodesAtOnce);
+    if (!other_directions)
+        return;
+    kept_.resize(toward_eye_.size() * (kWays + 1));
+    count_.resize(toward_eye_.size(), 0);
+    busy_ = std::make_unique<std::atomic_flag[]>(toward_eye_.size());
+}
+
+void LaidLight::add(const Ray& ray, double end, const Rgb& power, Rng& rng) {
+    const vec3 direction(ray.direction);
+    ways_.along(ray, end, [&](std::int64_t node, float length) {
+        const Rgb track = power * length;
+        sums_.add(node, dvec3(track) * double(henyey_greenstein(glm::dot(direction, toward_eye_[node]), mean_cosine_)));
+        if (kept_.empty())
+            return;
+        const float priority = luminance(track) / (1.0f - rng.next());
+        if (priority > 0.0f)
+            keep(node, {priority, direction, track});
+    });
+}
+
+void LaidLight::keep(std::int64_t node, const Way& way) {
+    while (busy_[node].test_and_set(std::memory_order_acquire)) {
+    }
+    Way* const first = &kept_[node * (kWays + 1)];
+    int at = count_[node];
+    if (at <= kWays)
+        count_[node] = static_cast<std::uint8_t>(++at);
+    // Where the list is full the last one is lost.
+    if (--at < kWays || way.priority > first[at].priority) {
+        for (; at > 0 && first[at - 1].priority < way.priority; --at)
+            first[at] = first[at - 1];
+        first[at] = way;
+    }
+    busy_[node].clear(std::memory_order_release);
+}
+
+void LaidLight::finish() {
+    radiance_.resize(toward_eye_.size());
+    const double voxel = medium_.voxel_volume;
+    parallel_for(
+        radiance_.size(), [&](std::size_t i) { radiance_[i] = Rgb(sums_.read(i) / voxel); }, kNodesAtOnce);
+    sums_ = FixedSums(0, 1.0);
+    toward_eye_ = {};
+    busy_.reset();
+}
+
+Rgb LaidLight::toward_eye(const dvec3& place) const {
+    const Corners corners = corners_of(medium_.lattice, place);
+    Rgb light(0.0f);
+    float volume = 0.0f;
+    for (int k = 0; k < 8; ++k)
+        if (const std::int64_t node = corners.node[k]; node >= 0) {
+            light += corners.weight[k] * radiance_[node];
+            volume += corners.weight[k] * volume_[node];
+        }
+    return volume > 0.0f ? light / volume : Rgb(0.0f);
+}
+
+Rgb LaidLight::toward(const vec3& direction, const dvec3& place, float xi) const {
+    Corners corners = corners_of(medium_.lattice, place);
+    float all = 0.0f;
+    for (int k = 0; k < 8; ++k) {
+        corners.weight[k] *= corners.node[k] >= 0 ? volume_[corners.node[k]] : 0.0f;
+        all += corners.weight[k];
+    }
+    if (!(all > 0.0f))
+        return Rgb(0.0f);
+    int chosen = -1;
+    for (float left = xi * all; chosen < 7 && (chosen < 0 || left >= 0.0f);)
+        left -= corners.weight[++chosen];
+    while (corners.weight[chosen] == 0.0f)
+        --chosen;
+    const std::int64_t node = corners.node[chosen];
+    const Way* const first = &kept_[node * (kWays + 1)];
+    const float threshold = count_[node] > kWays ? first[kWays].priority : 0.0f;
+    Rgb light(0.0f);
+    for (int i = 0; i < std::min<int>(count_[node], kWays); ++i) {
+        const float stands_for = std::max(1.0f, threshold / luminance(first[i].track));
+        light +=
+            first[i].track * (stands_for * henyey_greenstein(glm::dot(first[i].direction, direction), mean_cosine_));
+    }
+    return light / volume_around(node);
+}
+
+std::uint64_t LaidLight::bytes() const {
+    return (radiance_.size() * sizeof(Rgb) + volume_.size() * sizeof(float)) + kept_.size() * sizeof(Way) +
+           count_.size();
+}
+
+}  // namespace brisance

@@ -1,0 +1,104 @@
+#include "particle_tracks/particle_tracks.h"
+
+#include <cmath>
+
+#include "core/parallel.h"
+
+namespace brisance {
+
+namespace {
+
+constexpr std::size_t kParticlesAtOnce = 1024;
+// Of a ray, where its light is asked for.
+constexpr int kPlaces = 8;
+// A ray whose line passes the eye nearer than this part of how far it is away comes from there.
+constexpr double kSameLine = 1e-5;
+
+// Where a flight lands after it was scattered in smoke.
+void leave_landing(const ParticleFlight& flight, std::vector<Landing>& landings) {
+    if (flight.collision || !flight.segment->point)
+        return;
+    const SurfacePoint& point = *flight.segment->point;
+    const bool above = glm::dot(point.frame.normal, flight.ray.direction) < 0.0;
+    landings.push_back({vec3(point.position), vec3(above ? point.frame.normal : -point.frame.normal),
+                        vec3(flight.ray.direction), flight.power});
+}
+
+}  // namespace
+
+ParticleTracks::ParticleTracks(const DirectLight& scene, const ParticleTrackSettings& settings, int bounces,
+                               const dvec3& eye, bool other_rays)
+    : LightsInSmoke(settings.seed),
+      scene_(scene),
+      settings_(settings),
+      eye_(eye),
+      laid_(scene.field().medium(), eye, emitted_power(scene, ball_around(scene)), other_rays),
+      landings_(follow(bounces < 0 ? -1 : bounces - 1)) {
+    laid_.finish();
+    report_.landings = landings_.size();
+}
+
+std::vector<Landing> ParticleTracks::follow(int most_before) {
+    struct Part {
+        std::vector<Landing> landings;
+        FlightReport report;
+    };
+    const auto total = static_cast<std::size_t>(settings_.paths);
+    const Particles particles(scene_, ball_around(scene_), total);
+    std::vector<Part> parts((total + kParticlesAtOnce - 1) / kParticlesAtOnce);
+    parallel_blocks(total, kParticlesAtOnce, [&](std::size_t begin, std::size_t end) {
+        Part& part = parts[begin / kParticlesAtOnce];
+        for (std::size_t i = begin; i < end; ++i) {
+            Rng rng(Stream::ParticleTrack, i, settings_.seed), keep_rng(Stream::LaidWay, i, settings_.seed);
+            const std::optional<EmittedParticle> particle = particles.emit(i, rng);
+            if (!counts(particle, part.report))
+                continue;
+            follow_particle(scene_, *particle, most_before, rng, [&](const ParticleFlight& flight) {
+                ++part.report.flights;
+                if (!flight.from_smoke)
+                    return;
+                laid_.add(flight.ray, flight.end, flight.power, keep_rng);
+                leave_landing(flight, part.landings);
+            });
+        }
+    });
+    std::vector<Landing> landings;
+    for (const Part& part : parts) {
+        landings.insert(landings.end(), part.landings.begin(), part.landings.end());
+        report_.add(part.report);
+    }
+    return landings;
+}
+
+bool ParticleTracks::from_eye(const Segment& ray) const {
+    const dvec3 way = ray.start - eye_;
+    const double along = glm::dot(way, ray.direction);
+    return along >= 0.0 && glm::length(way - along * ray.direction) <= kSameLine * along;
+}
+
+Rgb ParticleTracks::along_ray(const SeenMedium& seen, Rng& rng, RayLightCost*) const {
+    if (seen.empty())
+        return Rgb(0.0f);
+    const bool to_eye = from_eye(seen.segment());
+    const vec3 backward(-seen.segment().direction);
+    const double shift = rng.next_double();
+    Rgb sum(0.0f);
+    for (int i = 0; i < kPlaces; ++i) {
+        const double t = seen.sample_flight((i + shift) / kPlaces);
+        const Coefficients at = seen.coefficients(t);
+        const std::optional<Collision> place = seen.place(t);
+        if (!place || !(at.extinction > 0.0f))
+            continue;
+        const dvec3 node = dvec3(scene_.field().bricks().first_node(place->brick)) + dvec3(place->position);
+        sum += at.scattering / at.extinction *
+               (to_eye ? laid_.toward_eye(node) : laid_.toward(backward, node, rng.next()));
+    }
+    return sum * float(seen.opacity() / kPlaces);
+}
+
+Rgb ParticleTracks::at_surface(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer, Rng&,
+                               RayLightCost*) const {
+    return landings_.scattered(point, bsdf, toward_viewer, settings_.neighbours);
+}
+
+}  // namespace brisance
