@@ -16,10 +16,6 @@ public:
           cells_(cell_lattice(medium)),
           index_from_local_(glm::inverse(dmat3(medium.local_from_index))) {}
 
-    const Medium& medium() const { return medium_; }
-    // Whose ways count: cells of the medium's nodes.
-    const BrickLattice& cells() const { return cells_; }
-
     // Cuts the way up to `end` [m] in parts, each of which counts for the node nearest to it: calls visit(node, length)
     // with the node's index and the part's length times what smoke has left of the light [m], until next to nothing is
     // left.

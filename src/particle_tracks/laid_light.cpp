@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 
 #include "core/parallel.h"
 #include "medium/phase.h"
@@ -56,9 +57,19 @@ LaidLight::LaidLight(const Medium& medium, const dvec3& eye, double power, bool 
         kNodesAtOnce);
     if (!other_directions)
         return;
-    kept_.resize(toward_eye_.size() * (kWays + 1));
-    count_.resize(toward_eye_.size(), 0);
-    busy_ = std::make_unique<std::atomic_flag[]>(toward_eye_.size());
+    std::size_t lists = 0;
+    for (const float extinction : medium.extinction)
+        list_of_.push_back(extinction > 0.0f ? static_cast<std::int32_t>(lists++) : -1);
+    kept_.resize(lists * (kWays + 1));
+    count_.resize(lists, 0);
+    busy_ = std::make_unique<std::atomic_flag[]>(lists);
+}
+
+bool LaidLight::Way::goes_before(const Way& o) const {
+    const auto all = [](const Way& w) {
+        return std::tie(w.priority, w.direction.x, w.direction.y, w.direction.z, w.track.x, w.track.y, w.track.z);
+    };
+    return all(*this) > all(o);
 }
 
 void LaidLight::add(const Ray& ray, double end, const Rgb& power, Rng& rng) {
@@ -66,28 +77,28 @@ void LaidLight::add(const Ray& ray, double end, const Rgb& power, Rng& rng) {
     ways_.along(ray, end, [&](std::int64_t node, float length) {
         const Rgb track = power * length;
         sums_.add(node, dvec3(track) * double(henyey_greenstein(glm::dot(direction, toward_eye_[node]), mean_cosine_)));
-        if (kept_.empty())
+        if (list_of_.empty() || list_of_[node] < 0)
             return;
         const float priority = luminance(track) / (1.0f - rng.next());
         if (priority > 0.0f)
-            keep(node, {priority, direction, track});
+            keep(list_of_[node], {priority, direction, track});
     });
 }
 
-void LaidLight::keep(std::int64_t node, const Way& way) {
-    while (busy_[node].test_and_set(std::memory_order_acquire)) {
+void LaidLight::keep(std::size_t list, const Way& way) {
+    while (busy_[list].test_and_set(std::memory_order_acquire)) {
     }
-    Way* const first = &kept_[node * (kWays + 1)];
-    int at = count_[node];
+    Way* const first = &kept_[list * (kWays + 1)];
+    int at = count_[list];
     if (at <= kWays)
-        count_[node] = static_cast<std::uint8_t>(++at);
+        count_[list] = static_cast<std::uint8_t>(++at);
     // Where the list is full the last one is lost.
-    if (--at < kWays || way.priority > first[at].priority) {
-        for (; at > 0 && first[at - 1].priority < way.priority; --at)
+    if (--at < kWays || way.goes_before(first[at])) {
+        for (; at > 0 && way.goes_before(first[at - 1]); --at)
             first[at] = first[at - 1];
         first[at] = way;
     }
-    busy_[node].clear(std::memory_order_release);
+    busy_[list].clear(std::memory_order_release);
 }
 
 void LaidLight::finish() {
@@ -116,7 +127,8 @@ Rgb LaidLight::toward(const vec3& direction, const dvec3& place, float xi) const
     Corners corners = corners_of(medium_.lattice, place);
     float all = 0.0f;
     for (int k = 0; k < 8; ++k) {
-        corners.weight[k] *= corners.node[k] >= 0 ? volume_[corners.node[k]] : 0.0f;
+        const std::int64_t node = corners.node[k];
+        corners.weight[k] *= node >= 0 && list_of_[node] >= 0 ? volume_[node] : 0.0f;
         all += corners.weight[k];
     }
     if (!(all > 0.0f))
@@ -127,10 +139,11 @@ Rgb LaidLight::toward(const vec3& direction, const dvec3& place, float xi) const
     while (corners.weight[chosen] == 0.0f)
         --chosen;
     const std::int64_t node = corners.node[chosen];
-    const Way* const first = &kept_[node * (kWays + 1)];
-    const float threshold = count_[node] > kWays ? first[kWays].priority : 0.0f;
+    const std::size_t list = list_of_[node];
+    const Way* const first = &kept_[list * (kWays + 1)];
+    const float threshold = count_[list] > kWays ? first[kWays].priority : 0.0f;
     Rgb light(0.0f);
-    for (int i = 0; i < std::min<int>(count_[node], kWays); ++i) {
+    for (int i = 0; i < std::min<int>(count_[list], kWays); ++i) {
         const float stands_for = std::max(1.0f, threshold / luminance(first[i].track));
         light +=
             first[i].track * (stands_for * henyey_greenstein(glm::dot(first[i].direction, direction), mean_cosine_));
@@ -140,7 +153,7 @@ Rgb LaidLight::toward(const vec3& direction, const dvec3& place, float xi) const
 
 std::uint64_t LaidLight::bytes() const {
     return (radiance_.size() * sizeof(Rgb) + volume_.size() * sizeof(float)) + kept_.size() * sizeof(Way) +
-           count_.size();
+           count_.size() + list_of_.size() * sizeof(std::int32_t);
 }
 
 }  // namespace brisance

@@ -40,8 +40,10 @@ private:
         float priority;
         vec3 direction;
         Rgb track;  // [W m]
+        // Of two that are worth as much, whatever was laid down first.
+        bool goes_before(const Way& other) const;
     };
-    void keep(std::int64_t node, const Way& way);
+    void keep(std::size_t list, const Way& way);
     float volume_around(std::int64_t node) const { return volume_[node] * medium_.voxel_volume; }
 
     const Medium& medium_;
@@ -51,9 +53,10 @@ private:
     FixedSums sums_;                // [W m / sr]
     std::vector<Rgb> radiance_;     // toward the eye, times the volume around the node over a voxel's
     std::vector<float> volume_;     // around each node and in the medium's cells, over a voxel's
-    // Per node up to kWays + 1, by falling priority; empty: nobody asks for other directions.
+    // Per node with extinction a list of up to kWays + 1, by falling priority; none: nobody asks for other directions.
+    std::vector<std::int32_t> list_of_;  // of each node, or -1
     std::vector<Way> kept_;
-    std::vector<std::uint8_t> count_;
+    std::vector<std::uint8_t> count_;  // of each list
     std::unique_ptr<std::atomic_flag[]> busy_;
 };
 

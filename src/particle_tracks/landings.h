@@ -21,8 +21,8 @@ class Landings {
 public:
     explicit Landings(std::vector<Landing> landings);
     ~Landings();
-    Landings(Landings&&) noexcept;
-    Landings& operator=(Landings&&) noexcept;
+    Landings(const Landings&) = delete;
+    Landings& operator=(const Landings&) = delete;
 
     std::size_t size() const { return landings_.size(); }
     // What of the light arriving around the point these lobes scatter to the viewer (unit) [W/(m^2 sr)], by that many

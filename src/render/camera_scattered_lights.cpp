@@ -111,17 +111,6 @@ bool by_rays(const Plan& plan) {
     return plan.scattering == ScatteringMethod::RayLights;
 }
 
-const char* stage_name(const Plan& plan) {
-    switch (plan.scattering) {
-        case ScatteringMethod::PointLights:
-            return "point lights (MM, SM)";
-        case ScatteringMethod::Particles:
-            return "particles (MM, SM)";
-        default:
-            return "ray lights (MM, SM)";
-    }
-}
-
 }  // namespace
 
 int passes_of(const Shot& shot, const Plan& plan) {
@@ -134,7 +123,7 @@ Image mean_of_passes(const Shot& shot, const Plan& plan, const DirectLight& scen
     if (plan.scattering != ScatteringMethod::Particles)
         receivers = receivers_of(scene, camera);
     const int passes = passes_of(shot, plan), bounces = shot.scattering.bounces;
-    StageCost cost{stage_name(plan), 0.0, 0, {}};
+    StageCost cost{things_of(plan.scattering) + std::string(" (MM, SM)"), 0.0, 0, {}};
     double first = 0.0;
     const auto make = [&](int pass) {
         switch (plan.scattering) {

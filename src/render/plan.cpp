@@ -55,17 +55,6 @@ bool scatters_sharply(const Medium& medium) {
     return std::abs(medium.mean_cosine) > 0.5f;
 }
 
-const char* things_of(ScatteringMethod method) {
-    switch (method) {
-        case ScatteringMethod::PointLights:
-            return "point lights";
-        case ScatteringMethod::Particles:
-            return "particles";
-        default:
-            return "ray lights";
-    }
-}
-
 struct Choice {
     ScatteringMethod method;
     std::string reason;
@@ -86,6 +75,19 @@ Choice choose_scattering(const Shot& shot, const Medium& medium) {
 }
 
 }  // namespace
+
+const char* things_of(ScatteringMethod method) {
+    switch (method) {
+        case ScatteringMethod::LightingGrid:
+            return "scattered hierarchies";
+        case ScatteringMethod::PointLights:
+            return "point lights";
+        case ScatteringMethod::Particles:
+            return "particles";
+        default:
+            return "ray lights";
+    }
+}
 
 Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surroundings) {
     Plan plan;

@@ -38,6 +38,9 @@ struct Plan {
     std::vector<std::string> cells() const;
 };
 
+// What it makes, as users read it.
+const char* things_of(ScatteringMethod method);
+
 Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surroundings = nullptr);
 
 }  // namespace brisance
