@@ -106,11 +106,13 @@ void Emitters::add_light(const LightSettings& light, const Texture* picture) {
     if (light.kind == LightKind::Point || light.kind == LightKind::Spot) {
         const bool spot = light.kind == LightKind::Spot;
         const dvec3 position = light.position - scene_.origin;
+        const dvec3 axis = spot ? glm::normalize(light.direction) : dvec3(0, 0, 1);
+        points_.push_back({position, axis, spot ? cosine_of_degrees(light.outer_degrees) : -1.0, power});
         near_.push_back({0, 0, &light, position, 0.0});
         const double before = near_power_.empty() ? 0.0 : near_power_.back();
         near_power_.push_back(before + power * (spot ? spot_solid_angle(light) : 4.0 * kPi));
-        bounds_.push_back({position, position, spot ? glm::normalize(light.direction) : dvec3(0, 0, 1),
-                           spot ? light.outer_degrees * kDegree : kPi, spot ? kSharpReach : kPi / 2.0, power, false});
+        bounds_.push_back({position, position, axis, spot ? light.outer_degrees * kDegree : kPi,
+                           spot ? kSharpReach : kPi / 2.0, power, false});
         return;
     }
     Far far;

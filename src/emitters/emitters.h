@@ -27,6 +27,14 @@ struct EmittedParticle {
     Rgb power{0.0f};  // [W]
 };
 
+// A lamp without extent, and the cone that it shines into.
+struct PointEmitter {
+    dvec3 position;    // local [m]
+    dvec3 axis;        // unit
+    double cosine;     // of the cone's half angle; -1: it shines everywhere
+    double intensity;  // at most, luminance [W/sr]
+};
+
 class Emitters {
 public:
     // Keeps references. `pictures`: per light, of environments that have one. Lights' positions are world coordinates.
@@ -35,6 +43,7 @@ public:
     bool empty() const { return tree_.empty() && far_.empty(); }
     bool visible() const;  // some of them can be seen: not points, spots, and suns without a disc alone
     std::size_t near_count() const { return near_.size(); }
+    const std::vector<PointEmitter>& points() const { return points_; }
 
     // One light, chosen for the point, and a place on it. None where that brings nothing.
     std::optional<EmitterSample> sample(const LitPoint& point, Rng& rng) const {
@@ -88,8 +97,9 @@ private:
 
     const Scene& scene_;
     std::vector<Near> near_;
-    std::vector<LightBounds> bounds_;  // of near_, until the tree is built
-    std::vector<double> near_power_;   // luminance [W], cumulative
+    std::vector<LightBounds> bounds_;   // of near_, until the tree is built
+    std::vector<double> near_power_;    // luminance [W], cumulative
+    std::vector<PointEmitter> points_;  // of near_
     std::vector<Far> far_;
     std::vector<double> far_irradiance_;            // luminance [W/m^2] on a disc that faces it
     std::vector<std::vector<std::int32_t>> light_;  // per mesh that emits, per triangle: in near_, or -1

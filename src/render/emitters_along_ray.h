@@ -1,9 +1,10 @@
 // MA along a ray of the camera: light of lamps, shining surfaces and environments that scatters once on it.
 //
-// Next-event estimation from places where flights along the ray would collide, a stratum of opacity each, shared with
-// rays by the phase function as in the path tracer (balance heuristic). Unbiased, and sharp where a beam is narrower
-// than a voxel; the medium's nodes, which hold MA otherwise, are free of noise and as blunt as they are apart. A lamp
-// inside the smoke is noisy where it is near the ray.
+// Next-event estimation from places of the ray, shared with rays by the phase function as in the path tracer (balance
+// heuristic). Places are where flights along the ray would collide, a stratum of opacity each; where there are a few
+// lamps without extent, half of them are drawn by 1 / distance^2 to one of these instead, within its cone, with the
+// phase function (pair_sampling.h), and both densities share what they find. Unbiased, and sharp where a beam is
+// narrower than a voxel; the medium's nodes, which hold MA otherwise, are free of noise and as blunt as they are apart.
 #pragma once
 
 #include "ray_lights/seen_medium.h"
