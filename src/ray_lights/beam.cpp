@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-#include "ray_lights/pair_sampling.h"
+#include "tracing/pair_sampling.h"
 #include "tracing/scatterer.h"
 
 namespace brisance {

@@ -6,7 +6,7 @@
 #include "core/rng.h"
 #include "geometry/surface_point.h"
 #include "ray_lights/ray_light.h"
-#include "ray_lights/seen_medium.h"
+#include "tracing/seen_medium.h"
 
 namespace brisance {
 

@@ -1,7 +1,7 @@
 // A virtual ray light: a flight of a particle through the medium, or a piece of one, whose light scatters all along it.
 #pragma once
 
-#include "ray_lights/pair_sampling.h"
+#include "tracing/pair_sampling.h"
 
 namespace brisance {
 

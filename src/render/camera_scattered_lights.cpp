@@ -10,7 +10,7 @@
 #include "medium_points/medium_points.h"
 #include "particle_tracks/particle_tracks.h"
 #include "ray_lights/ray_lights.h"
-#include "render/emitters_along_ray.h"
+#include "tracing/emitters_along_ray.h"
 
 namespace brisance {
 

@@ -1,6 +1,6 @@
 #include "render/medium_along_ray.h"
 
-#include "render/emitters_along_ray.h"
+#include "tracing/emitters_along_ray.h"
 #include "render/integrate.h"
 
 namespace brisance {

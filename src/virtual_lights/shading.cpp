@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "tracing/emitters_along_ray.h"
 #include "tracing/roulette.h"
 #include "virtual_lights/virtual_lights.h"
 
@@ -13,6 +14,9 @@ namespace {
 bool goes_straight_on(const Scatterer& place, const Scatterer::Sample& turn) {
     return turn.delta && glm::dot(turn.wi, place.arriving()) > 1.0 - 1e-12;
 }
+
+// On every segment through smoke, where lamps are asked for.
+constexpr int kLampPlaces = 2;
 
 // A base colour in place of another.
 Rgb recoloured(const Rgb& to, const Rgb& from) {
@@ -84,6 +88,12 @@ Rgb VirtualLights::at_end_of_ray(const Scatterer& place, const Seen& seen, doubl
     return sum;
 }
 
+Rgb VirtualLights::lamps_on(const RaySegment& segment, Rng& rng) const {
+    thread_local SeenMedium seen;
+    seen.look(scene_.field(), segment.ray, segment.end);
+    return emitters_along_ray(scene_, seen, segment.ray, kLampPlaces, rng);
+}
+
 // The place itself asks for what surfaces reflect toward it; places along an extended path for everything.
 Rgb VirtualLights::shade(const Scatterer& asking, Rng& rng, int* vertices, Panes panes) const {
     Rgb sum(0.0f), throughput(1.0f);
@@ -92,6 +102,8 @@ Rgb VirtualLights::shade(const Scatterer& asking, Rng& rng, int* vertices, Panes
     Scatterer place = asking;
     float light_lines = 0.0f;
     bool lit_before = true;  // the asking place, by the medium along this segment
+    // Smoke is lit all along segments: where they collide hardly ever is in the beam of a lamp that is near.
+    const bool lamps_along = scene_.has_emitters() && aims_at_lamps(scene_) && !scene_.field().bricks().empty();
     for (int order = 0; survives(throughput, 1.0f, order > kManyScatterings, rng); ++order) {
         if (vertices)
             ++*vertices;
@@ -99,7 +111,7 @@ Rgb VirtualLights::shade(const Scatterer& asking, Rng& rng, int* vertices, Panes
             sum += throughput * from_lights(place, rng);
         if (light_lines > 0.0f && (light_lines == 1.0f || rng.next() < light_lines))
             sum += throughput * scene_.from_fire(place, light_lines, rng);
-        if (order > 0 && scene_.has_emitters() && !place.only_delta())
+        if (order > 0 && scene_.has_emitters() && !place.only_delta() && !(lamps_along && !place.on_surface()))
             sum += throughput * scene_.from_emitters(place, rng);
         const std::optional<Scatterer::Sample> turn = place.sample(rng);
         if (!turn)
@@ -109,6 +121,8 @@ Rgb VirtualLights::shade(const Scatterer& asking, Rng& rng, int* vertices, Panes
         lit_before = order == 0 || (lit_before && panes == Panes::Asked && goes_straight_on(place, *turn));
         std::optional<Collision> collision;
         if (!lit_before) {
+            if (lamps_along)
+                sum += throughput * lamps_on(segment, rng);
             const LineResult line = scene_.lines().follow_path(segment.ray, rng, segment.end);
             collision = line.collision;
             if (line.radiance != Rgb(0.0f))
@@ -117,7 +131,7 @@ Rgb VirtualLights::shade(const Scatterer& asking, Rng& rng, int* vertices, Panes
         } else if (segment.hit || order > 0) {
             throughput *= float(scene_.lines().transmittance(segment.ray, segment.end, rng));
         }
-        if (order > 0 && !collision)
+        if (order > 0 && !collision && !(lamps_along && !place.on_surface()))
             sum += throughput * scene_.at_end(segment, turn->pdf, turn->delta, &place);
         if (collision) {
             place = scene_.in_smoke(segment.ray, *collision);

@@ -75,6 +75,7 @@ private:
     Rgb reflected(const Seen& seen, int share) const;
     double trust(const Seen& seen, double pdf) const;
     Rgb at_end_of_ray(const Scatterer& place, const Seen& seen, double pdf) const;
+    Rgb lamps_on(const RaySegment& segment, Rng& rng) const;
 
     // asking.cpp
     struct Candidate;

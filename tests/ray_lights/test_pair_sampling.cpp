@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "ray_lights/pair_sampling.h"
+#include "tracing/pair_sampling.h"
 #include "tracing/estimate.h"
 
 namespace brisance {

@@ -1,4 +1,4 @@
-#include "ray_lights/seen_medium.h"
+#include "tracing/seen_medium.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "ray_lights/pair_sampling.h"
+#include "tracing/pair_sampling.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "ray_lights/pair_sampling.h"
+#include "tracing/pair_sampling.h"
 #include "tracing/trackers.h"
 
 namespace brisance {

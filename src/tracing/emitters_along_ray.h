@@ -7,10 +7,13 @@
 // narrower than a voxel; the medium's nodes, which hold MA otherwise, are free of noise and as blunt as they are apart.
 #pragma once
 
-#include "ray_lights/seen_medium.h"
 #include "tracing/direct_light.h"
+#include "tracing/seen_medium.h"
 
 namespace brisance {
+
+// Whether there are lamps that places are drawn toward.
+bool aims_at_lamps(const DirectLight& scene);
 
 // [W/(m^2 sr)]. The scene must have emitters; `seen`: the medium on `ray`.
 Rgb emitters_along_ray(const DirectLight& scene, const SeenMedium& seen, const Ray& ray, int places, Rng& rng);

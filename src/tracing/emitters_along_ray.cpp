@@ -1,4 +1,4 @@
-#include "render/emitters_along_ray.h"
+#include "tracing/emitters_along_ray.h"
 
 #include <algorithm>
 #include <array>
@@ -103,6 +103,11 @@ private:
 };
 
 }  // namespace
+
+bool aims_at_lamps(const DirectLight& scene) {
+    const std::size_t lamps = scene.surroundings()->emitters().points().size();
+    return lamps > 0 && lamps <= kMostLamps;
+}
 
 Rgb emitters_along_ray(const DirectLight& scene, const SeenMedium& seen, const Ray& ray, int places, Rng& rng) {
     Rgb sum(0.0f);
