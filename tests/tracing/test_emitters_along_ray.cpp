@@ -93,41 +93,32 @@ TEST(EmittersAlongRay, FindALampBesideTheRay) {
     expect_integral(lamp, medium, kRay, kEnd, expected(lamp.position, kRay, kEnd, everywhere), 0.5);
 }
 
-// The beam crosses a twentieth of the ray.
-TEST(EmittersAlongRay, FindTheBeamOfASpot) {
-    const Medium medium = even_smoke();
+void expect_spot(const dvec3& position, const dvec3& direction, double inner_degrees, double outer_degrees) {
     LightSettings spot;
     spot.kind = LightKind::Spot;
-    spot.position = {0.4, -0.2, 1.2};
-    spot.direction = {-0.3, 0.0, -1.0};
+    spot.position = position;
+    spot.direction = direction;
     spot.power = Rgb(1.0f);
-    spot.inner_degrees = 3.0;
-    spot.outer_degrees = 5.0;
-    const double inner = std::cos(3.0 * std::numbers::pi / 180.0), outer = std::cos(5.0 * std::numbers::pi / 180.0);
-    const dvec3 axis = glm::normalize(spot.direction);
-    const auto in_cone = [&](const dvec3& direction) {
-        const double part = std::clamp((glm::dot(axis, direction) - outer) / (inner - outer), 0.0, 1.0);
+    spot.inner_degrees = inner_degrees;
+    spot.outer_degrees = outer_degrees;
+    const auto cosine = [](double degrees) { return std::cos(degrees * std::numbers::pi / 180.0); };
+    const double inner = cosine(inner_degrees), outer = cosine(outer_degrees);
+    const dvec3 axis = glm::normalize(direction);
+    const auto in_cone = [&](const dvec3& toward) {
+        const double part = std::clamp((glm::dot(axis, toward) - outer) / (inner - outer), 0.0, 1.0);
         return part * part;
     };
-    expect_integral(spot, medium, kRay, kEnd, expected(spot.position, kRay, kEnd, in_cone), 0.5);
+    expect_integral(spot, even_smoke(), kRay, kEnd, expected(position, kRay, kEnd, in_cone), 0.5);
+}
+
+// The beam crosses a twentieth of the ray.
+TEST(EmittersAlongRay, FindTheBeamOfASpot) {
+    expect_spot({0.4, -0.2, 1.2}, {-0.3, 0.0, -1.0}, 3.0, 5.0);
 }
 
 // Along the middle of the beam, toward the lamp: the whole ray is in its cone.
 TEST(EmittersAlongRay, LookUpTheBeam) {
-    const Medium medium = even_smoke();
-    LightSettings spot;
-    spot.kind = LightKind::Spot;
-    spot.position = {1.6, -0.2, 0.31};
-    spot.direction = {-1.0, 0.0, 0.0};
-    spot.power = Rgb(1.0f);
-    spot.inner_degrees = 20.0;
-    spot.outer_degrees = 40.0;
-    const double inner = std::cos(20.0 * std::numbers::pi / 180.0), outer = std::cos(40.0 * std::numbers::pi / 180.0);
-    const auto in_cone = [&](const dvec3& direction) {
-        const double part = std::clamp((-direction.x - outer) / (inner - outer), 0.0, 1.0);
-        return part * part;
-    };
-    expect_integral(spot, medium, kRay, kEnd, expected(spot.position, kRay, kEnd, in_cone), 0.5);
+    expect_spot({1.6, -0.2, 0.31}, {-1.0, 0.0, 0.0}, 20.0, 40.0);
 }
 
 }  // namespace
