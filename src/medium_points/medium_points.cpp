@@ -22,9 +22,9 @@ Rgb MediumPoints::along_ray(const SeenMedium& seen, Rng& rng, RayLightCost* cost
     return sent + compensation_.along_ray(seen, rng);
 }
 
-Rgb MediumPoints::at_surface(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer, Rng& rng,
+Rgb MediumPoints::at_surface(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer, Rng& rng,
                              RayLightCost* cost) const {
-    const Scatterer place(point, bsdf, -toward_viewer);
+    const Scatterer place(point, lobes.whole, -toward_viewer);
     const Rgb sent = sum_.at(place, 1, samples_, rng, cost);
     return sent + compensation_.at_surface(place, rng);
 }
@@ -34,9 +34,9 @@ Rgb MediumPoints::along_ray_from_all(const SeenMedium& seen, Rng& rng) const {
     return sent + compensation_.along_ray(seen, rng);
 }
 
-Rgb MediumPoints::at_surface_from_all(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer,
+Rgb MediumPoints::at_surface_from_all(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer,
                                       Rng& rng) const {
-    const Scatterer place(point, bsdf, -toward_viewer);
+    const Scatterer place(point, lobes.whole, -toward_viewer);
     const Rgb sent = sum_.at_from_all(place, 1, rng);
     return sent + compensation_.at_surface(place, rng);
 }

@@ -23,11 +23,11 @@ public:
     MediumPoints& operator=(const MediumPoints&) = delete;
 
     Rgb along_ray(const SeenMedium& seen, Rng& rng, RayLightCost* cost = nullptr) const override;
-    Rgb at_surface(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer, Rng& rng,
+    Rgb at_surface(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer, Rng& rng,
                    RayLightCost* cost = nullptr) const override;
     // With the same compensation.
     Rgb along_ray_from_all(const SeenMedium& seen, Rng& rng) const override;
-    Rgb at_surface_from_all(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer,
+    Rgb at_surface_from_all(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer,
                             Rng& rng) const override;
 
     std::span<const MediumPoint> lights() const { return sum_.lights(); }

@@ -96,9 +96,9 @@ Rgb ParticleTracks::along_ray(const SeenMedium& seen, Rng& rng, RayLightCost*) c
     return sum * float(seen.opacity() / kPlaces);
 }
 
-Rgb ParticleTracks::at_surface(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer, Rng&,
+Rgb ParticleTracks::at_surface(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer, Rng&,
                                RayLightCost*) const {
-    return landings_.scattered(point, bsdf, toward_viewer, settings_.neighbours);
+    return landings_.scattered(point, lobes.whole, toward_viewer, settings_.neighbours);
 }
 
 }  // namespace brisance

@@ -24,7 +24,7 @@ public:
                    bool other_rays);
 
     Rgb along_ray(const SeenMedium& seen, Rng& rng, RayLightCost* cost = nullptr) const override;
-    Rgb at_surface(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer, Rng& rng,
+    Rgb at_surface(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer, Rng& rng,
                    RayLightCost* cost = nullptr) const override;
 
     const ParticleTrackReport& report() const { return report_; }

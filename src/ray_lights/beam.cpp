@@ -69,8 +69,8 @@ namespace {
 // up where it dips under the surface.
 class FoldedCone {
 public:
-    FoldedCone(const BallCone& cone, const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer)
-        : cone_(cone), point_(point), bsdf_(bsdf), toward_viewer_(toward_viewer) {
+    FoldedCone(const BallCone& cone, const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer)
+        : cone_(cone), point_(point), lobes_(lobes), toward_viewer_(toward_viewer) {
         const dvec3& n = point.geometric_normal;
         up_ = glm::dot(n, cone.axis()) < 0.0 ? -n : n;
     }
@@ -90,7 +90,8 @@ public:
         };
         if (same_side(point_.frame.normal) != same_side(point_.geometric_normal))
             return Rgb(0.0f);
-        return bsdf_.evaluate(toward_viewer_, direction);
+        const Rgb whole = lobes_.whole.evaluate(toward_viewer_, direction);
+        return lobes_.shared ? whole + lobes_.shared->of_places(direction) : whole;
     }
 
 private:
@@ -98,22 +99,22 @@ private:
 
     const BallCone& cone_;
     const SurfacePoint& point_;
-    const Bsdf& bsdf_;
+    const AskedLobes& lobes_;
     dvec3 toward_viewer_, up_;
 };
 
 }  // namespace
 
 Rgb mean_reflected(const BallCone& cone, const dvec3& arriving, double mean_cosine, const SurfacePoint& point,
-                   const Bsdf& bsdf, const dvec3& toward_viewer, Rng& rng) {
-    const FoldedCone folded(cone, point, bsdf, toward_viewer);
+                   const AskedLobes& lobes, const dvec3& toward_viewer, Rng& rng) {
+    const FoldedCone folded(cone, point, lobes, toward_viewer);
     const auto phase = [&](const dvec3& to_light) { return phase_about(arriving, -to_light, mean_cosine); };
     if (cone.thin())
         return folded.scattered(cone.axis()) * float(phase(cone.axis()));
     const double solid_angle = cone.solid_angle();
     const bool peaked = mean_cosine != 0.0;
     const auto share = [&](const dvec3& to_light, int times) {
-        const double p = phase(to_light), others = bsdf.pdf(toward_viewer, to_light) + (peaked ? p : 0.0);
+        const double p = phase(to_light), others = lobes.whole.pdf(toward_viewer, to_light) + (peaked ? p : 0.0);
         return folded.scattered(to_light) * float(p * times / (times + solid_angle * others));
     };
     Rgb sum(0.0f);
@@ -126,7 +127,7 @@ Rgb mean_reflected(const BallCone& cone, const dvec3& arriving, double mean_cosi
         const dvec3 within = folded.folded(cone.sample(rng));
         sum += share(within, std::max(1, folded.times(within)));
         const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
-        const std::optional<BsdfSample> drawn = bsdf.sample(toward_viewer, {x, y, z});
+        const std::optional<BsdfSample> drawn = lobes.whole.sample(toward_viewer, {x, y, z});
         if (drawn && !drawn->delta)
             add(drawn->wi);
         if (peaked)

@@ -26,6 +26,7 @@
 #include "core/rng.h"
 #include "core/vec.h"
 #include "geometry/surface_point.h"
+#include "ray_lights/gloss_split.h"
 
 namespace brisance {
 
@@ -57,9 +58,10 @@ double mean_phases(const BallCone& cone, const dvec3& arriving, const dvec3& lea
 
 // The mean over the cone, whose axis leads from the surface to the light, of phase function times BSDF times cosine
 // [1/sr^2]. `arriving`: the way of the light before it is scattered toward the surface. Three directions share it: of
-// the cone, of the BSDF and of the phase function.
+// the cone, of the BSDF and of the phase function. What lobes share with rays is so much less sharp that it needs none
+// of its own.
 Rgb mean_reflected(const BallCone& cone, const dvec3& arriving, double mean_cosine, const SurfacePoint& point,
-                   const Bsdf& bsdf, const dvec3& toward_viewer, Rng& rng);
+                   const AskedLobes& lobes, const dvec3& toward_viewer, Rng& rng);
 
 // The radius of a pass, from 0, over that of the first.
 double radius_shrunk(int pass, double alpha);

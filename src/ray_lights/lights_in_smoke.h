@@ -5,6 +5,7 @@
 
 #include "core/rng.h"
 #include "geometry/surface_point.h"
+#include "ray_lights/gloss_split.h"
 #include "ray_lights/ray_light.h"
 #include "tracing/seen_medium.h"
 
@@ -27,15 +28,18 @@ public:
 
     // MM along a ray of the camera whose medium was looked at [W/(m^2 sr)].
     virtual Rgb along_ray(const SeenMedium& seen, Rng& rng, RayLightCost* cost = nullptr) const = 0;
+    // How many places on lights share glossy lobes with a ray drawn from them (gloss_split.h); 0: none do, and no lobes
+    // to share are ever given.
+    virtual int gloss_places() const { return 0; }
     // SM at a point of a surface by these of its lobes, in the direction of the viewer (unit) [W/(m^2 sr)].
-    virtual Rgb at_surface(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer, Rng& rng,
+    virtual Rgb at_surface(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer, Rng& rng,
                            RayLightCost* cost = nullptr) const = 0;
 
     // The same from every light: the check. Who asks none by chance has nothing to check.
     virtual Rgb along_ray_from_all(const SeenMedium& seen, Rng& rng) const { return along_ray(seen, rng); }
-    virtual Rgb at_surface_from_all(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer,
+    virtual Rgb at_surface_from_all(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer,
                                     Rng& rng) const {
-        return at_surface(point, bsdf, toward_viewer, rng);
+        return at_surface(point, lobes, toward_viewer, rng);
     }
 
 private:

@@ -29,6 +29,10 @@ std::vector<RayLight> thickened(std::vector<RayLight> lights, double radius, con
     return lights;
 }
 
+AskedLobes asked_of(const RayLight& light, const AskedLobes& lobes) {
+    return light.from_smoke ? lobes : AskedLobes(lobes.whole);
+}
+
 }  // namespace
 
 RayLightSettings settings_of_pass(RayLightSettings settings, int pass, double first) {
@@ -97,7 +101,7 @@ Rgb RayLights::pair(const SeenMedium& seen, const RayLight& light, Rng& rng) con
     return light.power * at_u.scattering * at_v.scattering * float(phases * through * cone.kernel() / s.pdf);
 }
 
-Rgb RayLights::to_surface(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer,
+Rgb RayLights::to_surface(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer,
                           const RayLight& light, Rng& rng) const {
     const double g = scene_.field().mean_cosine();
     const AngularDensity density(point.position, light.segment, {{-light.segment.direction, g}}, light.radius);
@@ -111,7 +115,8 @@ Rgb RayLights::to_surface(const SurfacePoint& point, const Bsdf& bsdf, const dve
         return Rgb(0.0f);
     const Ray ray{start, way / w};
     const BallCone cone(ray.direction, w, light.radius);
-    const Rgb scattered = mean_reflected(cone, light.segment.direction, g, point, bsdf, toward_viewer, rng);
+    const Rgb scattered =
+        mean_reflected(cone, light.segment.direction, g, point, asked_of(light, lobes), toward_viewer, rng);
     if (scattered == Rgb(0.0f) || occluded(ray, w))
         return Rgb(0.0f);
     const double through = reaches_along(light, v, rng) * scene_.lines().transmittance(ray, w, rng);
@@ -154,17 +159,20 @@ Rgb RayLights::along_ray(const SeenMedium& seen, Rng& rng, RayLightCost* cost) c
     return sum;
 }
 
-Rgb RayLights::at_surface(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer, Rng& rng,
+Rgb RayLights::at_surface(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer, Rng& rng,
                           RayLightCost* cost) const {
     thread_local std::vector<LightChoice<RayLight>> choices;
     const bool above = glm::dot(point.frame.normal, toward_viewer) >= 0.0;
     const dvec3 normal = above ? point.frame.normal : -point.frame.normal;
-    const auto wanted = [&](const RayLight& light) { return wanted_at(point.position, normal, light); };
+    const bool from_all = !lobes.shared || lobes.whole.base_albedo(toward_viewer) != Rgb(0.0f);
+    const auto wanted = [&](const RayLight& light) {
+        return from_all || light.from_smoke ? wanted_at(point.position, normal, light) : 0.0;
+    };
     choose_lights<RayLight>(tree_, lights_, RayLightReceiver::at(point.position, normal), settings_.samples, wanted,
                             rng, cost, choices);
     Rgb sum(0.0f);
     for (const LightChoice<RayLight>& c : choices)
-        sum += float(c.weight) * to_surface(point, bsdf, toward_viewer, *c.light, rng);
+        sum += float(c.weight) * to_surface(point, lobes, toward_viewer, *c.light, rng);
     return sum;
 }
 
@@ -176,11 +184,11 @@ Rgb RayLights::along_ray_from_all(const SeenMedium& seen, Rng& rng) const {
     return sum;
 }
 
-Rgb RayLights::at_surface_from_all(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer,
+Rgb RayLights::at_surface_from_all(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer,
                                    Rng& rng) const {
     Rgb sum(0.0f);
     for (const RayLight& light : lights_)
-        sum += to_surface(point, bsdf, toward_viewer, light, rng);
+        sum += to_surface(point, lobes, toward_viewer, light, rng);
     return sum;
 }
 

@@ -38,11 +38,12 @@ public:
               std::span<const RayLightReceiver> receivers);
 
     Rgb along_ray(const SeenMedium& seen, Rng& rng, RayLightCost* cost = nullptr) const override;
-    Rgb at_surface(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer, Rng& rng,
+    int gloss_places() const override { return lights_.empty() ? 0 : settings_.samples; }
+    Rgb at_surface(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer, Rng& rng,
                    RayLightCost* cost = nullptr) const override;
     // One pair each.
     Rgb along_ray_from_all(const SeenMedium& seen, Rng& rng) const override;
-    Rgb at_surface_from_all(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer,
+    Rgb at_surface_from_all(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer,
                             Rng& rng) const override;
 
     std::span<const RayLight> lights() const { return lights_; }
@@ -54,8 +55,8 @@ private:
     double wanted_along(const SeenMedium& seen, const RayLight& light) const;
     double wanted_at(const dvec3& point, const dvec3& normal, const RayLight& light) const;
     Rgb pair(const SeenMedium& seen, const RayLight& light, Rng& rng) const;
-    Rgb to_surface(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer, const RayLight& light,
-                   Rng& rng) const;
+    Rgb to_surface(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer,
+                   const RayLight& light, Rng& rng) const;
     double reaches_along(const RayLight& light, double v, Rng& rng) const;
     bool occluded(const Ray& ray, double end) const;
 

@@ -18,16 +18,16 @@ public:
         const dvec3 nodes(scene.field().bricks().brick_extent() * BrickLattice::kSize);
         longest_ = kLongestPiece * glm::length(dmat3(medium.world_from_index) * nodes);
     }
-    bool are_long() const { return long_; }
-
-    // The light of a flight from the ray's origin to `end`, where there is smoke.
-    void leave_light(const Ray& ray, double end, const Rgb& power, std::vector<RayLight>& lights) const {
+    // The light of a flight, where there is smoke.
+    void leave_light(const ParticleFlight& flight, std::vector<RayLight>& lights) const {
+        const Ray& ray = flight.ray;
+        const double end = flight.collision && !long_ ? flight.collision->distance : flight.end;
         double depth = 0.0, from = 0.0, to = -1.0;
         const auto leave = [&] {
             const int pieces = std::max(1, static_cast<int>(std::ceil((to - from) / longest_)));
             for (int i = 0; to > from && i < pieces; ++i)
-                leave_piece(ray, std::lerp(from, to, double(i) / pieces), std::lerp(from, to, (i + 1.0) / pieces),
-                            power, depth, lights);
+                leave_piece(flight, std::lerp(from, to, double(i) / pieces), std::lerp(from, to, (i + 1.0) / pieces),
+                            depth, lights);
         };
         walk_bricks(scene_.field().bricks(), scene_.field().enter(ray, end), [&](const CellSegment& brick) {
             if (scene_.field().majorant(brick.brick) <= 0.0f)
@@ -43,12 +43,14 @@ public:
     }
 
 private:
-    void leave_piece(const Ray& ray, double from, double to, const Rgb& power, double& depth,
+    void leave_piece(const ParticleFlight& flight, double from, double to, double& depth,
                      std::vector<RayLight>& lights) const {
+        const Ray& ray = flight.ray;
         RayLight light;
         light.segment = {ray.origin + from * ray.direction, ray.direction, to - from};
         const double own = optical_depth(scene_.field(), {light.segment.start, ray.direction}, light.segment.length);
-        light.power = long_ ? power * float(std::exp(-depth)) : power;
+        light.power = long_ ? flight.power * float(std::exp(-depth)) : flight.power;
+        light.from_smoke = flight.from_smoke;
         light.dimmed = long_;
         light.extinction = own / light.segment.length;
         light.scattered = luminance(light.power) * (long_ ? -std::expm1(-own) : own);
@@ -73,11 +75,7 @@ std::vector<RayLight> trace_ray_lights(const DirectLight& scene, const RayLightS
     const Flights flights(scene, settings.length);
     lights = lights_of_flights<RayLight>(
         scene, {Stream::RayLight, settings.paths, settings.seed}, bounces < 0 ? -1 : bounces - 2,
-        [&](const ParticleFlight& f, std::vector<RayLight>& out) {
-            const bool ends = f.collision && !flights.are_long();
-            flights.leave_light(f.ray, ends ? f.collision->distance : f.end, f.power, out);
-        },
-        report);
+        [&](const ParticleFlight& flight, std::vector<RayLight>& out) { flights.leave_light(flight, out); }, report);
     report.pieces = report.lights = lights.size();
     return lights;
 }

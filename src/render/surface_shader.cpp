@@ -111,18 +111,29 @@ SurfaceShader::SeenPart SurfaceShader::seen_part(const ExtendedLight* light, con
     return {seen.clear / white, seen.through_panes / white};
 }
 
-// One direction of the lobes that are not the base, and all that glows and scatters along it.
-void SurfaceShader::reflect_medium(const SurfacePoint& point, const dvec3& toward_viewer, Rng& rng, Rng& ray_rng,
-                                   CellSum& light) const {
-    const Bsdf specular(point.material, point.frame, Lobes::Specular);
+// All lobes but the base, and who lights them.
+struct SurfaceShader::GlossyLobes {
+    Bsdf bsdf;
+    GlossSplit split;
+    GlossyLobes(const SurfacePoint& point, const dvec3& toward_viewer, int places)
+        : bsdf(point.material, point.frame, Lobes::Specular), split(point, bsdf, toward_viewer, places) {}
+    GlossyLobes(const GlossyLobes&) = delete;
+    GlossyLobes& operator=(const GlossyLobes&) = delete;
+};
+
+// One direction of those lobes, and all that glows and scatters along it.
+void SurfaceShader::reflect_medium(const SurfacePoint& point, const dvec3& toward_viewer, const GlossyLobes& lobes,
+                                   Rng& rng, Rng& ray_rng, CellSum& light) const {
     const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
-    const std::optional<BsdfSample> drawn = specular.sample(toward_viewer, {x, y, z});
+    const std::optional<BsdfSample> drawn = lobes.bsdf.sample(toward_viewer, {x, y, z});
     if (!drawn)
         return;
+    const float of_rays = drawn->delta ? 1.0f : float(lobes.split.of_rays(drawn->wi));
     Rgb weight = drawn->weight;
     RaySegment segment = paths_.direct().segment_along(point.leaving(drawn->wi));
     for (int panes = 0;; ++panes) {
-        const RaySum seen = medium_.look(segment.ray, segment.end, ray_rng);
+        RaySum seen = medium_.look(segment.ray, segment.end, ray_rng);
+        seen.cells.at(Cell::MM) *= of_rays;
         light.at(panes == 0 ? Cell::SV : Cell::SS) += weight * seen.cells.at(Cell::V);
         light.at(panes == 0 ? Cell::SM : Cell::SS) += weight * scattered_by_medium(seen.cells);
         if (!asks_through_panes() || !segment.point || seen.depth > kOpaqueDepth)
@@ -132,6 +143,24 @@ void SurfaceShader::reflect_medium(const SurfacePoint& point, const dvec3& towar
             return;
         segment = paths_.direct().segment_along(segment.point->leaving(segment.ray.direction));
     }
+}
+
+// What neither fire's grids nor those of smoke show of the medium: lights in the smoke, and glossy lobes.
+void SurfaceShader::reflect_scattered(const Scatterer& place, const SurfacePoint& point, Rng& rng, Rng& ray_rng,
+                                      CellSum& light) const {
+    const dvec3 toward_viewer = -place.arriving();
+    std::optional<GlossyLobes> gloss;
+    if (lighting_ && has_specular(point.material))
+        gloss.emplace(point, toward_viewer, scattered_lights_ ? scattered_lights_->gloss_places() : 0);
+    if (scattered_lights_) {
+        const bool shared = gloss && scattered_lights_->gloss_places() > 0 && !place.only_delta();
+        const Bsdf base(point.material, point.frame, Lobes::Base);
+        if (shared || has_base(point.material))
+            light.at(Cell::SM) += scattered_lights_->at_surface(
+                point, AskedLobes(base, shared ? &gloss->split : nullptr), toward_viewer, ray_rng);
+    }
+    if (gloss)
+        reflect_medium(point, toward_viewer, *gloss, rng, ray_rng, light);
 }
 
 void SurfaceShader::shade_place(const SurfaceSample& sample, const SurfaceReceiver& receiver, Place& at,
@@ -147,12 +176,8 @@ void SurfaceShader::shade_place(const SurfaceSample& sample, const SurfaceReceiv
         if (asks_through_panes())
             out.at(Cell::SS) += receiver.fire * fire.through_panes + receiver.smoke * smoke.through_panes;
     }
-    if (scattered_lights_ && has_base(point.material))
-        out.at(Cell::SM) += scattered_lights_->at_surface(point, Bsdf(point.material, point.frame, Lobes::Base),
-                                                          toward_viewer, at.ray_rng);
-    if (lighting_ && has_specular(point.material))
-        reflect_medium(point, toward_viewer, rng, at.ray_rng, out);
     const Scatterer place(point, at.seen.arriving);
+    reflect_scattered(place, point, rng, at.ray_rng, out);
     if (plan_.needs(Cell::SA))
         out.at(Cell::SA) += from_emitters(place, rng);
     if (!plan_.needs(Cell::SS))

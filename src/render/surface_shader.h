@@ -4,12 +4,11 @@
 // part that other surfaces do not hide (extended_light.h). All other lobes are sampled: what a ray in such a direction
 // sees of the medium is what they reflect.
 // Where virtual lights in the smoke own SM, they take the place of the grid's smoke on the base, and shine along those
-// rays. A light that the base does not show is thus never asked by a glossy lobe: what the lobe mirrors of smoke that
-// was lit once comes without noise from the grid, which sharing with a light's own places would only add to; of the
-// rest, a ray that the lobe drew asks the lights all along, as the camera's do. SA: a place on one of the emitters, and
-// a ray by the BSDF. SS: the virtual lights; without them, paths. Behind mirrors and clear glass the same is done where
-// a surface scatters (mirrors.h), and all of that is SS; so is light of fire and smoke that comes straight through
-// panes (panes.h), which base and other lobes ask for in the same two ways.
+// rays; ray lights share with them what lobes show of smoke that smoke lights up (gloss_split.h). What a lobe mirrors
+// of smoke that was lit once comes without noise from the grid. SA: a place on one of the emitters, and a ray by the
+// BSDF. SS: the virtual lights; without them, paths. Behind mirrors and clear glass the same is done where a surface
+// scatters (mirrors.h), and all of that is SS; so is light of fire and smoke that comes straight through panes
+// (panes.h), which base and other lobes ask for in the same two ways.
 #pragma once
 
 #include <span>
@@ -41,6 +40,7 @@ public:
 
 private:
     struct Place;
+    struct GlossyLobes;
     std::vector<Place> places(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) const;
     void shade_place(const SurfaceSample& sample, const SurfaceReceiver& receiver, Place& place, CellSum& light) const;
     struct SeenPart {
@@ -49,8 +49,10 @@ private:
     SeenPart seen_part(const ExtendedLight* light, const SurfacePoint& point, const dvec3& toward_viewer,
                        Rng& rng) const;
     Rgb from_emitters(const Scatterer& place, Rng& rng) const;
-    void reflect_medium(const SurfacePoint& point, const dvec3& toward_viewer, Rng& rng, Rng& ray_rng,
-                        CellSum& light) const;
+    void reflect_scattered(const Scatterer& place, const SurfacePoint& point, Rng& rng, Rng& ray_rng,
+                           CellSum& light) const;
+    void reflect_medium(const SurfacePoint& point, const dvec3& toward_viewer, const GlossyLobes& lobes, Rng& rng,
+                        Rng& ray_rng, CellSum& light) const;
 
     // Virtual lights in the smoke know no panes, nor do paths without virtual lights.
     bool asks_through_panes() const { return panes_.any() && lighting_ && lights_ && !scattered_lights_; }
