@@ -222,6 +222,40 @@ TEST(Beams, TakeAwayNoiseOfGlossySurfaces) {
     }
 }
 
+// Of one light's estimate at a point of the floor, the lights being asked in turn by the tree.
+double spread_on_floor(float mean_cosine, const SurfaceMaterial& material, double radius) {
+    const Stage stage(coloured_ball(8, 1.0f, mean_cosine), {});
+    RayLightSettings settings;
+    settings.paths = 2000;
+    settings.samples = 1;
+    settings.radius = radius;
+    const RayLights lights = stage.lights(settings, 16, 1);
+    const double variance = relative_variance(100'000, [&](Rng& rng) {
+        SurfacePoint point = on_floor(material);
+        point.position = {rng.next_double() - 0.5, rng.next_double() - 2.5, -1.3};
+        const dvec3 viewer = glm::normalize(dvec3(0.0, -1.0, 0.65));
+        return double(lights.at_surface(point, Bsdf(point.material, point.frame), viewer, rng).x);
+    });
+    std::printf("radius %g m, g %g, roughness %g: relative variance %.4g\n", radius, mean_cosine, material.roughness,
+                variance);
+    return variance;
+}
+
+// However sharp a lobe or a phase function is: what a ray shows at a surface grows with its peak, what a beam shows
+// ends at the mean over its cone.
+TEST(Beams, HaveABoundedVarianceAtSurfaces) {
+    constexpr double kRadius = 0.1;
+    EXPECT_GT(spread_on_floor(0.0f, metal(0.05f), 0.0), 10.0 * spread_on_floor(0.0f, metal(0.15f), 0.0));
+    const double glossy = spread_on_floor(0.0f, metal(0.05f), kRadius);
+    for (const float sharper : {0.02f, 0.0101f})
+        EXPECT_LT(spread_on_floor(0.0f, metal(sharper), kRadius), 1.5 * glossy) << sharper;
+    const SurfaceMaterial plain = lambert(0.8f).surface;
+    EXPECT_GT(spread_on_floor(0.99f, plain, 0.0), 10.0 * spread_on_floor(0.9f, plain, 0.0));
+    const double peaked = spread_on_floor(0.99f, plain, kRadius);
+    for (const float sharper : {0.999f, 0.9999f})
+        EXPECT_LT(spread_on_floor(sharper, plain, kRadius), 2.0 * peaked) << sharper;
+}
+
 // A floor takes half of what a point above it radiates, also where it cuts the ball.
 TEST(Beams, AFloorTakesWhatShinesOnIt) {
     for (const double height : {0.05, 0.5, 1.0, 3.0}) {

@@ -59,9 +59,9 @@ Shared expect_same(const Stage& stage, RayLightSettings settings, float roughnes
                 out[k] +=
                     reflected(stage.scene(), lights, on_metal(rng, roughness, normal), kSplits[k], rng) / kPointsToASet;
     });
-    std::printf("roughness %g: by rays %.4g +- %.2g %%, by places %.4g +- %.2g %%, by both %.4g +- %.2g %%\n", roughness,
-                e.mean[0], 100.0 * e.error[0] / e.mean[0], e.mean[1], 100.0 * e.error[1] / e.mean[1], e.mean[2],
-                100.0 * e.error[2] / e.mean[2]);
+    std::printf("roughness %g: by rays %.4g +- %.2g %%, by places %.4g +- %.2g %%, by both %.4g +- %.2g %%\n",
+                roughness, e.mean[0], 100.0 * e.error[0] / e.mean[0], e.mean[1], 100.0 * e.error[1] / e.mean[1],
+                e.mean[2], 100.0 * e.error[2] / e.mean[2]);
     for (int k = 0; k < 2; ++k)
         EXPECT_NEAR(e.mean[k], e.mean[2], 3.0 * std::hypot(e.error[k], e.error[2])) << roughness << ", " << k;
     EXPECT_LT(e.error[2], 0.03 * e.mean[2]) << roughness << ": not sampled enough";
@@ -93,8 +93,8 @@ TEST(GlossSplit, PartsOfADirectionAddUp) {
         const dvec3 viewer = glm::normalize(dvec3(0.4, -1.0, 0.8));
         const GlossSplit split(point, gloss, viewer, kPlaces);
         for (int i = 0; i < 1000; ++i) {
-            const dvec3 to = glm::normalize(
-                dvec3(rng.next_double() - 0.5, rng.next_double() - 0.5, rng.next_double() - 0.5));
+            const dvec3 to =
+                glm::normalize(dvec3(rng.next_double() - 0.5, rng.next_double() - 0.5, rng.next_double() - 0.5));
             const Rgb whole = gloss.evaluate(viewer, to);
             const double of_rays = split.of_rays(to);
             EXPECT_GE(of_rays, 0.0);

@@ -7,8 +7,8 @@
 #include <cstdio>
 #include <vector>
 
-#include "tracing/pair_sampling.h"
 #include "tracing/estimate.h"
+#include "tracing/pair_sampling.h"
 
 namespace brisance {
 namespace {
