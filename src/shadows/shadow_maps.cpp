@@ -48,26 +48,41 @@ void add_steps(const ExtinctionPyramid& pyramid, const GridLevel& level, float f
         steps.back().store = store;
 }
 
+// Rays in the order in which they are marched: square tiles, so that rays of one vector run through the same smoke and
+// are all lost in it, or out of it, at about the same distance.
 struct TexelTable {
-    std::size_t padded = 0;
+    static constexpr int kTile = 4;  // texels along a side: 16 rays
+    int resolution;
+    std::size_t rays;                 // of all tiles, whole or not
     std::vector<float> direction[3];  // nodes per metre
-};
 
-TexelTable texel_table(const Medium& medium, int resolution) {
-    TexelTable t;
-    const std::size_t count = std::size_t(resolution) * resolution;
-    t.padded = (count + 15) / 16 * 16;
-    for (auto& d : t.direction)
-        d.assign(t.padded, 0.0f);
-    for (std::size_t i = 0; i < count; ++i) {
-        const float u = (2.0f * (i / resolution) + 1.0f) / resolution - 1.0f;
-        const float v = (2.0f * (i % resolution) + 1.0f) / resolution - 1.0f;
-        const vec3 nodes = medium.index_from_local * octahedral_direction(u, v);
-        for (int a = 0; a < 3; ++a)
-            t.direction[a][i] = nodes[a];
+    TexelTable(const Medium& medium, int texels) : resolution(texels) {
+        const int tiles = (texels + kTile - 1) / kTile;
+        rays = std::size_t(tiles) * tiles * kTile * kTile;
+        for (auto& d : direction)
+            d.resize(rays);
+        for (int u = 0; u < tiles * kTile; ++u)
+            for (int v = 0; v < tiles * kTile; ++v) {
+                // Past the edge, the last texel once more.
+                const float x = (2.0f * std::min(u, texels - 1) + 1.0f) / texels - 1.0f;
+                const float y = (2.0f * std::min(v, texels - 1) + 1.0f) / texels - 1.0f;
+                const vec3 nodes = medium.index_from_local * octahedral_direction(x, y);
+                for (int a = 0; a < 3; ++a)
+                    direction[a][ray_of(u, v)] = nodes[a];
+            }
     }
-    return t;
-}
+    std::size_t ray_of(int u, int v) const {
+        const int tiles = (resolution + kTile - 1) / kTile;
+        const std::size_t tile = std::size_t(u / kTile) * tiles + v / kTile;
+        return (tile * kTile + u % kTile) * kTile + v % kTile;
+    }
+    // From the order of rays to rows of texels, `distances` values each.
+    void put_in_rows(const std::vector<std::uint16_t>& marched, int distances, std::uint16_t* rows) const {
+        for (int u = 0; u < resolution; ++u)
+            for (int v = 0; v < resolution; ++v, rows += distances)
+                std::copy_n(marched.begin() + ray_of(u, v) * distances, distances, rows);
+    }
+};
 
 // Where rays of a light start: offsets from its centre [nodes] to kStarts of the voxels it stands for, in a scattered
 // order; the first 16 stand again at the end for whole-vector loads.
@@ -159,7 +174,7 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
         const auto at = [&](int i) { return glm::mix(layout.near_distance, far, float(i) / (layout.distances - 1)); };
         add_steps(pyramid, level, far, at(k - 1), at(k), k, steps);
     }
-    const TexelTable texels = texel_table(medium, layout.resolution);
+    const TexelTable texels(medium, layout.resolution);
     std::vector<PackedExtinction> mips;
     for (int l = 0; l < pyramid.level_count(); ++l)
         mips.push_back(pyramid.view(l));
@@ -167,7 +182,8 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
     const EvenStrides strides{even ? even->view() : EvenParts::View{},
                               std::min(kStrideLevel, pyramid.level_count() - 1)};
     parallel_blocks(list.size(), 8, [&](std::size_t begin, std::size_t end) {
-        std::vector<std::uint16_t> interior(texels.padded * layout.distances);
+        std::vector<std::uint16_t> marched(texels.rays * layout.distances);
+        std::vector<std::uint16_t> interior(std::size_t(layout.resolution) * layout.resolution * layout.distances);
         Starts starts;
         FootprintPicker picker(medium, weights, level.level);
         for (std::size_t k = begin; k < end; ++k) {
@@ -176,13 +192,14 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
             const ShadowRays rays{{texels.direction[0].data(), texels.direction[1].data(), texels.direction[2].data()},
                                   {starts.offset[0].data(), starts.offset[1].data(), starts.offset[2].data()},
                                   starts.weight.data(),
-                                  texels.padded};
+                                  texels.rays};
             const vec3 centre = medium.index_from_local * level.position[light];
             if (layout.for_outside)
                 march_parallel_rays(mips.data(), near_steps, steps, centre, rays, layout.distances,
-                                    65535.0f / layout.range, interior.data(), even ? &strides : nullptr);
+                                    65535.0f / layout.range, marched.data(), even ? &strides : nullptr);
             else
-                march_shadow_rays(mips.data(), near_steps, steps, centre, rays, layout.distances, interior.data());
+                march_shadow_rays(mips.data(), near_steps, steps, centre, rays, layout.distances, marched.data());
+            texels.put_in_rows(marched, layout.distances, interior.data());
             if (occluders)
                 cut_at_surfaces(*occluders, {level.position[light], starts.places(medium, level.position[light])},
                                 layout, interior);
