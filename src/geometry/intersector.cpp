@@ -7,6 +7,7 @@
 #endif
 
 #include <atomic>
+#include <cmath>
 #include <cstring>
 #include <vector>
 
@@ -68,6 +69,24 @@ void fill_ray(const Ray& ray, double end, RTCRay& out) {
     out.mask = ~0u;
     out.id = 0;
     out.flags = 0;
+}
+
+struct Nearby {
+    const Scene* scene;
+    bool found = false;
+};
+
+// For triangles whose box is near enough: is their plane?
+bool look_nearby(RTCPointQueryFunctionArguments* a) {
+    Nearby& nearby = *static_cast<Nearby*>(a->userPtr);
+    const Triangle t = triangle_of(*nearby.scene, a->geomID, a->primID);
+    const dvec3 normal = t.normal(), way = dvec3(a->query->x, a->query->y, a->query->z) - t.a;
+    const double radius = a->query->radius;
+    if (std::abs(glm::dot(normal, way)) > radius * glm::length(normal))
+        return false;
+    nearby.found = true;
+    a->query->radius = 0.0f;  // no need to look any further
+    return true;
 }
 
 }  // namespace
@@ -149,6 +168,18 @@ bool Intersector::empty() const {
 
 std::uint64_t Intersector::bytes() const {
     return embree_ ? static_cast<std::uint64_t>(embree_->bytes.load()) : 0;
+}
+
+bool Intersector::any_within(const dvec3& place, double radius) const {
+    if (!embree_)
+        return false;
+    // In single precision, as the triangles are: a little wider than asked.
+    RTCPointQuery query{float(place.x), float(place.y), float(place.z), 0.0f, float(radius * 1.0001)};
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    Nearby nearby{&scene_};
+    rtcPointQuery(embree_->scene, &query, &context, look_nearby, &nearby);
+    return nearby.found;
 }
 
 std::optional<SurfaceHit> Intersector::first_hit(const Ray& ray, double end) const {

@@ -11,6 +11,8 @@ public:
 
     // From `from` along unit `direction` to the first surface, or `far` where none is nearer; local [m].
     virtual float first_hit(const vec3& from, const vec3& direction, float far) const = 0;
+    // Whether there may be one within a ball; local [m].
+    virtual bool any_within(const vec3& centre, float radius) const = 0;
 
     bool visible(const vec3& from, const vec3& to) const {
         const vec3 way = to - from;

@@ -43,6 +43,10 @@ float SurfaceOccluders::first_hit(const vec3& from, const vec3& direction, float
     return hit ? float(hit->distance) : far;
 }
 
+bool SurfaceOccluders::any_within(const vec3& centre, float radius) const {
+    return intersector_.any_within(dvec3(centre), radius);
+}
+
 bool surfaces_reach_into(const Scene& scene, const Medium& medium) {
     const Extent box = extent_of_smoke(medium);
     if (box.empty())

@@ -11,6 +11,7 @@ class SurfaceOccluders : public Occluders {
 public:
     explicit SurfaceOccluders(const Intersector& intersector) : intersector_(intersector) {}
     float first_hit(const vec3& from, const vec3& direction, float far) const override;
+    bool any_within(const vec3& centre, float radius) const override;
 
 private:
     const Intersector& intersector_;

@@ -1,5 +1,6 @@
 #include "shadows/surface_shadows.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "shadows/octahedral.h"
@@ -21,10 +22,20 @@ float visible_share(const Occluders& occluders, const MappedLight& light, std::s
     return seen;
 }
 
+// Within which all of its rays to surfaces lie.
+float reach_of(const MappedLight& light, const ShadowMapLayout& layout) {
+    float reach = layout.far_distance;
+    for (const vec3& part : light.parts)
+        reach = std::max(reach, glm::length(part - light.centre));
+    return reach;
+}
+
 }  // namespace
 
 void cut_at_surfaces(const Occluders& occluders, const MappedLight& light, const ShadowMapLayout& layout,
                      std::span<std::uint16_t> interior) {
+    if (!occluders.any_within(light.centre, reach_of(light, layout)))
+        return;
     const int r = layout.resolution;
     const float step = layout.distances > 1 ? (layout.far_distance - layout.near_distance) / (layout.distances - 1) : 0;
     for (int i = 0; i < r * r; ++i) {
