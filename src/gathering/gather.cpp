@@ -302,9 +302,7 @@ GridLevel bottom_level(const LightField& field) {
     std::vector<std::pair<ivec3, std::size_t>> lit;
     for (std::size_t i = 0; i < field.intensity->size(); ++i)
         if ((*field.intensity)[i] != Rgb(0.0f))
-            lit.emplace_back(medium.lattice.first_node(i / BrickLattice::kNodes) +
-                                 BrickLattice::node_in_brick(int(i % BrickLattice::kNodes)),
-                             i);
+            lit.emplace_back(medium.lattice.node(i), i);
     std::sort(lit.begin(), lit.end(), [](const auto& a, const auto& b) {
         return std::tie(a.first.x, a.first.y, a.first.z) < std::tie(b.first.x, b.first.y, b.first.z);
     });

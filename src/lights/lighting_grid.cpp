@@ -79,9 +79,7 @@ GridLevel level_from(const Medium& medium, const MomentField& field, int number)
     std::vector<std::pair<ivec3, std::uint32_t>> found;
     for (std::size_t i = 0; i < field.nodes.size(); ++i)
         if (field.nodes[i].weight > 0.0f)
-            found.emplace_back(field.lattice.first_node(i / BrickLattice::kNodes) +
-                                   BrickLattice::node_in_brick(i % BrickLattice::kNodes),
-                               static_cast<std::uint32_t>(i));
+            found.emplace_back(field.lattice.node(i), static_cast<std::uint32_t>(i));
     std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
         return std::tie(a.first.x, a.first.y, a.first.z) < std::tie(b.first.x, b.first.y, b.first.z);
     });

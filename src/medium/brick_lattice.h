@@ -29,6 +29,8 @@ public:
     bool empty() const { return bricks_.empty(); }
     const ivec3& brick(std::size_t b) const { return bricks_[b]; }
     ivec3 first_node(std::size_t b) const { return bricks_[b] * kSize; }
+    // Where a field's array has this index: the inverse of find_node().
+    ivec3 node(std::size_t i) const { return first_node(i / kNodes) + node_in_brick(static_cast<int>(i % kNodes)); }
     ivec3 min_brick() const { return min_; }
     ivec3 brick_extent() const { return extent_; }  // bounding box, in bricks
 

@@ -13,11 +13,6 @@ namespace {
 
 constexpr std::size_t kNodesAtOnce = 4096;
 
-ivec3 node_of(const BrickLattice& lattice, std::size_t node) {
-    return lattice.first_node(node / BrickLattice::kNodes) +
-           BrickLattice::node_in_brick(int(node % BrickLattice::kNodes));
-}
-
 // The nodes around a place, and their shares of it.
 struct Corners {
     std::array<std::int64_t, 8> node;
@@ -48,7 +43,7 @@ LaidLight::LaidLight(const Medium& medium, const dvec3& eye, double power, bool 
     parallel_for(
         toward_eye_.size(),
         [&](std::size_t i) {
-            const ivec3 node = node_of(medium.lattice, i);
+            const ivec3 node = medium.lattice.node(i);
             const vec3 way = vec3(eye) - medium.local_of_node(node);
             const float distance = glm::length(way);
             toward_eye_[i] = distance > 0.0f ? way / distance : vec3(0.0f, 0.0f, 1.0f);

@@ -2,13 +2,10 @@
 
 #include <cmath>
 
-#include "core/parallel.h"
-
 namespace brisance {
 
 namespace {
 
-constexpr std::size_t kParticlesAtOnce = 1024;
 // Of a ray, where its light is asked for.
 constexpr int kPlaces = 8;
 // A ray whose line passes the eye nearer than this part of how far it is away comes from there.
@@ -39,35 +36,16 @@ ParticleTracks::ParticleTracks(const DirectLight& scene, const ParticleTrackSett
 }
 
 std::vector<Landing> ParticleTracks::follow(int most_before) {
-    struct Part {
-        std::vector<Landing> landings;
-        FlightReport report;
-    };
-    const auto total = static_cast<std::size_t>(settings_.paths);
-    const Particles particles(scene_, ball_around(scene_), total);
-    std::vector<Part> parts((total + kParticlesAtOnce - 1) / kParticlesAtOnce);
-    parallel_blocks(total, kParticlesAtOnce, [&](std::size_t begin, std::size_t end) {
-        Part& part = parts[begin / kParticlesAtOnce];
-        for (std::size_t i = begin; i < end; ++i) {
-            Rng rng(Stream::ParticleTrack, i, settings_.seed), keep_rng(Stream::LaidWay, i, settings_.seed);
-            const std::optional<EmittedParticle> particle = particles.emit(i, rng);
-            if (!counts(particle, part.report))
-                continue;
-            follow_particle(scene_, *particle, most_before, rng, [&](const ParticleFlight& flight) {
-                ++part.report.flights;
-                if (!flight.from_smoke)
-                    return;
-                laid_.add(flight.ray, flight.end, flight.power, keep_rng);
-                leave_landing(flight, part.landings);
-            });
-        }
-    });
-    std::vector<Landing> landings;
-    for (const Part& part : parts) {
-        landings.insert(landings.end(), part.landings.begin(), part.landings.end());
-        report_.add(part.report);
-    }
-    return landings;
+    return lights_of_flights<Landing>(
+        scene_, {Stream::ParticleTrack, settings_.paths, settings_.seed}, most_before,
+        [&](const ParticleFlight& flight, std::vector<Landing>& landings) {
+            if (!flight.from_smoke)
+                return;
+            Rng keep_rng(Stream::LaidWay, flight.particle, settings_.seed | std::uint64_t(flight.before) << 32);
+            laid_.add(flight.ray, flight.end, flight.power, keep_rng);
+            leave_landing(flight, landings);
+        },
+        report_);
 }
 
 bool ParticleTracks::from_eye(const Segment& ray) const {

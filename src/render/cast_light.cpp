@@ -112,7 +112,7 @@ void CastLight::follow(std::uint64_t index, const Particles& particles, Ways& wa
     FlightReport report;
     const std::optional<EmittedParticle> particle = particles.emit(index, rng);
     if (counts(particle, report))
-        follow_particle(scene_, *particle, -1, rng, [&](const ParticleFlight& flight) {
+        follow_particle(scene_, *particle, index, -1, rng, [&](const ParticleFlight& flight) {
             if (!flight.collision && flight.segment->point)
                 cast(*flight.segment, flight.power, cast_rng, ways);
         });

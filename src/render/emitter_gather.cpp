@@ -97,8 +97,7 @@ Gathered gather_from_emitters(const Surroundings& surroundings, const Extinction
         [&](std::size_t node) {
             if (!(*request.needed)[node])
                 return;
-            const vec3 p = medium.local_of_node(medium.lattice.first_node(node / BrickLattice::kNodes) +
-                                                BrickLattice::node_in_brick(int(node % BrickLattice::kNodes)));
+            const vec3 p = medium.local_of_node(medium.lattice.node(node));
             for (int batch = 0; batch < kBatches; ++batch) {
                 const Arriving a = gather.ask(node, p, batch);
                 for (int k = 0; k < kRays; ++k)

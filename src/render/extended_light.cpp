@@ -18,11 +18,6 @@ std::uint64_t key_of(const ivec3& node) {
     return part(node.x) << 42 | part(node.y) << 21 | part(node.z);
 }
 
-ivec3 node_at(const Medium& medium, std::size_t i) {
-    return medium.lattice.first_node(i / BrickLattice::kNodes) +
-           BrickLattice::node_in_brick(static_cast<int>(i % BrickLattice::kNodes));
-}
-
 }  // namespace
 
 ExtendedLight::ExtendedLight(const Medium& medium, const PointDepths& depths, const std::vector<Rgb>& intensity,
@@ -31,13 +26,13 @@ ExtendedLight::ExtendedLight(const Medium& medium, const PointDepths& depths, co
     std::vector<std::pair<std::uint64_t, std::uint32_t>> lit;
     for (std::size_t i = 0; i < intensity.size(); ++i)
         if (luminance(intensity[i]) > 0.0f)
-            lit.emplace_back(key_of(node_at(medium, i)), static_cast<std::uint32_t>(i));
+            lit.emplace_back(key_of(medium.lattice.node(i)), static_cast<std::uint32_t>(i));
     std::sort(lit.begin(), lit.end());
     const NodeWeights density = escape_density(intensity, escape);
     std::vector<LightBounds> bounds;
     for (std::size_t i = 0; i < lit.size(); ++i) {
         const std::uint32_t node = lit[i].second;
-        const dvec3 p(medium.local_of_node(node_at(medium, node)));
+        const dvec3 p(medium.local_of_node(medium.lattice.node(node)));
         const float weight = density[node];
         if (i == 0 || lit[i].first != lit[i - 1].first) {
             cells_.push_back({static_cast<std::uint32_t>(i), 0.0f});
@@ -64,7 +59,8 @@ std::size_t ExtendedLight::voxel_in(std::size_t cell, Rng& rng) const {
 
 vec3 ExtendedLight::place_in(std::size_t voxel, Rng& rng) const {
     const float x = rng.next(), y = rng.next(), z = rng.next();
-    return medium_.local_of_node(node_at(medium_, nodes_[voxel])) + medium_.local_from_index * (vec3(x, y, z) - 0.5f);
+    return medium_.local_of_node(medium_.lattice.node(nodes_[voxel])) +
+           medium_.local_from_index * (vec3(x, y, z) - 0.5f);
 }
 
 bool ExtendedLight::draw(const LitPoint& point, Rng& rng, std::array<Draw, kDraws>& draws) const {

@@ -51,8 +51,7 @@ std::vector<vec3> directions_to(const Medium& medium, const vec3& eye) {
     parallel_for(
         directions.size(),
         [&](std::size_t i) {
-            const vec3 p = medium.local_of_node(medium.lattice.first_node(i / BrickLattice::kNodes) +
-                                                BrickLattice::node_in_brick(int(i % BrickLattice::kNodes)));
+            const vec3 p = medium.local_of_node(medium.lattice.node(i));
             const vec3 way = eye - p;
             const float d = glm::length(way);
             directions[i] = d > 0.0f ? way / d : vec3(0.0f, 0.0f, 1.0f);

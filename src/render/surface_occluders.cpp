@@ -20,8 +20,7 @@ Extent extent_of_smoke(const Medium& medium) {
     for (std::size_t i = 0; i < medium.extinction.size(); ++i) {
         const bool glows = !medium.emission.empty() && medium.emission[i] != Rgb(0.0f);
         if (medium.extinction[i] > 0.0f || glows)
-            extent.add(medium.local_of_node(medium.lattice.first_node(i / BrickLattice::kNodes) +
-                                            BrickLattice::node_in_brick(int(i % BrickLattice::kNodes))));
+            extent.add(medium.local_of_node(medium.lattice.node(i)));
     }
     return extent;
 }

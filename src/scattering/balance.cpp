@@ -142,8 +142,7 @@ std::vector<float> collisions_from(const ExtinctionPyramid& pyramid, const Occlu
         picks.size(),
         [&](std::size_t r) {
             const std::size_t i = picks[r];
-            const ivec3 node = medium.lattice.first_node(i / BrickLattice::kNodes) +
-                               BrickLattice::node_in_brick(static_cast<int>(i % BrickLattice::kNodes));
+            const ivec3 node = medium.lattice.node(i);
             exits.set(r, vec3(node - medium.reference_node), ray_direction(r));
         },
         1024);

@@ -186,8 +186,7 @@ void CoarseOperator::balance_nodes(const ExtinctionPyramid& fine) {
     for (std::size_t i = 0; i < mask_.size(); ++i)
         if (mask_[i]) {
             nodes.push_back(i);
-            vertices.push_back(medium_.lattice.first_node(i / BrickLattice::kNodes) +
-                               BrickLattice::node_in_brick(int(i % BrickLattice::kNodes)));
+            vertices.push_back(medium_.lattice.node(i));
         }
     collision_numbers_ = medium_.mean_cosine == 0.0f ? 1 : kCollisionMoments;
     const std::vector<float> collision =

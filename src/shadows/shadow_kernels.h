@@ -43,7 +43,7 @@ struct EvenStrides {
 
 // The same with the weighted mean over kParallelRays parallel rays all along, times `scale` in place of 65535.
 // `strides`: or null.
-constexpr int kParallelRays = 4;
+constexpr int kParallelRays = 8;
 void march_parallel_rays(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
                          std::span<const ShadowStep> steps, const vec3& origin, const ShadowRays& rays, int distances,
                          float scale, std::uint16_t* out, const EvenStrides* strides = nullptr);

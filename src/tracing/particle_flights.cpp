@@ -27,15 +27,15 @@ bool counts(const std::optional<EmittedParticle>& particle, FlightReport& report
     return true;
 }
 
-void follow_particle(const DirectLight& scene, const EmittedParticle& particle, int most_before, Rng& rng,
-                     const std::function<void(const ParticleFlight&)>& visit) {
+void follow_particle(const DirectLight& scene, const EmittedParticle& particle, std::uint64_t number, int most_before,
+                     Rng& rng, const std::function<void(const ParticleFlight&)>& visit) {
     Ray ray = particle.ray;
     Rgb power = particle.power;
     bool from_smoke = false;
     for (int before = 0; most_before < 0 || before <= most_before; ++before) {
         const RaySegment segment = scene.segment_along(ray);
         const std::optional<Collision> collision = null_collision_flight(scene.field(), ray, segment.end, rng);
-        visit({ray, segment.end, collision, power, before, from_smoke, &segment});
+        visit({ray, segment.end, collision, power, number, before, from_smoke, &segment});
         if (!collision && !segment.point)
             return;
         const Scatterer place = collision ? scene.in_smoke(ray, *collision) : Scatterer(*segment.point, ray.direction);

@@ -1,6 +1,7 @@
 // Particles of fire and emitters on their way through medium and surfaces, and the lights that their flights leave.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -15,6 +16,7 @@ struct ParticleFlight {
     double end;                          // where a surface is [m]
     std::optional<Collision> collision;  // before it
     Rgb power;                           // that sets out [W]
+    std::uint64_t particle;              // its number
     int before;                          // scatterings before this flight
     bool from_smoke;                     // the last of them was in the medium
     const RaySegment* segment;           // to that surface
@@ -27,10 +29,10 @@ struct FlightReport {
     void add(const FlightReport& r);
 };
 
-// One particle's flights, up to the one with `most_before` scatterings before it; -1: all. What is absorbed ends the
-// path by roulette: powers stay about equal.
-void follow_particle(const DirectLight& scene, const EmittedParticle& particle, int most_before, Rng& rng,
-                     const std::function<void(const ParticleFlight&)>& visit);
+// The flights of one particle, of that number, up to the one with `most_before` scatterings before it; -1: all. What is
+// absorbed ends the path by roulette: powers stay about equal.
+void follow_particle(const DirectLight& scene, const EmittedParticle& particle, std::uint64_t number, int most_before,
+                     Rng& rng, const std::function<void(const ParticleFlight&)>& visit);
 
 // Whether the particle carries any light; counts it.
 bool counts(const std::optional<EmittedParticle>& particle, FlightReport& report);
@@ -42,7 +44,8 @@ struct ParticleSource {
     std::uint32_t seed;
 };
 
-// What leave(flight, lights) leaves of all flights, in the order of the particles whatever the number of threads.
+// What leave(flight, left) leaves of all flights: lights, or whatever else, in the order of the particles whatever the
+// number of threads.
 template <class Light, class Leave>
 std::vector<Light> lights_of_flights(const DirectLight& scene, const ParticleSource& source, int most_before,
                                      const Leave& leave, FlightReport& report) {
@@ -61,7 +64,7 @@ std::vector<Light> lights_of_flights(const DirectLight& scene, const ParticleSou
             const std::optional<EmittedParticle> particle = particles.emit(i, rng);
             if (!counts(particle, part.report))
                 continue;
-            follow_particle(scene, *particle, most_before, rng, [&](const ParticleFlight& flight) {
+            follow_particle(scene, *particle, i, most_before, rng, [&](const ParticleFlight& flight) {
                 ++part.report.flights;
                 leave(flight, part.lights);
             });

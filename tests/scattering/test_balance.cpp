@@ -80,8 +80,9 @@ TEST(Balance, WhatEscapesIsWhatDoesNotCollide) {
         const EscapeEstimate e = estimate_escape(lit.pyramid, lit.intensity, {}, likelihood, 200000);
         const double share = e.power.x / total(lit.intensity).x, other = 1.0 - inside.fraction.x;
         EXPECT_NEAR(share / other, 1.0, 4.0 * (e.standard_error + inside.standard_error / other)) << depth;
-        if (depth == 50.0f)
+        if (depth == 50.0f) {
             EXPECT_LT(e.standard_error, 0.5 * inside.standard_error / other);
+        }
     }
 }
 
