@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "medium/medium.h"
@@ -26,6 +27,11 @@ struct GridLevel {
     // Degrees 1 and 2 of a directional intensity, 24 per light ([3 * m + colour], sh.h); empty: isotropic.
     std::vector<float> directional;
 
+    // Of lights outside of the medium: places that light i stands for are part[first_part[i] ... first_part[i + 1]),
+    // local [m]. Empty where lights stand for voxels.
+    std::vector<vec3> part;
+    std::vector<std::uint32_t> first_part;
+
     BrickLattice lattice;             // of this level's vertices
     std::vector<std::uint32_t> node;  // of each light, in fields on `lattice`
 
@@ -35,6 +41,11 @@ struct GridLevel {
     std::vector<std::uint32_t> row_begin;
 
     std::size_t size() const { return vertex.size(); }
+    std::span<const vec3> parts_of(std::size_t light) const {
+        return first_part.empty()
+                   ? std::span<const vec3>()
+                   : std::span(part).subspan(first_part[light], first_part[light + 1] - first_part[light]);
+    }
     void index_rows();  // from `vertex`
     std::uint64_t bytes() const;
     // Appends the lights whose vertex lies in [low, high], in order.

@@ -12,6 +12,7 @@ namespace brisance {
 namespace {
 
 constexpr int kMostLevels = 24;
+constexpr std::size_t kMostParts = 16;  // of a light, for the surfaces that hide it in part
 
 struct Earlier {
     bool operator()(const ivec3& a, const ivec3& b) const { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
@@ -22,7 +23,20 @@ struct Sum {
     double weight = 0.0;
     Rgb intensity{0.0f};
     std::vector<float> directional;
+    std::vector<std::uint32_t> members;
 };
+
+// Up to kMostParts of its members, in proportion to their power.
+void add_parts(const PointLights& lights, const Sum& sum, std::vector<vec3>& parts) {
+    const std::size_t count = std::min(kMostParts, sum.members.size());
+    double passed = 0.0;
+    std::size_t picked = 0;
+    for (const std::uint32_t i : sum.members) {
+        passed += luminance(lights.intensity[i]);
+        for (; picked < count && (picked + 0.5) / double(count) * sum.weight < passed; ++picked)
+            parts.push_back(lights.position[i]);
+    }
+}
 
 GridLevel make_level(const Medium& medium, const PointLights& lights, int number, float range, const LocalBounds& box) {
     std::map<ivec3, Sum, Earlier> sums;
@@ -36,6 +50,7 @@ GridLevel make_level(const Medium& medium, const PointLights& lights, int number
         sum.place += double(y) * dvec3(lights.position[i]);
         sum.weight += y;
         sum.intensity += lights.intensity[i];
+        sum.members.push_back(static_cast<std::uint32_t>(i));
         if (lights.directional.empty())
             continue;
         sum.directional.resize(24, 0.0f);
@@ -45,7 +60,10 @@ GridLevel make_level(const Medium& medium, const PointLights& lights, int number
     GridLevel level;
     level.level = number;
     level.spacing = medium.spacing * float(1 << number);
+    level.first_part.push_back(0);
     for (const auto& [vertex, sum] : sums) {
+        add_parts(lights, sum, level.part);
+        level.first_part.push_back(static_cast<std::uint32_t>(level.part.size()));
         level.vertex.push_back(vertex);
         level.position.emplace_back(sum.place / sum.weight);
         level.intensity.push_back(sum.intensity);

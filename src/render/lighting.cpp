@@ -124,16 +124,22 @@ Gathered Lighting::light_from_surfaces(const ReflectedLight& reflected) {
     StageCost stage{"light from surfaces (MS)", 0.0, 0, {}};
     Gathered g;
     g.resize(needed_.size(), ask.toward_camera != nullptr, ask.moments);
-    if (reflected.lights && reflected.lights->size() > 0) {
-        const LightingGrid grid = build_point_grid(medium_, *reflected.lights, shot_.lighting.alpha);
+    if (reflected.lights) {
+        std::vector<LevelCost> costs;
+        std::size_t lights = 0;
         // Lights outside stand for themselves: no voxel has a share in them.
         const std::vector<float> no_weight(needed_.size(), 0.0f);
-        const LightField field{&pyramid_,      nullptr, nullptr,        &grid, &no_weight, shot_.lighting.alpha,
-                               shot_.lighting, nullptr, surfaces_.get()};
-        std::vector<LevelCost> costs;
-        g = gather_from_outside(field, ask, costs, progress_);
-        stage.bytes = grid.bytes() + most_held(costs);
-        stage.detail = {{"lights", reflected.lights->size()}, {"levels", level_table(costs)}};
+        for (const PointLights& side : *reflected.lights) {
+            const LightingGrid grid = build_point_grid(medium_, side, shot_.lighting.alpha);
+            if (grid.levels.empty())
+                continue;
+            const LightField field{&pyramid_,      nullptr, nullptr,        &grid, &no_weight, shot_.lighting.alpha,
+                                   shot_.lighting, nullptr, surfaces_.get()};
+            g.add(gather_from_outside(field, ask, costs, progress_));
+            stage.bytes = std::max(stage.bytes, grid.bytes() + most_held(costs));
+            lights += side.size();
+        }
+        stage.detail = {{"lights", lights}, {"levels", level_table(costs)}};
     }
     if (reflected.cast) {
         const Stopwatch cast;

@@ -1,11 +1,11 @@
 // From the medium to the light that scatters toward the camera: the fire's (MV) and the smoke's own (MM).
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
 #include "gathering/gather.h"
-#include "lights/point_grid.h"
 #include "render/camera.h"
 #include "render/cast_light.h"
 #include "render/cell_field.h"
@@ -14,6 +14,7 @@
 #include "render/haze_lights.h"
 #include "render/integrate.h"
 #include "render/plan.h"
+#include "render/reflected_lights.h"
 #include "render/statistics.h"
 #include "scattering/multiple_scattering.h"
 #include "shot/shot.h"
@@ -27,15 +28,19 @@ struct NodeLighting : NodeSources {
 
 // A point of a surface, and the light that a white Lambert surface there would reflect if no surface stood in its way.
 struct SurfaceReceiver {
-    vec3 local;                   // [m]
-    vec3 normal;                  // unit
-    Rgb fire{0.0f}, smoke{0.0f};  // [W/(m^2 sr)]
+    vec3 local;   // [m]
+    vec3 normal;  // unit
+    // [W/(m^2 sr)] of lights of dense smoke, and of those that even haze has of its own (haze_lights.h): apart, as
+    // surfaces may hide the one, be it as bright as it may, and not the other.
+    std::array<Rgb, 2> fire{}, smoke{};
 };
+// What surfaces aim at to see how much of either is hidden from them; null where there is no such light.
+using ToAimAt = std::array<const ExtendedLight*, 2>;
 
 // What surfaces send into the medium.
 struct ReflectedLight {
-    const PointLights* lights = nullptr;  // null: none
-    const CastLight* cast = nullptr;      // null: none
+    const LightsOfSides* lights = nullptr;  // null: none
+    const CastLight* cast = nullptr;        // null: none
 };
 
 class Lighting {
@@ -52,9 +57,8 @@ public:
 
     // For surfaces, where the plan needs SV or SM: fills `fire` and `smoke`.
     void at_surfaces(std::vector<SurfaceReceiver>& points);
-    // What surfaces aim at to see whether it is hidden from them; empty where the plan has no such cell.
-    const ExtendedLight* fire_to_aim_at() const { return fire_ ? fire_->aim.get() : nullptr; }
-    const ExtendedLight* smoke_to_aim_at() const { return smoke_ ? smoke_->aim.get() : nullptr; }
+    ToAimAt fire_to_aim_at() const { return fire_ ? fire_->to_aim_at() : ToAimAt{}; }
+    ToAimAt smoke_to_aim_at() const { return smoke_ ? smoke_->to_aim_at() : ToAimAt{}; }
 
 private:
     Gathered light_from_fire();
@@ -97,16 +101,17 @@ private:
         LightingGrid for_haze;
         std::unique_ptr<HazeLights> of_haze;  // of even haze, apart from the rest; or none
         Rgb scale{1.0f};
-        std::unique_ptr<ExtendedLight> aim;  // for surfaces
-        Rgb escape_scale{1.0f};              // for receivers outside
+        std::unique_ptr<ExtendedLight> aim, haze_to_aim_at;  // for surfaces
+        Rgb escape_scale{1.0f};                              // for receivers outside
+        ToAimAt to_aim_at() const { return {aim.get(), haze_to_aim_at.get()}; }
     };
     NodeWeights escape_of(const std::vector<Rgb>& intensity) const;
     void keep(KeptLights& lights, float alpha);
     // Where nodes are haze: from lights that were kept, in the place of what was gathered.
     void light_haze(KeptLights& from, const LatticeRequest& ask, Gathered& gathered);
     void part_haze_lights(KeptLights& lights, float alpha);
-    // At points outside, or on surfaces.
-    Gathered from_outside(const KeptLights& lights, const Receivers& receivers) const;
+    // At points outside, or on surfaces: of all lights but even haze's own, and of those.
+    std::array<Gathered, 2> from_outside(const KeptLights& lights, const Receivers& receivers) const;
     void balance_escape(KeptLights& lights, const dvec3& power, const EscapeEstimate& escape);
     std::unique_ptr<KeptLights> fire_, smoke_;
 };

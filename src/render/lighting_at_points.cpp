@@ -118,12 +118,17 @@ void Lighting::keep(KeptLights& lights, float alpha) {
     if (outside) {
         const ScatteredLight& light = lights.lights.light;
         lights.escape = escape_of(light.intensity);
-        if (lights_surfaces())
-            lights.aim = std::make_unique<ExtendedLight>(medium_, depths_, light.intensity, lights.escape);
         if (shot_.lighting.energy_balance)
             escape = estimate_escape(pyramid_, light.intensity, light.directional, lights.escape, kEscapeRays);
         power = total(light.intensity);
         part_haze_lights(lights, alpha);
+        const auto to_aim_at = [&](const std::vector<Rgb>& intensity) {
+            return std::make_unique<ExtendedLight>(medium_, depths_, intensity, lights.escape);
+        };
+        if (lights_surfaces())
+            lights.aim = to_aim_at(light.intensity);
+        if (lights_surfaces() && lights.of_haze)
+            lights.haze_to_aim_at = to_aim_at(lights.of_haze->lights.light.intensity);
         serve_outside(lights.lights, medium_, lights.escape);
         if (!haze_.empty() && lights_surfaces())
             lights.for_haze = lights.lights.grid;
@@ -144,7 +149,8 @@ void Lighting::keep(KeptLights& lights, float alpha) {
         balance_escape(lights, power, escape);
     statistics_.stages.push_back({lights_surfaces() ? "lights for surfaces" : "lights for haze",
                                   watch.seconds(),
-                                  lights.lights.grid.bytes() + (lights.aim ? lights.aim->bytes() : 0),
+                                  lights.lights.grid.bytes() + (lights.aim ? lights.aim->bytes() : 0) +
+                                      (lights.haze_to_aim_at ? lights.haze_to_aim_at->bytes() : 0),
                                   {{"coarsest_level_lights", lights.lights.grid.levels.back().size()}}});
 }
 
@@ -177,13 +183,13 @@ void Lighting::light_haze(KeptLights& from, const LatticeRequest& ask, Gathered&
     statistics_.stages.back().detail["levels"] = level_table(costs);
 }
 
-Gathered Lighting::from_outside(const KeptLights& lights, const Receivers& receivers) const {
+std::array<Gathered, 2> Lighting::from_outside(const KeptLights& lights, const Receivers& receivers) const {
     std::vector<LevelCost> costs;
     Progress silent;
-    Gathered g = gather_at_points(lights.field, lights.bottom, receivers, 0.0f, costs, silent, ReceiverKind::Surface);
-    if (lights.of_haze)
-        g.add(gather_at_points(lights.of_haze->field, {}, receivers, 0.0f, costs, silent, ReceiverKind::Surface));
-    return g;
+    const auto gather = [&](const LightField& field, const GridLevel& bottom) {
+        return gather_at_points(field, bottom, receivers, 0.0f, costs, silent, ReceiverKind::Surface);
+    };
+    return {gather(lights.field, lights.bottom), lights.of_haze ? gather(lights.of_haze->field, {}) : Gathered{}};
 }
 
 // What passes through the sphere around the medium must be what rays say escapes, of all the lights' `power`.
@@ -199,15 +205,16 @@ void Lighting::balance_escape(KeptLights& lights, const dvec3& power, const Esca
     }
     std::vector<std::uint32_t> order;
     const Receivers receivers = point_receivers(medium_, sphere, true, order);
-    const Gathered g = from_outside(lights, receivers);
+    const std::array<Gathered, 2> arriving = from_outside(lights, receivers);
     dvec3 through(0.0);
     std::vector<bool> counted(sphere.size(), false);
     for (std::size_t i = 0; i < order.size(); ++i) {
         if (counted[order[i]])
             continue;  // padding
         counted[order[i]] = true;
-        for (int c = 0; c < 3; ++c)
-            through[c] += g.scattered[c * order.size() + i];
+        for (const Gathered& g : arriving)
+            for (int c = 0; c < 3 && !g.scattered.empty(); ++c)
+                through[c] += g.scattered[c * order.size() + i];
     }
     through *= double(kPi) * radius * radius / kSpherePoints;  // over 4 pi, as the intensities are
     for (int c = 0; c < 3; ++c)
@@ -230,14 +237,15 @@ void Lighting::at_surfaces(std::vector<SurfaceReceiver>& points) {
     std::vector<std::uint32_t> order;
     const Receivers receivers = point_receivers(medium_, places, true, order);
     const std::size_t n = order.size();
-    const auto gather = [&](const std::unique_ptr<KeptLights>& lights, Rgb SurfaceReceiver::*slot) {
+    const auto gather = [&](const std::unique_ptr<KeptLights>& lights, std::array<Rgb, 2> SurfaceReceiver::*slot) {
         if (!lights)
             return;
-        const Gathered g = from_outside(*lights, receivers);
+        const std::array<Gathered, 2> arriving = from_outside(*lights, receivers);
         // Scaled by the balance of what escapes, not of what collides.
-        for (std::size_t i = 0; i < n; ++i)
-            for (int c = 0; c < 3; ++c)
-                (points[order[i]].*slot)[c] = lights->escape_scale[c] * g.scattered[c * n + i];
+        for (int part = 0; part < 2; ++part)
+            for (std::size_t i = 0; i < n && !arriving[part].scattered.empty(); ++i)
+                for (int c = 0; c < 3; ++c)
+                    (points[order[i]].*slot)[part][c] = lights->escape_scale[c] * arriving[part].scattered[c * n + i];
     };
     gather(fire_, &SurfaceReceiver::fire);
     gather(smoke_, &SurfaceReceiver::smoke);

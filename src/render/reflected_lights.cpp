@@ -12,22 +12,27 @@ namespace {
 // the normal (Ramamoorthi and Hanrahan, An Efficient Representation for Irradiance Environment Maps, 2001).
 constexpr float kDegree1 = 2.0f / 3.0f, kDegree2 = 0.25f;
 
+// Normal of the plane that parts lights by theirs.
+constexpr vec3 kAside(0.517f, 0.382f, 0.766f);
+
 }  // namespace
 
-PointLights reflected_lights(const VirtualLights& lights) {
-    PointLights out;
+LightsOfSides reflected_lights(const VirtualLights& lights) {
+    LightsOfSides sides;
     for (const VirtualLight& light : lights.lights()) {
         const Rgb flux = light.base_flux;
         if (!(luminance(flux) > 0.0f))
             continue;
-        out.position.emplace_back(light.position);
+        const vec3 normal(light.frame.normal);
+        PointLights& out = sides[glm::dot(normal, kAside) < 0.0f];
+        out.position.emplace_back(light.position + kAboveSurface * light.radius * light.frame.normal);
         out.intensity.push_back(flux / (4.0f * std::numbers::pi_v<float>));
-        const auto basis = sh_basis(vec3(light.frame.normal));
+        const auto basis = sh_basis(normal);
         for (int m = 0; m < kShMoments; ++m)
             for (int c = 0; c < 3; ++c)
                 out.directional.push_back(flux[c] * (m < 3 ? kDegree1 : kDegree2) * basis[m]);
     }
-    return out;
+    return sides;
 }
 
 }  // namespace brisance

@@ -164,7 +164,7 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     std::optional<Medium> similar;
     if (plan.single || plan.needs(Cell::SV) || grid_plan.needs(Cell::MA) || plan.needs(Cell::MS)) {
         similar = similar_medium(medium, grid_bounces);
-        std::optional<PointLights> reflecting;
+        std::optional<LightsOfSides> reflecting;
         std::optional<CastLight> cast;
         if (plan.needs(Cell::MS)) {
             const VirtualLights* const shining = plan.reflected_by_particles ? nullptr : virtual_lights.get();

@@ -169,12 +169,16 @@ void SurfaceShader::shade_place(const SurfaceSample& sample, const SurfaceReceiv
     const dvec3 toward_viewer = -at.seen.arriving;
     Rng rng(Stream::Surface, sample.pixel, sample.number);
     if (lighting_ && has_base(point.material)) {
-        const SeenPart fire = seen_part(lighting_->fire_to_aim_at(), point, toward_viewer, rng);
-        const SeenPart smoke = seen_part(lighting_->smoke_to_aim_at(), point, toward_viewer, rng);
-        out.at(Cell::SV) += receiver.fire * fire.clear;
-        out.at(Cell::SM) += receiver.smoke * smoke.clear;
-        if (asks_through_panes())
-            out.at(Cell::SS) += receiver.fire * fire.through_panes + receiver.smoke * smoke.through_panes;
+        const auto add = [&](Cell cell, const std::array<Rgb, 2>& arriving, const ToAimAt& aims) {
+            for (int part = 0; part < 2; ++part) {
+                const SeenPart seen = seen_part(aims[part], point, toward_viewer, rng);
+                out.at(cell) += arriving[part] * seen.clear;
+                if (asks_through_panes())
+                    out.at(Cell::SS) += arriving[part] * seen.through_panes;
+            }
+        };
+        add(Cell::SV, receiver.fire, lighting_->fire_to_aim_at());
+        add(Cell::SM, receiver.smoke, lighting_->smoke_to_aim_at());
     }
     const Scatterer place(point, at.seen.arriving);
     reflect_scattered(place, point, rng, at.ray_rng, out);

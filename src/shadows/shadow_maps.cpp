@@ -200,9 +200,12 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
             else
                 march_shadow_rays(mips.data(), near_steps, steps, centre, rays, layout.distances, marched.data());
             texels.put_in_rows(marched, layout.distances, interior.data());
-            if (occluders)
-                cut_at_surfaces(*occluders, {level.position[light], starts.places(medium, level.position[light])},
-                                layout, interior);
+            if (occluders) {
+                const vec3& position = level.position[light];
+                const std::vector<vec3> voxels = starts.places(medium, position);
+                cut_at_surfaces(*occluders, {position, voxels.empty() ? level.parts_of(light) : voxels}, layout,
+                                interior);
+            }
             place_with_border(interior.data(), layout, maps + k * layout.stride());
         }
     });

@@ -12,9 +12,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Height above the surface at which a sphere's middle is looked for, of its radius, as surfaces are not flat; and the
-// end of the way to it that is not looked at.
-constexpr double kAboveSurface = 1e-3;
+// The end of the way to a sphere's middle that is not looked at, of its radius.
 constexpr double kLastPart = 1e-3;
 
 // How many of a sphere's directions are drawn by whom.

@@ -24,6 +24,9 @@ struct VirtualLight {
     double intensity = 0.0;     // the largest in any direction, luminance [W/sr]
 };
 
+// Height above the surface at which a light is looked for, of its radius, as surfaces are not flat.
+inline constexpr double kAboveSurface = 1e-3;
+
 // Smoother than this the map of directions cannot hold what is reflected.
 inline constexpr float kLeastRoughness = 0.25f;
 

@@ -87,7 +87,8 @@ protected:
         lighting.at_surfaces(places);
         double error = 0.0, truth = 0.0, square = 0.0, sum = 0.0;
         for (const SurfaceReceiver& p : places) {
-            const double true_value = brute_force(medium, depths, intensity, p), value = luminance(p.fire);
+            const double true_value = brute_force(medium, depths, intensity, p),
+                         value = luminance(p.fire[0] + p.fire[1]);
             error += (value - true_value) * (value - true_value);
             square += true_value * true_value;
             sum += value;
