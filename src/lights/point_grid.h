@@ -2,7 +2,8 @@
 //
 // Each light belongs to the vertex nearest to it on every level, with its place in the mean: they are few and far from
 // what they light, and moving from one vertex to the next at once does not show. Levels below the top keep only lights
-// that the medium may ask them for.
+// that the medium may ask them for. A coarse light's centre may lie behind a surface that its lights are in front of:
+// surfaces hide it as far as they hide some of those, its parts.
 #pragma once
 
 #include <vector>
