@@ -46,7 +46,7 @@ RenderedFrame picture(const Medium& medium, const Surroundings& set, RenderMetho
     shot.camera.width = kWidth;
     shot.camera.height = kHeight;
     shot.camera.samples_per_axis = 2;
-    shot.tracing.samples = 512;
+    shot.tracing.samples = 256;
     shot.virtual_lights.count = 2000;
     shot.virtual_lights.photons = 200000;
     Progress silent;
