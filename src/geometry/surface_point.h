@@ -19,6 +19,13 @@ struct SurfacePoint {
     Ray leaving(const dvec3& direction) const;
     // The same place just above the surface, on the side of `other`.
     dvec3 start_toward(const dvec3& other) const;
+
+    // Whether interpolated normals would let light through the surface itself between these directions: what they call
+    // reflection must stay on one side of the triangle, what they call transmission must cross it.
+    bool leaks(const dvec3& wo, const dvec3& wi) const {
+        const auto same_side = [&](const dvec3& n) { return glm::dot(n, wi) * glm::dot(n, wo) > 0.0; };
+        return same_side(frame.normal) != same_side(geometric_normal);
+    }
 };
 
 // `toward_viewer`: unit. Normals that interpolation or a normal map turns away from the viewer are bent back until they

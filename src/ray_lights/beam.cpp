@@ -83,12 +83,8 @@ public:
             return 0;
         return int(cone_.holds(direction)) + int(cone_.holds(mirrored(direction)));
     }
-    // Interpolated normals must not let light through the surface itself.
     Rgb scattered(const dvec3& direction) const {
-        const auto same_side = [&](const dvec3& n) {
-            return glm::dot(n, direction) * glm::dot(n, toward_viewer_) > 0.0;
-        };
-        if (same_side(point_.frame.normal) != same_side(point_.geometric_normal))
+        if (point_.leaks(toward_viewer_, direction))
             return Rgb(0.0f);
         const Rgb whole = lobes_.whole.evaluate(toward_viewer_, direction);
         return lobes_.shared ? whole + lobes_.shared->of_places(direction) : whole;

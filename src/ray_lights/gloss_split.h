@@ -36,6 +36,7 @@ private:
 // The lobes of a surface that lights are asked for: `whole` by all of them and, where it is given, what `shared` leaves
 // to places by those that set out in smoke.
 struct AskedLobes {
+    // NOLINTNEXTLINE(google-explicit-constructor): lobes that nobody shares are asked for as they are
     AskedLobes(const Bsdf& all_lobes, const GlossSplit* split = nullptr) : whole(all_lobes), shared(split) {}
     const Bsdf& whole;
     const GlossSplit* shared;

@@ -11,7 +11,8 @@
 // At a point of a surface BSDF times cosine stands in the place of sigma_s(u) p(u) T(0, u), and there is no integral
 // over u; v is drawn by the inverse square with the light's phase function. The BSDF is only evaluated: narrow lobes
 // are noisy without a radius. Whoever holds them does better (surface_shader.h): a ray in a direction that they draw
-// sees the medium, and along_ray() of it is all of SM but for light that was scattered once.
+// sees the medium, and along_ray() of it, times the part that lobes which were given to be shared leave to rays
+// (gloss_split.h), is all of SM but for light that was scattered once.
 // With a radius, lights are beams: phase functions, BSDF and the inverse square are blurred, which is a bias that
 // vanishes with the radius (beam.h).
 // Which lights are asked: choose_lights.h.

@@ -1,6 +1,7 @@
 #include "render/outside_lights.h"
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 #include <tuple>
 
@@ -39,6 +40,7 @@ std::vector<float> escaping(const GridLevel& level, const GridLevel& of_skin) {
 }
 
 void keep_lights(GridLevel& level, const std::vector<std::uint32_t>& kept) {
+    assert(level.first_part.empty());  // lights of voxels have no parts to be kept
     GridLevel out = level;
     const auto take = [&](auto& from, auto& to, std::size_t width) {
         to.clear();

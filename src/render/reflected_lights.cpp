@@ -1,5 +1,6 @@
 #include "render/reflected_lights.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include "gathering/sh.h"
@@ -12,7 +13,7 @@ namespace {
 // the normal (Ramamoorthi and Hanrahan, An Efficient Representation for Irradiance Environment Maps, 2001).
 constexpr float kDegree1 = 2.0f / 3.0f, kDegree2 = 0.25f;
 
-// Normal of the plane that parts lights by theirs.
+// Normal of that plane.
 constexpr vec3 kAside(0.517f, 0.382f, 0.766f);
 
 }  // namespace
@@ -25,7 +26,8 @@ LightsOfSides reflected_lights(const VirtualLights& lights) {
             continue;
         const vec3 normal(light.frame.normal);
         PointLights& out = sides[glm::dot(normal, kAside) < 0.0f];
-        out.position.emplace_back(light.position + kAboveSurface * light.radius * light.frame.normal);
+        out.position.emplace_back(light.position +
+                                  std::max(kAboveSurface * light.radius, light.clearance) * light.frame.normal);
         out.intensity.push_back(flux / (4.0f * std::numbers::pi_v<float>));
         const auto basis = sh_basis(normal);
         for (int m = 0; m < kShMoments; ++m)

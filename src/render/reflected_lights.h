@@ -8,8 +8,8 @@
 
 namespace brisance {
 
-// Lights of the two sides of anything thin: coarse lights that stand for both would stand in the wall between, and
-// shine through it. All normals that a plane in no common direction leaves on one side of it.
+// Lights by the side of a fixed, oblique plane that their normals point to. The two faces of a wall have opposite
+// normals, so that no coarse light stands for both: it would stand in the wall, and shine through it.
 using LightsOfSides = std::array<PointLights, 2>;
 
 // Each shines by Lambert's cosine about its normal, in spherical harmonics of degree 2 (6 % too bright along the

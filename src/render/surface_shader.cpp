@@ -21,6 +21,11 @@ bool has_specular(const SurfaceMaterial& m) {
     return needs_energy_tables(m);
 }
 
+// Of those that are not the base, lobes that are no deltas.
+bool has_wide_lobes(const SurfaceMaterial& m) {
+    return has_specular(m) && double(m.roughness) * m.roughness >= kSmoothAlpha;
+}
+
 }  // namespace
 
 SurfaceShader::SurfaceShader(const Plan& plan, const CellField& field, Lighting* lighting, const VirtualLights* lights,
@@ -126,7 +131,7 @@ void SurfaceShader::reflect_medium(const SurfacePoint& point, const dvec3& towar
                                    Rng& rng, Rng& ray_rng, CellSum& light) const {
     const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
     const std::optional<BsdfSample> drawn = lobes.bsdf.sample(toward_viewer, {x, y, z});
-    if (!drawn)
+    if (!drawn || point.leaks(toward_viewer, drawn->wi))
         return;
     const float of_rays = drawn->delta ? 1.0f : float(lobes.split.of_rays(drawn->wi));
     Rgb weight = drawn->weight;
@@ -146,14 +151,14 @@ void SurfaceShader::reflect_medium(const SurfacePoint& point, const dvec3& towar
 }
 
 // What neither fire's grids nor those of smoke show of the medium: lights in the smoke, and glossy lobes.
-void SurfaceShader::reflect_scattered(const Scatterer& place, const SurfacePoint& point, Rng& rng, Rng& ray_rng,
+void SurfaceShader::reflect_scattered(const SurfacePoint& point, const dvec3& toward_viewer, Rng& rng, Rng& ray_rng,
                                       CellSum& light) const {
-    const dvec3 toward_viewer = -place.arriving();
+    const int places = scattered_lights_ && has_wide_lobes(point.material) ? scattered_lights_->gloss_places() : 0;
     std::optional<GlossyLobes> gloss;
     if (lighting_ && has_specular(point.material))
-        gloss.emplace(point, toward_viewer, scattered_lights_ ? scattered_lights_->gloss_places() : 0);
+        gloss.emplace(point, toward_viewer, places);
     if (scattered_lights_) {
-        const bool shared = gloss && scattered_lights_->gloss_places() > 0 && !place.only_delta();
+        const bool shared = gloss && places > 0;
         const Bsdf base(point.material, point.frame, Lobes::Base);
         if (shared || has_base(point.material))
             light.at(Cell::SM) += scattered_lights_->at_surface(
@@ -180,8 +185,8 @@ void SurfaceShader::shade_place(const SurfaceSample& sample, const SurfaceReceiv
         add(Cell::SV, receiver.fire, lighting_->fire_to_aim_at());
         add(Cell::SM, receiver.smoke, lighting_->smoke_to_aim_at());
     }
+    reflect_scattered(point, toward_viewer, rng, at.ray_rng, out);
     const Scatterer place(point, at.seen.arriving);
-    reflect_scattered(place, point, rng, at.ray_rng, out);
     if (plan_.needs(Cell::SA))
         out.at(Cell::SA) += from_emitters(place, rng);
     if (!plan_.needs(Cell::SS))

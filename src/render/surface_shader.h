@@ -49,7 +49,7 @@ private:
     SeenPart seen_part(const ExtendedLight* light, const SurfacePoint& point, const dvec3& toward_viewer,
                        Rng& rng) const;
     Rgb from_emitters(const Scatterer& place, Rng& rng) const;
-    void reflect_scattered(const Scatterer& place, const SurfacePoint& point, Rng& rng, Rng& ray_rng,
+    void reflect_scattered(const SurfacePoint& point, const dvec3& toward_viewer, Rng& rng, Rng& ray_rng,
                            CellSum& light) const;
     void reflect_medium(const SurfacePoint& point, const dvec3& toward_viewer, const GlossyLobes& lobes, Rng& rng,
                         Rng& ray_rng, CellSum& light) const;

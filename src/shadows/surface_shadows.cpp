@@ -15,8 +15,9 @@ float visible_share(const Occluders& occluders, const MappedLight& light, std::s
     if (light.parts.empty())
         return occluders.visible(glm::mix(light.centre, to, 0.5f), to) ? 1.0f : 0.0f;
     float seen = 0.0f;
+    const std::size_t count = light.parts.size(), stride = count % 5 != 0 ? 5 : 7;  // of 64, or up to 16: prime to it
     for (std::size_t k = 0; k < kParts; ++k) {
-        const std::size_t part = (texel * 5 + k * light.parts.size() / kParts) % light.parts.size();
+        const std::size_t part = (texel * stride + k * count / kParts) % count;
         seen += occluders.visible(light.parts[part], to) ? 1.0f / kParts : 0.0f;
     }
     return seen;
@@ -42,14 +43,14 @@ void cut_at_surfaces(const Occluders& occluders, const MappedLight& light, const
         std::uint16_t* const samples = &interior[std::size_t(i) * layout.distances];
         if (samples[0] == 0)
             continue;
-        const vec3 direction =
-            octahedral_direction((2.0f * (i / r) + 1.0f) / r - 1.0f, (2.0f * (i % r) + 1.0f) / r - 1.0f);
+        const int u = i / r, v = i % r;
+        const vec3 direction = octahedral_direction((2.0f * u + 1.0f) / r - 1.0f, (2.0f * v + 1.0f) / r - 1.0f);
         const vec3 near = light.centre + layout.near_distance * direction;
         const float share = visible_share(occluders, light, i, near);
         const float beyond = layout.far_distance - layout.near_distance;
         const float hit = share > 0.0f ? occluders.first_hit(near, direction, beyond) : 0.0f;
         for (int k = 0; k < layout.distances; ++k)
-            samples[k] = float(k) * step <= hit ? std::uint16_t(std::lround(share * samples[k])) : 0;
+            samples[k] = hit >= beyond || float(k) * step <= hit ? std::uint16_t(std::lround(share * samples[k])) : 0;
     }
 }
 

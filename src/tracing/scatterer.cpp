@@ -60,20 +60,13 @@ Ray Scatterer::toward(const dvec3& place, double& distance) const {
     return {from, distance > 0.0 ? way / distance : dvec3(0.0, 0.0, 1.0)};
 }
 
-// Interpolated normals would let light through the surface itself: what they call reflection must stay on the viewer's
-// side of the triangle, what they call transmission must leave it.
-bool Scatterer::leaks(const dvec3& wi) const {
-    const auto same_side = [&](const dvec3& n) { return glm::dot(n, wi) * glm::dot(n, -arriving_) > 0.0; };
-    return same_side(surface_->point.frame.normal) != same_side(surface_->point.geometric_normal);
-}
-
 Scatterer::Value Scatterer::at(const dvec3& wi) const {
     if (!on_surface()) {
         const float phase = henyey_greenstein(static_cast<float>(glm::dot(arriving_, wi)), mean_cosine_);
         return {Rgb(phase), phase};
     }
     Value out{Rgb(0.0f), surface_->bsdf.pdf(-arriving_, wi)};
-    if (!leaks(wi))
+    if (!surface_->point.leaks(-arriving_, wi))
         out.value = surface_->bsdf.evaluate(-arriving_, wi);
     return out;
 }
@@ -87,7 +80,7 @@ std::optional<Scatterer::Sample> Scatterer::sample(Rng& rng) const {
     }
     const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
     const std::optional<BsdfSample> drawn = surface_->bsdf.sample(-arriving_, {x, y, z});
-    if (!drawn || leaks(drawn->wi))
+    if (!drawn || surface_->point.leaks(-arriving_, drawn->wi))
         return std::nullopt;
     return Sample{drawn->wi, drawn->weight, drawn->pdf, drawn->delta};
 }
@@ -97,7 +90,7 @@ std::optional<Scatterer::Sample> Scatterer::sample_particle(Rng& rng) const {
         return sample(rng);
     const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
     const std::optional<BsdfSample> drawn = surface_->bsdf.sample(-arriving_, {x, y, z}, Transport::Importance);
-    if (!drawn || leaks(drawn->wi))
+    if (!drawn || surface_->point.leaks(-arriving_, drawn->wi))
         return std::nullopt;
     const auto cosine = [&](const dvec3& n, const dvec3& v) { return std::abs(glm::dot(n, v)); };
     const dvec3 &shading = surface_->point.frame.normal, &geometric = surface_->point.geometric_normal;

@@ -48,8 +48,6 @@ public:
     std::optional<Sample> sample_particle(Rng& rng) const;
 
 private:
-    bool leaks(const dvec3& wi) const;
-
     LitPoint lit_;
     dvec3 arriving_;
     float mean_cosine_ = 0.0f;

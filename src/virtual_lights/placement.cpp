@@ -81,6 +81,7 @@ VirtualLight light_at(const Scene& scene, const LightCandidate& place) {
     const SurfacePoint point = surface_point(scene, place.hit, dvec3(place.toward_viewer));
     VirtualLight light;
     light.position = point.position;
+    light.clearance = point.clearance;
     light.frame = frame_around(lit_normal(point));
     light.scene_material = place.scene_material;
     light.material = point.material;

@@ -8,11 +8,12 @@
 namespace brisance {
 
 struct VirtualLight {
-    dvec3 position{0.0};  // local [m]
-    ShadingFrame frame;   // around the surface's normal, on the side that is lit
-    double radius = 0.0;  // of the sphere within which surfaces take part [m]
-    double area = 0.0;    // of surface that the light speaks for: what it shares with others counts in part [m^2]
-    double spread = 0.0;  // largest angle of the surface's normals to its own [rad]
+    dvec3 position{0.0};     // local [m]
+    ShadingFrame frame;      // around the surface's normal, on the side that is lit
+    double radius = 0.0;     // of the sphere within which surfaces take part [m]
+    double clearance = 0.0;  // of its surface (SurfacePoint::clearance) [m]
+    double area = 0.0;       // of surface that the light speaks for: what it shares with others counts in part [m^2]
+    double spread = 0.0;     // largest angle of the surface's normals to its own [rad]
     int scene_material = 0;
     SurfaceMaterial material;   // at its position
     Rgb irradiance{0.0f};       // mean over its area [W/m^2]

@@ -133,6 +133,37 @@ INSTANTIATE_TEST_SUITE_P(Intersector, AtAnyScale,
                                            Place{1.0f, 100.0f}, Place{1e-3f, 100.0f}, Place{1e3f, 30.0f}));
 
 // Coincident faces: one of them is met, and the same one whoever asks.
+// What any ray finds within a ball, nobody is told to be farther away; and of a ball of triangles, few are said to be
+// near that are not.
+TEST_P(AtAnyScale, NothingNearIsOverlooked) {
+    const double size = GetParam().scale;
+    Scene scene;
+    add_ball(scene, centre(), GetParam().scale, 24, lambert(0.5f));
+    add_quad(scene, centre() + GetParam().scale * vec3(-2.0f, -2.0f, -1.4f), GetParam().scale * vec3(4, 0, 1.3f),
+             GetParam().scale * vec3(0, 4, 0.4f), lambert(0.5f));
+    const Intersector intersector(scene);
+    Rng rng(Stream::Points, 5);
+    int found = 0, far = 0, said_near = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const dvec3 place = dvec3(centre()) + 2.5 * size * rng.next_double() * uniform_direction(rng);
+        const double radius = size * rng.next_double() * rng.next_double();
+        const bool near = intersector.any_within(place, radius);
+        bool hit = false;
+        for (int k = 0; k < 8 && !hit; ++k)
+            hit = intersector.first_hit({place, uniform_direction(rng)}, radius).has_value();
+        EXPECT_TRUE(near || !hit) << "a surface within " << radius;
+        found += hit;
+        const double from_ball = glm::distance(place, dvec3(centre())) / size;
+        if (from_ball < 0.9 && from_ball + radius / size < 0.9 && place.z > centre().z + 0.5 * size) {
+            ++far;
+            said_near += near;
+        }
+    }
+    EXPECT_GT(found, 1000);
+    ASSERT_GT(far, 50);
+    EXPECT_LT(said_near, far / 10) << "nothing is gained";
+}
+
 TEST(Intersector, CoincidentFacesAreOneSurface) {
     Scene scene;
     add_quad(scene, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, lambert(0.2f));
