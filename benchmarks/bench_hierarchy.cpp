@@ -4,7 +4,7 @@
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "fires.h"
-#include "lights/voxel_lights.h"
+#include "lighting_grid/voxel_lights.h"
 
 namespace brisance::benchmarks {
 namespace {

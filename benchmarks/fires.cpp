@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "core/rng.h"
-#include "lights/voxel_lights.h"
+#include "lighting_grid/voxel_lights.h"
 
 namespace brisance::benchmarks {
 

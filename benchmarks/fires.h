@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "gathering/gather.h"
-#include "lights/lighting_grid.h"
+#include "lighting_grid/lighting_grid.h"
 #include "medium/extinction_pyramid.h"
 #include "medium/medium.h"
 

@@ -15,8 +15,8 @@
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "film/write_image.h"
+#include "reference/path_tracer.h"
 #include "scene/load_scene.h"
-#include "tracing/path_tracer.h"
 #include "virtual_lights/virtual_lights.h"
 
 namespace brisance {
@@ -230,7 +230,7 @@ int run(int argc, char** argv) {
     watch = {};
     const Pixels between = sampled(view, samples, 2, [&](const Ray& ray, double, Rng& rng) {
         const RaySegment segment = direct.segment_along(ray);
-        return segment.point ? lights.shade(Scatterer(*segment.point, ray.direction), rng) : Rgb(0.0f);
+        return segment.point ? lights.shade(PathVertex(*segment.point, ray.direction), rng) : Rgb(0.0f);
     });
     std::printf("SS: %d samples in %.2f s, %d x %d\n", samples, watch.seconds(), view.width, view.height);
     for (std::size_t p = 0; p < whole.size(); ++p)

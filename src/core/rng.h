@@ -23,14 +23,14 @@ enum class Stream : std::uint32_t {
     RayLightRoulette,
     RayLightPair,
     RayLightSurface,
-    MediumPoint,
-    MediumPointRoulette,
+    VolumetricVpl,
+    VolumetricVplRoulette,
     RayLightPass,
     Mirror,
-    CastLight,
-    CastLightRoulette,
-    ParticleTrack,
-    LaidWay
+    SpecularPhotons,
+    SpecularPhotonRoulette,
+    VolumetricPhoton,
+    StoredTrack
 };
 
 // SplitMix64 (Steele, Lea, Flood 2014), keyed by identity.

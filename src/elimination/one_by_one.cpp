@@ -7,9 +7,9 @@ namespace brisance {
 namespace {
 
 // Cells of a grid as wide as the greatest reach: neighbours are in the 27 around a point.
-class CellIndex {
+class VoxelIndex {
 public:
-    CellIndex(const Candidates& candidates, const std::vector<std::uint32_t>& alive, float scale)
+    VoxelIndex(const Candidates& candidates, const std::vector<std::uint32_t>& alive, float scale)
         : candidates_(candidates), alive_(alive), low_(1e30f) {
         vec3 high(-1e30f);
         for (const std::uint32_t i : alive) {
@@ -62,7 +62,7 @@ struct Lists {
 };
 
 Lists list_neighbours(const Candidates& c, const std::vector<std::uint32_t>& alive, float scale, float least) {
-    const CellIndex index(c, alive, scale);
+    const VoxelIndex index(c, alive, scale);
     Lists lists;
     for (std::uint32_t n = 0; n < alive.size(); ++n) {
         const vec3 p = c.position[alive[n]];

@@ -13,7 +13,7 @@
 #include "gathering/near_field.h"
 #include "gathering/receivers.h"
 #include "gathering/settings.h"
-#include "lights/lighting_grid.h"
+#include "lighting_grid/lighting_grid.h"
 #include "medium/extinction_pyramid.h"
 
 namespace brisance {

@@ -49,11 +49,11 @@ ExtinctionPyramid::Packed ExtinctionPyramid::pack(const BrickLattice& lattice, c
     p.scale = maximum / kStoredMaximum;
 
     // Cells of a brick reach one node into the next brick, so every brick's lower neighbours get cells too.
-    std::vector<ivec3> cell_bricks;
+    std::vector<ivec3> voxel_bricks;
     for (std::size_t b = 0; b < lattice.brick_count(); ++b)
         for (int k = 0; k < 8; ++k)
-            cell_bricks.push_back(lattice.brick(b) - ivec3(k >> 2, k >> 1 & 1, k & 1));
-    const BrickLattice cells(std::move(cell_bricks));
+            voxel_bricks.push_back(lattice.brick(b) - ivec3(k >> 2, k >> 1 & 1, k & 1));
+    const BrickLattice cells(std::move(voxel_bricks));
     constexpr int kSide = BrickLattice::kSize + 1;
     std::vector<std::uint8_t> used(cells.brick_count(), 0);
     std::vector<std::vector<std::uint32_t>> packed(cells.brick_count());

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "medium/even_parts.h"
+#include "medium/homogeneous_bricks.h"
 #include "medium/medium.h"
 #include "medium/occluders.h"
 
@@ -43,8 +43,10 @@ public:
     const Occluders* occluders() const { return occluders_; }
 
     // Where rays may take long steps; null (the default): nowhere. Kept.
-    void set_even_parts(const EvenParts* even_parts) { even_parts_ = even_parts; }
-    const EvenParts* even_parts() const { return even_parts_; }
+    void set_homogeneous_bricks(const HomogeneousBricks* homogeneous_bricks) {
+        homogeneous_bricks_ = homogeneous_bricks;
+    }
+    const HomogeneousBricks* homogeneous_bricks() const { return homogeneous_bricks_; }
 
     // Optical depth between two local points [m], sampled on level 0 at steps of about half a voxel. Scalar; for checks
     // and few rays.
@@ -63,7 +65,7 @@ private:
 
     const Medium* medium_;
     const Occluders* occluders_ = nullptr;
-    const EvenParts* even_parts_ = nullptr;
+    const HomogeneousBricks* homogeneous_bricks_ = nullptr;
     std::vector<BrickLattice> lattices_;
     std::vector<std::vector<float>> nodes_;
     std::vector<Packed> packed_;

@@ -15,7 +15,7 @@
 //    Weinman, The delta-Eddington approximation for radiative flux transfer, J. Atmos. Sci. 33, 1976; Wiscombe, The
 //    delta-M method, 34, 1977), with f = g^3, so that moments 0 to 2 are kept by the rest. Where light is followed for
 //    one scattering alone that would be no scattering at all: the peak's share is then left out, and the camera adds
-//    it along its own rays, where it has come straight on (CellField).
+//    it along its own rays, where it has come straight on (SourceField).
 //  - A backward peak as narrow. It cannot count as no scattering, and is widened.
 // The camera still sees emission through the medium itself.
 #pragma once

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <optional>
 
-#include "tracing/pair_sampling.h"
-#include "tracing/scatterer.h"
+#include "light_selection/joint_sampling.h"
+#include "transport/path_vertex.h"
 
 namespace brisance {
 

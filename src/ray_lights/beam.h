@@ -22,15 +22,15 @@
 // dimension, r_{i+1}^2 = r_i^2 (i + alpha) / (i + 1): the bias of the mean over n passes then vanishes like
 // n^(alpha - 1), and its variance like n^-alpha.
 //
-// What that bounds: at surfaces the variance, whatever BSDF and phase function. Along rays of the camera 1 / w^2 and one
-// of the two phase functions: where a light happens to run as the ray does, what hardly turns at v nor at u passes both
-// peaks, and that still grows like 1 / (1 - g)^2, as directions of lights are not blurred.
+// What that bounds: at surfaces the variance, whatever BSDF and phase function. Along rays of the camera 1 / w^2 and
+// one of the two phase functions: where a light happens to run as the ray does, what hardly turns at v nor at u passes
+// both peaks, and that still grows like 1 / (1 - g)^2, as directions of lights are not blurred.
 #pragma once
 
 #include "core/rng.h"
 #include "core/vec.h"
 #include "geometry/surface_point.h"
-#include "ray_lights/gloss_split.h"
+#include "light_selection/gloss_split.h"
 
 namespace brisance {
 

@@ -1,7 +1,8 @@
 // A virtual ray light: a flight of a particle through the medium, or a piece of one, whose light scatters all along it.
 #pragma once
 
-#include "tracing/pair_sampling.h"
+#include "light_selection/medium_light_tree.h"
+#include "tracking/segment.h"
 
 namespace brisance {
 
@@ -15,17 +16,7 @@ struct RayLight {
     double radius = 0.0;      // of a beam [m] (beam.h)
 };
 
-// Who is lit: a ray of the camera through the medium, or a point of a surface.
-struct RayLightReceiver {
-    bool is_ray = true;
-    Segment ray;  // the part that is mostly seen
-    dvec3 point{0.0}, normal{0.0};
-    static RayLightReceiver along(const Segment& seen) { return {true, seen, {}, {}}; }
-    // A point of the medium that is seen along `direction` (unit). `short_way`: against all it sees [m].
-    static RayLightReceiver in_smoke(const dvec3& point, const dvec3& direction, double short_way) {
-        return along({point, direction, short_way});
-    }
-    static RayLightReceiver at(const dvec3& point, const dvec3& normal) { return {false, {}, point, normal}; }
-};
+// Its box, for the tree.
+MediumLightBounds bounds_of(const RayLight& light);
 
 }  // namespace brisance

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ray_lights/choose_lights.h"
-#include "ray_lights/keep_important.h"
+#include "light_selection/joint_sampling.h"
+#include "light_selection/resample_lights.h"
+#include "light_selection/thin_lights.h"
 
 namespace brisance {
 
@@ -45,13 +46,13 @@ RayLightSettings settings_of_pass(RayLightSettings settings, int pass, double fi
 }
 
 RayLights::RayLights(const DirectLight& scene, const RayLightSettings& settings, int bounces,
-                     std::span<const RayLightReceiver> receivers)
-    : LightsInSmoke(settings.seed),
+                     std::span<const LightReceiver> receivers)
+    : InScattering(settings.seed),
       scene_(scene),
       settings_(settings),
-      lights_(thickened(keep_important(trace_ray_lights(scene, settings, bounces, report_), receivers,
-                                       static_cast<std::size_t>(settings.count), scene.field().mean_cosine(),
-                                       Stream::RayLightRoulette, settings.seed),
+      lights_(thickened(thin_lights(trace_ray_lights(scene, settings, bounces, report_), receivers,
+                                    static_cast<std::size_t>(settings.count), scene.field().mean_cosine(),
+                                    Stream::RayLightRoulette, settings.seed),
                         settings.radius, scene.field())),
       tree_(boxes_of(lights_), scene.field().mean_cosine()) {
     report_.lights = lights_.size();
@@ -65,7 +66,7 @@ bool RayLights::occluded(const Ray& ray, double end) const {
     return scene_.surroundings() && scene_.surroundings()->intersector().occluded(ray, end);
 }
 
-Rgb RayLights::pair(const SeenMedium& seen, const RayLight& light, Rng& rng) const {
+Rgb RayLights::pair(const RayMedium& seen, const RayLight& light, Rng& rng) const {
     const Segment& camera = seen.segment();
     const double g = scene_.field().mean_cosine();
     const PairDensity joint(camera, light.segment, g, light.radius);
@@ -124,7 +125,7 @@ Rgb RayLights::to_surface(const SurfacePoint& point, const AskedLobes& lobes, co
 }
 
 // The double integral of a pair by a few of its places.
-double RayLights::wanted_along(const SeenMedium& seen, const RayLight& light) const {
+double RayLights::wanted_along(const RayMedium& seen, const RayLight& light) const {
     constexpr int kPlaces = 3;
     const double g = scene_.field().mean_cosine();
     const InverseDistanceDensity near(light.segment, seen.segment(), light.radius);
@@ -140,19 +141,19 @@ double RayLights::wanted_along(const SeenMedium& seen, const RayLight& light) co
 
 // By its middle, as the tree sees it.
 double RayLights::wanted_at(const dvec3& point, const dvec3& normal, const RayLight& light) const {
-    return importance(bounds_of(light), RayLightReceiver::at(point, normal), scene_.field().mean_cosine());
+    return importance(bounds_of(light), LightReceiver::at(point, normal), scene_.field().mean_cosine());
 }
 
-Rgb RayLights::along_ray(const SeenMedium& seen, Rng& rng, RayLightCost* cost) const {
+Rgb RayLights::along_ray(const RayMedium& seen, Rng& rng, SelectionCost* cost) const {
     thread_local std::vector<LightChoice<RayLight>> choices;
     if (seen.empty())
         return Rgb(0.0f);
-    const RayLightReceiver receiver = receiver_along(seen);
+    const LightReceiver receiver = receiver_along(seen);
     const double g = scene_.field().mean_cosine();
     const auto wanted = [&](const RayLight& light) {
         return wanted_along(seen, light) + kByItsBox * importance(bounds_of(light), receiver, g);
     };
-    choose_lights<RayLight>(tree_, lights_, receiver, settings_.samples, wanted, rng, cost, choices);
+    resample_lights<RayLight>(tree_, lights_, receiver, settings_.samples, wanted, rng, cost, choices);
     Rgb sum(0.0f);
     for (const LightChoice<RayLight>& c : choices)
         sum += float(c.weight) * pair(seen, *c.light, rng);
@@ -160,7 +161,7 @@ Rgb RayLights::along_ray(const SeenMedium& seen, Rng& rng, RayLightCost* cost) c
 }
 
 Rgb RayLights::at_surface(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer, Rng& rng,
-                          RayLightCost* cost) const {
+                          SelectionCost* cost) const {
     thread_local std::vector<LightChoice<RayLight>> choices;
     const bool above = glm::dot(point.frame.normal, toward_viewer) >= 0.0;
     const dvec3 normal = above ? point.frame.normal : -point.frame.normal;
@@ -168,15 +169,15 @@ Rgb RayLights::at_surface(const SurfacePoint& point, const AskedLobes& lobes, co
     const auto wanted = [&](const RayLight& light) {
         return from_all || light.from_smoke ? wanted_at(point.position, normal, light) : 0.0;
     };
-    choose_lights<RayLight>(tree_, lights_, RayLightReceiver::at(point.position, normal), settings_.samples, wanted,
-                            rng, cost, choices);
+    resample_lights<RayLight>(tree_, lights_, LightReceiver::at(point.position, normal), settings_.samples, wanted, rng,
+                              cost, choices);
     Rgb sum(0.0f);
     for (const LightChoice<RayLight>& c : choices)
         sum += float(c.weight) * to_surface(point, lobes, toward_viewer, *c.light, rng);
     return sum;
 }
 
-Rgb RayLights::along_ray_from_all(const SeenMedium& seen, Rng& rng) const {
+Rgb RayLights::along_ray_from_all(const RayMedium& seen, Rng& rng) const {
     Rgb sum(0.0f);
     for (const RayLight& light : lights_)
         if (!seen.empty())

@@ -15,15 +15,15 @@
 // (gloss_split.h), is all of SM but for light that was scattered once.
 // With a radius, lights are beams: phase functions, BSDF and the inverse square are blurred, which is a bias that
 // vanishes with the radius (beam.h).
-// Which lights are asked: choose_lights.h.
+// Which lights are asked: resample_lights.h.
 #pragma once
 
 #include <span>
 #include <vector>
 
+#include "light_selection/in_scattering.h"
+#include "light_selection/medium_light_tree.h"
 #include "ray_lights/beam.h"
-#include "ray_lights/lights_in_smoke.h"
-#include "ray_lights/ray_light_tree.h"
 #include "ray_lights/trace_ray_lights.h"
 
 namespace brisance {
@@ -31,19 +31,19 @@ namespace brisance {
 // Of a pass, from 0: with a seed of its own, and the radius that is left of `first` [m], that of pass 0.
 RayLightSettings settings_of_pass(RayLightSettings settings, int pass, double first);
 
-class RayLights : public LightsInSmoke {
+class RayLights : public InScattering {
 public:
     // Traces, thins out and sorts the lights. Keeps a reference to the scene. `receivers`: what stands for all that the
     // camera sees, for the roulette. `bounces` as of trace_ray_lights().
     RayLights(const DirectLight& scene, const RayLightSettings& settings, int bounces,
-              std::span<const RayLightReceiver> receivers);
+              std::span<const LightReceiver> receivers);
 
-    Rgb along_ray(const SeenMedium& seen, Rng& rng, RayLightCost* cost = nullptr) const override;
+    Rgb along_ray(const RayMedium& seen, Rng& rng, SelectionCost* cost = nullptr) const override;
     int gloss_places() const override { return lights_.empty() ? 0 : settings_.samples; }
     Rgb at_surface(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer, Rng& rng,
-                   RayLightCost* cost = nullptr) const override;
+                   SelectionCost* cost = nullptr) const override;
     // One pair each.
-    Rgb along_ray_from_all(const SeenMedium& seen, Rng& rng) const override;
+    Rgb along_ray_from_all(const RayMedium& seen, Rng& rng) const override;
     Rgb at_surface_from_all(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer,
                             Rng& rng) const override;
 
@@ -53,9 +53,9 @@ public:
     std::uint64_t bytes() const { return lights_.size() * sizeof(RayLight) + tree_.bytes(); }
 
 private:
-    double wanted_along(const SeenMedium& seen, const RayLight& light) const;
+    double wanted_along(const RayMedium& seen, const RayLight& light) const;
     double wanted_at(const dvec3& point, const dvec3& normal, const RayLight& light) const;
-    Rgb pair(const SeenMedium& seen, const RayLight& light, Rng& rng) const;
+    Rgb pair(const RayMedium& seen, const RayLight& light, Rng& rng) const;
     Rgb to_surface(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer,
                    const RayLight& light, Rng& rng) const;
     double reaches_along(const RayLight& light, double v, Rng& rng) const;
@@ -65,7 +65,7 @@ private:
     RayLightSettings settings_;
     RayLightReport report_;
     std::vector<RayLight> lights_;
-    RayLightTree tree_;
+    MediumLightTree tree_;
 };
 
 }  // namespace brisance

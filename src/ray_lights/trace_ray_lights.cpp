@@ -29,7 +29,7 @@ public:
                 leave_piece(flight, std::lerp(from, to, double(i) / pieces), std::lerp(from, to, (i + 1.0) / pieces),
                             depth, lights);
         };
-        walk_bricks(scene_.field().bricks(), scene_.field().enter(ray, end), [&](const CellSegment& brick) {
+        walk_bricks(scene_.field().bricks(), scene_.field().enter(ray, end), [&](const VoxelSegment& brick) {
             if (scene_.field().majorant(brick.brick) <= 0.0f)
                 return true;
             if (to < brick.begin * (1.0 - 1e-12)) {

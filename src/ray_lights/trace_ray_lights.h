@@ -11,7 +11,7 @@
 
 #include "ray_lights/ray_light.h"
 #include "ray_lights/settings.h"
-#include "tracing/particle_flights.h"
+#include "transport/particle_walk.h"
 
 namespace brisance {
 

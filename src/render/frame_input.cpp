@@ -2,9 +2,9 @@
 
 #include <optional>
 
+#include "camera/camera.h"
 #include "core/error.h"
 #include "core/stopwatch.h"
-#include "render/camera.h"
 #include "render/load_medium.h"
 #include "scene/load_scene.h"
 #include "scene/read_texture.h"

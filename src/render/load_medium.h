@@ -6,8 +6,8 @@
 
 #include "core/progress.h"
 #include "medium/medium.h"
-#include "render/statistics.h"
 #include "shot/shot.h"
+#include "statistics/statistics.h"
 
 namespace brisance {
 

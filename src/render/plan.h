@@ -16,8 +16,8 @@
 #include "core/cell.h"
 #include "emitters/surroundings.h"
 #include "medium/medium.h"
-#include "render/statistics.h"
 #include "shot/shot.h"
+#include "statistics/statistics.h"
 
 namespace brisance {
 

@@ -4,22 +4,22 @@
 
 #include <ctime>
 
+#include "camera/camera.h"
+#include "camera_rays/integrate.h"
+#include "camera_rays/source_field.h"
+#include "certificate/certify.h"
 #include "core/error.h"
 #include "core/stopwatch.h"
 #include "medium/similar_medium.h"
-#include "render/camera.h"
-#include "render/camera_scattered_lights.h"
-#include "render/cell_field.h"
-#include "render/certify.h"
+#include "medium_lighting/medium_lighting.h"
+#include "medium_lighting/virtual_lights_as_points.h"
+#include "reference/trace_picture.h"
 #include "render/frame_input.h"
-#include "render/integrate.h"
-#include "render/lighting.h"
 #include "render/load_medium.h"
 #include "render/plan.h"
-#include "render/reflected_lights.h"
-#include "render/surface_shader.h"
-#include "render/trace_picture.h"
+#include "render/scattering_pass.h"
 #include "shot/write_shot.h"
+#include "surface_lighting/surface_shader.h"
 
 namespace brisance {
 
@@ -45,7 +45,7 @@ private:
     Statistics& statistics_;
 };
 
-void add_order_layers(Image& image, const CellField& field, const NodeLighting& lighting, const Medium& medium,
+void add_order_layers(Image& image, const SourceField& field, const NodeLighting& lighting, const Medium& medium,
                       const Medium* similar, const Camera& camera, const PictureSettings& settings,
                       Progress& progress) {
     const auto add = [&](const std::string& name, const Layer& from) {
@@ -60,7 +60,7 @@ void add_order_layers(Image& image, const CellField& field, const NodeLighting& 
         add("bounce1", settings.cells ? Layer(image.layer("MV")) : picture.layer("MV"));
     }
     for (std::size_t k = 0; k < lighting.orders.size(); ++k) {
-        const CellField order(medium, {{}, lighting.orders[k], {}, {}}, similar);
+        const SourceField order(medium, {{}, lighting.orders[k], {}, {}}, similar);
         one.layers[static_cast<int>(Cell::MV)] = false;
         const Image picture = render_picture(order, camera, one, {}, progress);
         const bool tail = k + 1 == lighting.orders.size() && k > 0;
@@ -160,21 +160,21 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     // Orders of scattering that the grid follows.
     const int grid_bounces = plan.scattered_lights ? bounces_beside_scattered_lights(plan) : shot.scattering.bounces;
     const Plan grid_plan = plan.scattered_lights ? without_scattered_lights(plan) : plan;
-    std::unique_ptr<Lighting> lighting;
+    std::unique_ptr<MediumLighting> lighting;
     std::optional<Medium> similar;
     if (plan.single || plan.needs(Cell::SV) || grid_plan.needs(Cell::MA) || plan.needs(Cell::MS)) {
         similar = similar_medium(medium, grid_bounces);
-        std::optional<LightsOfSides> reflecting;
-        std::optional<CastLight> cast;
+        std::optional<PointsOfSides> reflecting;
+        std::optional<SpecularPhotons> cast;
         if (plan.needs(Cell::MS)) {
             const VirtualLights* const shining = plan.reflected_by_particles ? nullptr : virtual_lights.get();
             if (shining)
-                reflecting = reflected_lights(*shining);
+                reflecting = points_of_virtual_lights(*shining);
             cast.emplace(paths->direct(), shining, shot.virtual_lights);
         }
         const ReflectedLight reflected{reflecting ? &*reflecting : nullptr, cast && !cast->empty() ? &*cast : nullptr};
-        lighting = std::make_unique<Lighting>(shot, grid_plan, similar ? *similar : medium, camera, statistics,
-                                              progress, surroundings, reflected);
+        lighting = std::make_unique<MediumLighting>(shot, grid_plan, similar ? *similar : medium, camera, statistics,
+                                                    progress, surroundings, reflected);
     }
     progress.stage("camera");
     const Stopwatch watch;
@@ -182,7 +182,7 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     const NodeLighting none;
     const NodeLighting& nodes = lighting && !marching ? lighting->at_nodes() : none;
     const float forward = forward_left_out(medium.mean_cosine, grid_bounces);
-    const CellField field(medium, nodes, similar ? &*similar : nullptr, forward);
+    const SourceField field(medium, nodes, similar ? &*similar : nullptr, forward);
     PictureSettings settings;
     settings.samples_per_axis =
         camera.settings().samples_per_axis > 0 ? camera.settings().samples_per_axis : automatic_samples(camera, field);
@@ -199,7 +199,7 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
     LightPoints light_points;
     if (lighting && marching)
         light_points = [&](const auto& points, auto& out) { lighting->at_points(points, out); };
-    const auto picture = [&](const LightsInSmoke* scattered_lights, int pass) {
+    const auto picture = [&](const InScattering* scattered_lights, int pass) {
         settings.pass = pass;
         settings.light_rays = light_rays_by(scattered_lights, scene, plan);
         if (!plan.surfaces)
@@ -210,7 +210,7 @@ Drawn draw_once(const Shot& shot, const Plan& plan, const Medium& medium, const 
                               [&](const auto& samples, auto& light) { shader.shade(samples, light); });
     };
     double on_lights = 0.0;
-    const auto pass = [&](const LightsInSmoke& lights, int number) { return picture(&lights, number); };
+    const auto pass = [&](const InScattering& lights, int number) { return picture(&lights, number); };
     Image image = plan.scattered_lights
                       ? mean_of_passes(shot, plan, *scene, camera, pass, on_lights, statistics, progress)
                       : picture(nullptr, 0);
@@ -288,8 +288,8 @@ std::string checkpoint_key(Shot shot, const std::filesystem::path& volume, int f
     shot.certify = CertifySettings{};
     shot.virtual_lights = VirtualLightSettings{};
     shot.ray_lights = RayLightSettings{};
-    shot.point_lights = PointLightSettings{};
-    shot.particles = ParticleTrackSettings{};
+    shot.point_lights = VolumetricVplSettings{};
+    shot.particles = VolumetricPhotonSettings{};
     shot.output = OutputSettings{};
     shot.output.bounce_layers = bounces;
     const auto size_of = [](const std::filesystem::path& file) {

@@ -4,12 +4,12 @@
 #include <filesystem>
 
 #include "core/progress.h"
+#include "diagnostics/light_pictures.h"
 #include "emitters/surroundings.h"
 #include "film/image.h"
 #include "medium/medium.h"
-#include "render/light_pictures.h"
-#include "render/statistics.h"
 #include "shot/shot.h"
+#include "statistics/statistics.h"
 
 namespace brisance {
 

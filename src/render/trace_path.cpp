@@ -5,10 +5,10 @@
 #include <cmath>
 #include <span>
 
+#include "camera/camera.h"
 #include "core/error.h"
-#include "render/camera.h"
+#include "reference/trace_picture.h"
 #include "render/frame_input.h"
-#include "render/trace_picture.h"
 
 namespace brisance {
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "medium/cell_walk.h"
+#include "medium/voxel_walk.h"
+#include "reference/path_tracer.h"
 #include "shot/shot.h"
-#include "tracing/path_tracer.h"
 
 namespace brisance {
 

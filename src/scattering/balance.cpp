@@ -6,9 +6,9 @@
 
 #include "core/parallel.h"
 #include "core/rng.h"
-#include "gathering/escape.h"
-#include "lights/footprint.h"
-#include "lights/voxel_lights.h"
+#include "gathering/escape_probability.h"
+#include "lighting_grid/footprint.h"
+#include "lighting_grid/voxel_lights.h"
 #include "medium/phase.h"
 #include "shadows/shadow_kernels.h"
 

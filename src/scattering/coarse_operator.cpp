@@ -5,7 +5,7 @@
 
 #include "core/parallel.h"
 #include "gathering/sh.h"
-#include "lights/voxel_lights.h"
+#include "lighting_grid/voxel_lights.h"
 #include "medium/phase.h"
 #include "scattering/balance.h"
 #include "scattering/multiple_scattering.h"

@@ -6,9 +6,9 @@
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "gathering/sh.h"
-#include "lights/voxel_lights.h"
-#include "medium/haze.h"
+#include "lighting_grid/voxel_lights.h"
 #include "medium/phase.h"
+#include "medium/thin_smoke.h"
 #include "scattering/coarse_operator.h"
 
 namespace brisance {

@@ -157,7 +157,7 @@ HWY_INLINE V mean_transmittance(D d, Bundle& b) {
 constexpr std::size_t kMostStepsAtOnce = 4;  // one voxel long each
 
 // Are all lanes where the medium is even?
-HWY_INLINE bool all_even(D d, const EvenParts::View& parts, const ShadowStep& s, const V origin[3],
+HWY_INLINE bool all_even(D d, const HomogeneousBricks::View& parts, const ShadowStep& s, const V origin[3],
                          const V direction[3]) {
     const hn::RebindToSigned<D> di;
     auto entry = hn::Zero(di);
@@ -179,7 +179,7 @@ inline ShadowStep stride_over(std::span<const ShadowStep> steps, int mip) {
 
 // Takes all of `steps` in one, if all lanes are where the medium is even.
 HWY_INLINE bool stride(D d, const PackedExtinction* mips, std::span<const ShadowStep> steps, const V start[3],
-                       const V direction[3], const EvenStrides& strides, Bundle& bundle) {
+                       const V direction[3], const HomogeneousStrides& strides, Bundle& bundle) {
     const ShadowStep s = stride_over(steps, strides.mip);
     if (!all_even(d, strides.parts, s, start, direction))
         return false;
@@ -205,7 +205,7 @@ HWY_INLINE void march_bundle(D d, const PackedExtinction* mips, std::span<const 
 
 // The steps that lead to the next stored distance, or as many of them as a stride may take: no longer than a brick's
 // half.
-inline std::size_t steps_at_once(std::span<const ShadowStep> steps, const EvenStrides* strides) {
+inline std::size_t steps_at_once(std::span<const ShadowStep> steps, const HomogeneousStrides* strides) {
     std::size_t n = 1;
     while (n < steps.size() && steps[n - 1].store < 0 && (!strides || n < kMostStepsAtOnce))
         ++n;
@@ -214,7 +214,7 @@ inline std::size_t steps_at_once(std::span<const ShadowStep> steps, const EvenSt
 
 void march_parallel(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
                     std::span<const ShadowStep> steps, const vec3& origin, const ShadowRays& rays, int distances,
-                    float scale, std::uint16_t* out, const EvenStrides* strides) {
+                    float scale, std::uint16_t* out, const HomogeneousStrides* strides) {
     const D d;
     const hn::RebindToSigned<D> di;
     const std::size_t lanes = hn::Lanes(d);
@@ -293,7 +293,7 @@ void march_shadow_rays(const PackedExtinction* mips, std::span<const ShadowStep>
 
 void march_parallel_rays(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
                          std::span<const ShadowStep> steps, const vec3& origin, const ShadowRays& rays, int distances,
-                         float scale, std::uint16_t* out, const EvenStrides* strides) {
+                         float scale, std::uint16_t* out, const HomogeneousStrides* strides) {
     HWY_DYNAMIC_DISPATCH(march_parallel)(mips, near_steps, steps, origin, rays, distances, scale, out, strides);
 }
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "medium/even_parts.h"
 #include "medium/extinction_pyramid.h"
+#include "medium/homogeneous_bricks.h"
 
 namespace brisance {
 
@@ -36,8 +36,8 @@ void march_shadow_rays(const PackedExtinction* mips, std::span<const ShadowStep>
 
 // Where rays may stride: where the middle of several steps lies in such a part, all rays take one in their stead, of
 // extinction averaged over `mip`.
-struct EvenStrides {
-    EvenParts::View parts;
+struct HomogeneousStrides {
+    HomogeneousBricks::View parts;
     int mip;
 };
 
@@ -46,7 +46,7 @@ struct EvenStrides {
 constexpr int kParallelRays = 8;
 void march_parallel_rays(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
                          std::span<const ShadowStep> steps, const vec3& origin, const ShadowRays& rays, int distances,
-                         float scale, std::uint16_t* out, const EvenStrides* strides = nullptr);
+                         float scale, std::uint16_t* out, const HomogeneousStrides* strides = nullptr);
 
 // Optical depths of `count` segments from planar begins to planar ends, in nodes of level 0 relative to the reference;
 // `metres` is each one's length. Midpoint rule, steps of at most `step_nodes` nodes. Arrays are padded to 16.

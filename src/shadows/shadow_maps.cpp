@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "core/parallel.h"
-#include "shadows/octahedral.h"
+#include "shadows/octahedral_directions.h"
 #include "shadows/shadow_kernels.h"
 #include "shadows/surface_shadows.h"
 
@@ -178,9 +178,9 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
     std::vector<PackedExtinction> mips;
     for (int l = 0; l < pyramid.level_count(); ++l)
         mips.push_back(pyramid.view(l));
-    const EvenParts* even = pyramid.even_parts();
-    const EvenStrides strides{even ? even->view() : EvenParts::View{},
-                              std::min(kStrideLevel, pyramid.level_count() - 1)};
+    const HomogeneousBricks* even = pyramid.homogeneous_bricks();
+    const HomogeneousStrides strides{even ? even->view() : HomogeneousBricks::View{},
+                                     std::min(kStrideLevel, pyramid.level_count() - 1)};
     parallel_blocks(list.size(), 8, [&](std::size_t begin, std::size_t end) {
         std::vector<std::uint16_t> marched(texels.rays * layout.distances);
         std::vector<std::uint16_t> interior(std::size_t(layout.resolution) * layout.resolution * layout.distances);

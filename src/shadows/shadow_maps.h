@@ -15,7 +15,8 @@
 //  - For receivers outside of the medium, where a ray ends matters less than where it begins: rays from kParallelRays
 //    such voxels stay parallel all along. Voxels from which light escapes are picked more often, and count for less: in
 //    dense smoke few others would be among them.
-//  - Such rays take four steps in one where the medium is even around them (even_parts.h), if they are told where:
+//  - Such rays take four steps in one where the medium is even around them (homogeneous_bricks.h), if they are told
+//  where:
 //    through a room full of haze they are long.
 //  - Rays see density averaged over a sixteenth of the light's spacing near the light, shrinking to single voxels at
 //    the far end.
@@ -25,8 +26,8 @@
 #include <span>
 #include <vector>
 
-#include "lights/footprint.h"
-#include "lights/lighting_grid.h"
+#include "lighting_grid/footprint.h"
+#include "lighting_grid/lighting_grid.h"
 #include "medium/extinction_pyramid.h"
 
 namespace brisance {

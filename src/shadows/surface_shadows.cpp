@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shadows/octahedral.h"
+#include "shadows/octahedral_directions.h"
 
 namespace brisance {
 

@@ -37,8 +37,8 @@ Affects affected_by(const std::string& path) {
     // Leaving out orders of scattering changes what is true.
     if (path == "scattering.bounces")
         return Affects::Picture;
-    for (const char* section : {"lighting.", "scattering.", "ray_lights.", "point_lights.", "particles.", "virtual_lights.",
-                                "tracing.", "certify.", "output."})
+    for (const char* section : {"lighting.", "scattering.", "ray_lights.", "point_lights.", "particles.",
+                                "virtual_lights.", "tracing.", "certify.", "output."})
         if (path.starts_with(section))
             return Affects::Method;
     for (const char* key : {"$schema", "name", "method", "camera.samples_per_axis", "camera.edge_refinement"})

@@ -5,18 +5,18 @@
 #include <string>
 #include <vector>
 
+#include "camera/settings.h"
+#include "certificate/settings.h"
 #include "film/settings.h"
 #include "gathering/settings.h"
 #include "medium/settings.h"
-#include "medium_points/settings.h"
-#include "particle_tracks/settings.h"
 #include "ray_lights/settings.h"
-#include "render/camera_settings.h"
-#include "render/certify_settings.h"
 #include "scene/settings.h"
-#include "tracing/settings.h"
+#include "tracking/settings.h"
 #include "virtual_lights/settings.h"
 #include "volume/settings.h"
+#include "volumetric_photons/settings.h"
+#include "volumetric_vpls/settings.h"
 
 namespace brisance {
 
@@ -45,8 +45,8 @@ struct Shot {
     LightingSettings lighting;
     ScatteringSettings scattering;
     RayLightSettings ray_lights;
-    PointLightSettings point_lights;
-    ParticleTrackSettings particles;
+    VolumetricVplSettings point_lights;
+    VolumetricPhotonSettings particles;
     VirtualLightSettings virtual_lights;
     TracingSettings tracing;
     CertifySettings certify;

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "core/parallel.h"
+#include "virtual_lights/packing_distance.h"
 #include "virtual_lights/placement.h"
-#include "virtual_lights/spacing.h"
 
 namespace brisance {
 

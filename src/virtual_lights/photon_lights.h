@@ -4,7 +4,7 @@
 // Spherical Lights for Many-Light Rendering of Glossy Scenes, ACM Transactions on Graphics 28(5), 2009.
 #pragma once
 
-#include "virtual_lights/photons.h"
+#include "virtual_lights/photon_splitting.h"
 
 namespace brisance {
 

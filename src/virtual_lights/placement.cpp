@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "elimination/eliminate.h"
-#include "virtual_lights/spacing.h"
+#include "virtual_lights/packing_distance.h"
 
 namespace brisance {
 

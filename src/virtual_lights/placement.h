@@ -1,7 +1,7 @@
 // From many candidates to the places of few virtual lights.
 #pragma once
 
-#include "virtual_lights/candidates.h"
+#include "virtual_lights/camera_candidates.h"
 #include "virtual_lights/virtual_light.h"
 
 namespace brisance {

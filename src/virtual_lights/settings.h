@@ -31,7 +31,7 @@ enum class LightRadius {
 };
 
 enum class LightSampling {
-    Power,         // a light by its power and what the camera sees of it (light_choice.h), a direction toward it
+    Power,         // a light by its power and what the camera sees of it (light_sampler.h), a direction toward it
     LightTree,     // a light by what it may send to the place, a direction toward it
     Bsdf,          // a ray by BSDF or phase function, and all lights where it arrives
     Combined,      // Power and Bsdf by the balance heuristic

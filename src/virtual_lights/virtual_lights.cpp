@@ -5,10 +5,10 @@
 
 #include "core/error.h"
 #include "core/stopwatch.h"
-#include "virtual_lights/importance.h"
-#include "virtual_lights/own_area.h"
+#include "virtual_lights/covered_area.h"
 #include "virtual_lights/photon_lights.h"
 #include "virtual_lights/placement.h"
+#include "virtual_lights/reject_unimportant.h"
 
 namespace brisance {
 
@@ -123,7 +123,7 @@ std::vector<LightCandidate> VirtualLights::candidates(const PixelCamera& camera)
     std::vector<LightCandidate> from_camera =
         light_candidates(scene_, camera, static_cast<std::size_t>(paths), settings_.seed);
     if (settings_.placement == LightPlacement::RelaxedLightPaths)
-        return kept_by_importance(along_light(kPathsToJudge), from_camera, least, settings_.seed);
+        return reject_unimportant(along_light(kPathsToJudge), from_camera, least, settings_.seed);
     return from_camera;
 }
 
@@ -154,7 +154,7 @@ void VirtualLights::build_of_places(const PixelCamera& camera) {
 // Lights whose area cannot be told leave their surface to others, or to extended paths.
 void VirtualLights::measure_lights() {
     const Intersector& surfaces = scene_.surroundings()->intersector();
-    cover_ = LightCover(surfaces, lights_);
+    cover_ = PartitionOfUnity(surfaces, lights_);
     const std::vector<std::uint8_t> known = measure_areas(surfaces, cover_, lights_, settings_.seed);
     std::vector<VirtualLight> kept;
     for (std::size_t i = 0; i < lights_.size(); ++i)
@@ -163,7 +163,7 @@ void VirtualLights::measure_lights() {
     if (kept.size() == lights_.size())
         return;
     lights_ = std::move(kept);
-    cover_ = LightCover(surfaces, lights_);
+    cover_ = PartitionOfUnity(surfaces, lights_);
     measure_areas(surfaces, cover_, lights_, settings_.seed);
 }
 

@@ -3,9 +3,9 @@
 // [1] T. Li, W. Wang, D. Lin, C. Yuksel, Virtual Blue Noise Lighting, HPG 2022.
 //
 // Lights lie where camera paths meet surfaces a second time, thinned out to blue noise (placement.h); photons are
-// shared out among the lights around each hit (photons.h); a place that asks draws one light or one ray (shading.cpp).
-// It is an interpolation of light over the surfaces themselves: what a ray meets there decides, so that nothing is seen
-// through walls, and all ways of sampling have the same mean.
+// shared out among the lights around each hit (photon_splitting.h); a place that asks draws one light or one ray
+// (shading.cpp). It is an interpolation of light over the surfaces themselves: what a ray meets there decides, so that
+// nothing is seen through walls, and all ways of sampling have the same mean.
 //
 // Departs from [1]: lights share what they speak for by weights that sum up to 1, in receiving and in giving, with the
 // area of each measured, and only where they see it: kernels of fixed area darken at edges, and surface that lies
@@ -14,12 +14,12 @@
 // sharp. Where no light speaks for a place, paths go on.
 #pragma once
 
-#include "tracing/direct_light.h"
-#include "virtual_lights/candidates.h"
-#include "virtual_lights/cover.h"
-#include "virtual_lights/light_choice.h"
-#include "virtual_lights/photons.h"
-#include "virtual_lights/profile.h"
+#include "transport/direct_light.h"
+#include "virtual_lights/camera_candidates.h"
+#include "virtual_lights/light_sampler.h"
+#include "virtual_lights/octahedral_profiles.h"
+#include "virtual_lights/partition_of_unity.h"
+#include "virtual_lights/photon_splitting.h"
 
 namespace brisance {
 
@@ -46,7 +46,7 @@ public:
     // had, the asking one among them. `panes`: who may see fire and smoke straight through panes, which are surfaces:
     // if Asked, the place has been lit by that already.
     enum class Panes { Followed, Asked };
-    Rgb shade(const Scatterer& place, Rng& rng, int* vertices = nullptr, Panes panes = Panes::Followed) const;
+    Rgb shade(const PathVertex& place, Rng& rng, int* vertices = nullptr, Panes panes = Panes::Followed) const;
 
     const std::vector<VirtualLight>& lights() const { return lights_; }
     // What a light of its own surface's colour sends that way [W/(m^2 sr)]. `toward`: unit, world.
@@ -73,32 +73,32 @@ private:
     LightShares shares_at(const SurfaceHit& hit, const SurfacePoint& point) const;
     Seen seen_by(const RaySegment& segment) const;
     Rgb reflected(const Seen& seen, int share) const;
-    double trust(const Seen& seen, double pdf) const;
-    Rgb at_end_of_ray(const Scatterer& place, const Seen& seen, double pdf) const;
+    double termination_probability(const Seen& seen, double pdf) const;
+    Rgb at_end_of_ray(const PathVertex& place, const Seen& seen, double pdf) const;
     Rgb lamps_on(const RaySegment& segment, Rng& rng) const;
 
     // asking.cpp
     struct Candidate;
     struct Clearance;
     bool asks_lights() const { return !lights_.empty() && settings_.sampling != LightSampling::Bsdf; }
-    Rgb from_lights(const Scatterer& place, Rng& rng) const;
-    Rgb from_light(const Scatterer& place, const LightTree::Choice& choice, Rng& rng) const;
-    Rgb from_resampled(const Scatterer& place, Rng& rng) const;
-    Candidate candidate(const Scatterer& place, Rng& rng) const;
-    Rgb from_patch(const Scatterer& place, const LightTree::Choice& choice, Rng& rng) const;
-    Rgb from_sphere(const Scatterer& place, const LightTree::Choice& choice, Rng& rng) const;
-    Rgb from_point(const Scatterer& place, const LightTree::Choice& choice, Rng& rng) const;
-    Rgb along_to_patch(const Scatterer& place, std::size_t light, const dvec3& direction,
-                       const Scatterer::Value& scattered, Rng& rng) const;
+    Rgb from_lights(const PathVertex& place, Rng& rng) const;
+    Rgb from_light(const PathVertex& place, const LightTree::Choice& choice, Rng& rng) const;
+    Rgb from_resampled(const PathVertex& place, Rng& rng) const;
+    Candidate candidate(const PathVertex& place, Rng& rng) const;
+    Rgb from_patch(const PathVertex& place, const LightTree::Choice& choice, Rng& rng) const;
+    Rgb from_sphere(const PathVertex& place, const LightTree::Choice& choice, Rng& rng) const;
+    Rgb from_point(const PathVertex& place, const LightTree::Choice& choice, Rng& rng) const;
+    Rgb along_to_patch(const PathVertex& place, std::size_t light, const dvec3& direction,
+                       const PathVertex::Value& scattered, Rng& rng) const;
     Rgb sent(const VirtualLight& light, const dvec3& toward) const;
-    Rgb sent_by_point(const VirtualLight& light, const Scatterer& place, const dvec3& direction) const;
-    Clearance clearance(const Scatterer& place, const VirtualLight& light) const;
+    Rgb sent_by_point(const VirtualLight& light, const PathVertex& place, const dvec3& direction) const;
+    Clearance clearance(const PathVertex& place, const VirtualLight& light) const;
 
     const DirectLight& scene_;
     VirtualLightSettings settings_;
     bool shines_ = false;
     std::vector<VirtualLight> lights_;
-    LightCover cover_;
+    PartitionOfUnity cover_;
     Profiles profiles_;
     LightChoice choice_;
     VirtualLightReport report_;

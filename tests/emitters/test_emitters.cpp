@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "emitters/surroundings.h"
+#include "fixtures/estimate.h"
 #include "fixtures/sets.h"
-#include "tracing/estimate.h"
 
 namespace brisance {
 namespace {

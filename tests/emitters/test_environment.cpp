@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "emitters/environment.h"
-#include "tracing/estimate.h"
+#include "fixtures/estimate.h"
 
 namespace brisance {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "fixtures/media.h"
-#include "lights/voxel_lights.h"
+#include "lighting_grid/voxel_lights.h"
 #include "volume/fog_box.h"
 #include "volume/settings.h"
 

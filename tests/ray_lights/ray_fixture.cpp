@@ -25,9 +25,9 @@ Twice Stage::by_paths(const Ray& ray, double place, Rng& rng) const {
     return {sum.cells.at(Cell::MM), sum.cells.at(Cell::SM)};
 }
 
-Twice Stage::by_lights(const LightsInSmoke& lights, const Ray& ray, Rng& rng, bool all) const {
+Twice Stage::by_lights(const InScattering& lights, const Ray& ray, Rng& rng, bool all) const {
     const RaySegment segment = scene().segment_along(ray);
-    SeenMedium seen;
+    RayMedium seen;
     seen.look(scene().field(), ray, segment.end);
     Twice out;
     out.medium = all ? lights.along_ray_from_all(seen, rng) : lights.along_ray(seen, rng);
@@ -45,18 +45,18 @@ RayLights Stage::lights(const RayLightSettings& settings, int rays, std::uint64_
     return RayLights(scene(), settings, bounces_, receivers(rays, key));
 }
 
-std::vector<RayLightReceiver> Stage::receivers(int rays, std::uint64_t key) const {
-    std::vector<RayLightReceiver> receivers;
+std::vector<LightReceiver> Stage::receivers(int rays, std::uint64_t key) const {
+    std::vector<LightReceiver> receivers;
     Rng rng(Stream::Points, key);
     for (int i = 0; i < rays; ++i) {
         const Ray r = ray(rng);
         const RaySegment segment = scene().segment_along(r);
-        SeenMedium seen;
+        RayMedium seen;
         seen.look(scene().field(), r, segment.end);
         if (!seen.empty())
             receivers.push_back(receiver_along(seen));
         if (segment.point)
-            receivers.push_back(RayLightReceiver::at(segment.point->position, segment.point->frame.normal));
+            receivers.push_back(LightReceiver::at(segment.point->position, segment.point->frame.normal));
     }
     return receivers;
 }

@@ -5,11 +5,11 @@
 #include <memory>
 #include <vector>
 
+#include "fixtures/estimate.h"
 #include "fixtures/media.h"
 #include "fixtures/sets.h"
 #include "ray_lights/ray_lights.h"
-#include "tracing/estimate.h"
-#include "tracing/path_tracer.h"
+#include "reference/path_tracer.h"
 
 namespace brisance::testing {
 
@@ -25,9 +25,9 @@ public:
 
     const DirectLight& scene() const { return tracer_.direct(); }
     Twice by_paths(const Ray& ray, double place, Rng& rng) const;
-    Twice by_lights(const LightsInSmoke& lights, const Ray& ray, Rng& rng, bool all = false) const;
+    Twice by_lights(const InScattering& lights, const Ray& ray, Rng& rng, bool all = false) const;
     // What stands for rays like these.
-    std::vector<RayLightReceiver> receivers(int rays, std::uint64_t key) const;
+    std::vector<LightReceiver> receivers(int rays, std::uint64_t key) const;
     // New lights, for such rays.
     RayLights lights(const RayLightSettings& settings, int rays, std::uint64_t key) const;
     int bounces() const { return bounces_; }
@@ -44,7 +44,7 @@ private:
 // MM and SM, three channels each, over the family of rays.
 Estimate mean_by_paths(const Stage& stage, std::uint64_t samples);
 // `make`: lights of that seed. A sample is a set of lights, as rays that ask the same ones are not independent.
-using MakeLights = std::function<std::unique_ptr<LightsInSmoke>(std::uint32_t seed)>;
+using MakeLights = std::function<std::unique_ptr<InScattering>(std::uint32_t seed)>;
 Estimate mean_by_lights(const Stage& stage, const MakeLights& make, std::uint64_t sets);
 
 // The same mean of both, within three standard errors and a relative bias that is allowed, for all six; a standard

@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 
+#include "light_selection/joint_sampling.h"
 #include "ray_fixture.h"
 
 namespace brisance {

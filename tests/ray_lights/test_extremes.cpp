@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "light_selection/joint_sampling.h"
 #include "ray_fixture.h"
 
 namespace brisance {
@@ -68,23 +69,23 @@ TEST(Extremes, RaysWithoutALength) {
         light.segment = none;
         light.scattered = 1.0;
     }
-    const RayLightTree tree(boxes_of(lights), 0.9);
-    for (const RayLightReceiver& receiver :
-         {RayLightReceiver::along(ray), RayLightReceiver::along({none.start, {0.0, 0.0, 1.0}, 1.0}),
-          RayLightReceiver::at(none.start, {0.0, 0.0, 1.0})}) {
+    const MediumLightTree tree(boxes_of(lights), 0.9);
+    for (const LightReceiver& receiver :
+         {LightReceiver::along(ray), LightReceiver::along({none.start, {0.0, 0.0, 1.0}, 1.0}),
+          LightReceiver::at(none.start, {0.0, 0.0, 1.0})}) {
         const auto choice = tree.choose(receiver, 0.5);
         ASSERT_TRUE(choice);
         EXPECT_NEAR(choice->probability, 1.0 / 3.0, 0.2);
     }
     // Nothing arrives along no ray.
-    EXPECT_FALSE(tree.choose(RayLightReceiver::along(none), 0.5));
+    EXPECT_FALSE(tree.choose(LightReceiver::along(none), 0.5));
 }
 
 // A ray that ends where it begins, one that just touches the smoke, one that passes it by, and one that begins in it.
 TEST(Extremes, RaysThatHardlySeeTheSmoke) {
     const Stage stage(coloured_ball(8, 2.0f, 0.5f), floor_below(0.7f));
     const RayLights lights = stage.lights(few(60), 8, 3);
-    SeenMedium seen;
+    RayMedium seen;
     Rng rng(Stream::Points, 44);
     for (const double end : {0.0, 1e-300, 1e-12, 1.0}) {
         seen.look(stage.scene().field(), {{0.1, 0.1, 0.1}, {0.0, 0.0, 1.0}}, end);

@@ -37,7 +37,7 @@ double reflected(const DirectLight& scene, const RayLights& lights, const Surfac
     if (!(left > 0.0))
         return sum;
     const RaySegment segment = scene.segment_along(point.leaving(drawn->wi));
-    SeenMedium seen;
+    RayMedium seen;
     seen.look(scene.field(), segment.ray, segment.end);
     return sum + drawn->weight.x * left * lights.along_ray(seen, rng).x;
 }

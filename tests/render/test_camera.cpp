@@ -1,9 +1,9 @@
 // Where a pixel looks.
 #include <gtest/gtest.h>
 
+#include "camera/camera.h"
 #include "core/error.h"
 #include "fixtures/media.h"
-#include "render/camera.h"
 
 namespace brisance {
 namespace {

@@ -7,11 +7,11 @@
 #include <cstdio>
 #include <limits>
 
+#include "certificate/certify.h"
 #include "core/parallel.h"
 #include "fixtures/media.h"
-#include "render/certify.h"
+#include "reference/trace_picture.h"
 #include "render/render_frame.h"
-#include "render/trace_picture.h"
 
 namespace brisance {
 namespace {

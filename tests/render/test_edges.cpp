@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "camera/pixel_samples.h"
+#include "camera_rays/integrate.h"
 #include "fixtures/sets.h"
-#include "render/integrate.h"
-#include "render/pixel_samples.h"
 
 namespace brisance {
 namespace {
@@ -69,7 +69,7 @@ std::vector<float> picture(const Rectangle& r, int samples, int refinement) {
     settings.layers = PictureSettings::layers_of({Cell::A});
     settings.surroundings = &surroundings;
     Progress silent;
-    const Image image = render_picture(CellField(medium, {}), camera, settings, {}, silent);
+    const Image image = render_picture(SourceField(medium, {}), camera, settings, {}, silent);
     std::vector<float> out;
     const std::vector<float>& a = image.layer("A").pixels;
     for (std::size_t i = 0; i < a.size(); i += 3)

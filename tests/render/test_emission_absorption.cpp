@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "camera_rays/integrate.h"
 #include "fixtures/media.h"
-#include "render/integrate.h"
 
 namespace brisance {
 namespace {
@@ -29,7 +29,7 @@ Recipe slab(double voxel_depth) {
 }
 
 RaySum look(const Medium& medium, const dvec3& world_origin, const dvec3& direction, int parts = 2) {
-    const CellField field(medium);
+    const SourceField field(medium);
     return integrate(field, {dvec3(medium.local_of_world(world_origin)), glm::normalize(direction)}, parts);
 }
 
@@ -123,7 +123,7 @@ TEST(EmissionAbsorption, AFlameInSmokeIsDimmedByIt) {
 TEST(EmissionAbsorption, ScatteredSourcesAreSeenAsEmittedOnesAre) {
     const Medium medium = make_medium(slab(0.05));
     const std::vector<Rgb> single(medium.lattice.node_count(), Rgb(2.0f)), multiple(single.size(), Rgb(5.0f));
-    const CellField field(medium, {single, multiple, {}, {}});
+    const SourceField field(medium, {single, multiple, {}, {}});
     const RaySum sum = integrate(field, {dvec3(medium.local_of_world({0.0, 0.0, -5.0})), {0, 0, 1}}, 2);
     const double opacity = -std::expm1(-32.0 * 0.05);
     EXPECT_NEAR(sum.cells.at(Cell::V).x / opacity, 1.0, 1e-4);

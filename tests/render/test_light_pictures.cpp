@@ -8,13 +8,13 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "diagnostics/write_light_pictures.h"
 #include "film/fixtures.h"
 #include "film/write_image.h"
 #include "fixtures/media.h"
 #include "fixtures/sets.h"
 #include "render/render_frame.h"
-#include "render/write_light_pictures.h"
-#include "virtual_lights/hemisphere_map.h"
+#include "virtual_lights/octahedral_map.h"
 
 namespace brisance {
 namespace {

@@ -10,9 +10,9 @@
 #include <numeric>
 #include <string>
 
+#include "camera/camera.h"
 #include "core/parallel.h"
 #include "ray_lights/ray_lights.h"
-#include "render/camera.h"
 #include "render/frame_input.h"
 #include "render/render_frame.h"
 #include "shot/read_shot.h"
@@ -106,7 +106,7 @@ private:
 using Scattered = std::array<double, 2>;
 
 Scattered by_ray_lights(const DirectLight& scene, const RayLights& lights, const Ray& ray, std::uint32_t number) {
-    thread_local SeenMedium seen;
+    thread_local RayMedium seen;
     const RaySegment segment = scene.segment_along(ray);
     seen.look(scene.field(), ray, segment.end);
     Rng rng = lights.rng(Stream::RayLightPair, number, 0);
@@ -150,14 +150,14 @@ ByRayLights by_ray_lights(const Shot& shot) {
     const FrameInput input = load_frame(shot, volume_of(shot), 1, statistics, silent);
     const DirectLight scene(input.medium, shot.tracing, input.surroundings.get());
     const Camera camera(input.camera, input.medium);
-    std::vector<RayLightReceiver> receivers;
+    std::vector<LightReceiver> receivers;
     std::vector<Ray> rays;
     for (int y = 0; y < 2 * kHeight; ++y)
         for (int x = 0; x < 2 * kWidth; ++x)
             rays.push_back(camera.ray(0.5 * x + 0.25, 0.5 * y + 0.25));
     std::vector<bool> mirrors;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        SeenMedium seen;
+        RayMedium seen;
         const RaySegment segment = scene.segment_along(rays[i]);
         mirrors.push_back(segment.point && has_delta_lobes(segment.point->material));
         if (i % 37 != 0)
@@ -166,7 +166,7 @@ ByRayLights by_ray_lights(const Shot& shot) {
         if (!seen.empty())
             receivers.push_back(receiver_along(seen));
         if (segment.point)
-            receivers.push_back(RayLightReceiver::at(segment.point->position, segment.point->frame.normal));
+            receivers.push_back(LightReceiver::at(segment.point->position, segment.point->frame.normal));
     }
     const Pixels no_mirrors = away_from(mirrors);
     const auto counts = [&](std::size_t ray, int cell) {

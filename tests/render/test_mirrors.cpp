@@ -6,7 +6,7 @@
 #include "core/parallel.h"
 #include "fixtures/media.h"
 #include "fixtures/sets.h"
-#include "render/cast_light.h"
+#include "medium_lighting/specular_photons.h"
 #include "render/render_frame.h"
 
 namespace brisance {
@@ -43,7 +43,7 @@ Medium thin_cube() {
 }
 
 // A lamp before a mirror is two lamps: fluence falls with the squared distance from the one behind it.
-TEST(CastLight, AMirrorCastsTheLightOfAnotherLamp) {
+TEST(SpecularPhotons, AMirrorCastsTheLightOfAnotherLamp) {
     const Medium medium = thin_cube();
     Scene scene;
     scene.origin = medium.world_of_local(vec3(0.0f));
@@ -56,7 +56,7 @@ TEST(CastLight, AMirrorCastsTheLightOfAnotherLamp) {
     const DirectLight direct(medium, {}, &surroundings);
     VirtualLightSettings settings;
     settings.photons = 400000;
-    const CastLight cast(direct, nullptr, settings);
+    const SpecularPhotons cast(direct, nullptr, settings);
     ASSERT_FALSE(cast.empty());
     const std::size_t nodes = medium.lattice.node_count();
     const std::vector<std::uint8_t> needed(nodes, 1);
@@ -82,7 +82,7 @@ TEST(CastLight, AMirrorCastsTheLightOfAnotherLamp) {
         EXPECT_NEAR(heading[axis], expected_heading[axis], 0.01 * glm::length(expected_heading)) << axis;
 }
 
-TEST(CastLight, IsNotWantedWithoutSurfacesOrLight) {
+TEST(SpecularPhotons, IsNotWantedWithoutSurfacesOrLight) {
     const Medium medium = thin_cube();
     const auto empty = [&](bool surfaces, bool light) {
         Scene scene;
@@ -92,7 +92,7 @@ TEST(CastLight, IsNotWantedWithoutSurfacesOrLight) {
         const Surroundings surroundings(std::move(scene),
                                         light ? std::vector{LightSettings{}} : std::vector<LightSettings>{});
         const DirectLight direct(medium, {}, &surroundings);
-        return CastLight(direct, nullptr, {}).empty();
+        return SpecularPhotons(direct, nullptr, {}).empty();
     };
     EXPECT_FALSE(empty(true, true));
     EXPECT_TRUE(empty(false, true));

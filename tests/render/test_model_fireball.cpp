@@ -7,7 +7,7 @@
 
 #include "core/parallel.h"
 #include "fixtures/media.h"
-#include "render/lighting.h"
+#include "medium_lighting/medium_lighting.h"
 
 namespace brisance {
 namespace {
@@ -38,9 +38,9 @@ Lit light_ball(float optical_radius, float albedo, float g = 0.0f, int nodes = 1
     eye.target = dvec3(0.0);
     const Camera camera(eye, lit.medium);
     Progress silent;
-    Lighting lighting(lit.shot, lit.plan, lit.medium, camera, lit.statistics, silent);
+    MediumLighting lighting(lit.shot, lit.plan, lit.medium, camera, lit.statistics, silent);
     lit.nodes = lighting.at_nodes();
-    const CellField field(lit.medium, lit.nodes);
+    const SourceField field(lit.medium, lit.nodes);
     const RaySum sum = integrate(field, camera.ray(0.5 * eye.width, 0.5 * eye.height), 2);
     lit.centre = sum.cells.at(Cell::V).x + sum.cells.at(Cell::MV).x + sum.cells.at(Cell::MM).x;
     return lit;
@@ -118,8 +118,8 @@ TEST(ModelFireball, AskingForNScatteringsLeavesOutTheRest) {
         Statistics statistics;
         NodeLighting nodes;
         if (plan.single)
-            nodes = Lighting(shot, plan, medium, camera, statistics, silent).at_nodes();
-        const CellField field(medium, nodes);
+            nodes = MediumLighting(shot, plan, medium, camera, statistics, silent).at_nodes();
+        const SourceField field(medium, nodes);
         const RaySum sum = integrate(field, camera.ray(0.5 * eye.width, 0.5 * eye.height), 2);
         const double now = sum.cells.at(Cell::V).x + sum.cells.at(Cell::MV).x + sum.cells.at(Cell::MM).x;
         EXPECT_GT(now, previous);

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "camera_rays/integrate.h"
 #include "core/parallel.h"
 #include "fixtures/media.h"
-#include "render/integrate.h"
 #include "render/render_frame.h"
 
 namespace brisance {
@@ -40,7 +40,7 @@ CameraSettings front(double scale = 1.0, const dvec3& origin = dvec3(0.0)) {
 }
 
 Image picture(const Medium& medium, const CameraSettings& camera, int samples = 1) {
-    const CellField field(medium);
+    const SourceField field(medium);
     PictureSettings settings;
     settings.samples_per_axis = samples;
     Progress silent;
@@ -111,7 +111,7 @@ TEST(Picture, BeautyIsTheSumOfItsCells) {
         single[i] = Rgb(float(i % 7), 1.0f, 0.5f);
         multiple[i] = Rgb(1.0f, float(i % 5), 0.0f);
     }
-    const CellField field(medium, {single, multiple, {}, {}});
+    const SourceField field(medium, {single, multiple, {}, {}});
     PictureSettings settings;
     settings.layers = PictureSettings::layers_of({Cell::V, Cell::MV, Cell::MM});
     Progress silent;
@@ -212,7 +212,7 @@ TEST(Picture, LightAskedForAlongTheRayIsLightFromTheField) {
     settings.layers = PictureSettings::layers_of({Cell::V, Cell::MV});
     Progress silent;
     const Camera camera(front(), medium);
-    const CellField lit(medium, {constant, {}, {}, {}}), dark(medium);
+    const SourceField lit(medium, {constant, {}, {}, {}}), dark(medium);
     const Image cached = render_picture(lit, camera, settings, {}, silent);
     const LightPoints same = [&](const std::vector<MarchPoint>& points, std::vector<PointLighting>& lighting) {
         ASSERT_EQ(points.size(), lighting.size());
@@ -231,7 +231,7 @@ TEST(Picture, LightAskedForAlongTheRayIsLightFromTheField) {
 
 TEST(Picture, FinerPixelsNeedFewerSamples) {
     const Medium medium = make_medium(cloud());
-    const CellField field(medium);
+    const SourceField field(medium);
     CameraSettings camera = front();
     camera.height = camera.width = 1000;
     EXPECT_EQ(automatic_samples(Camera(camera, medium), field), 1);

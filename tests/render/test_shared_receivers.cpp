@@ -1,5 +1,5 @@
 // Which surface samples of a pixel share a receiver.
-#include "render/shared_receivers.h"
+#include "surface_lighting/shared_receivers.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 
 #include "core/rng.h"
 #include "fixtures/media.h"
-#include "lights/voxel_lights.h"
+#include "lighting_grid/voxel_lights.h"
 #include "scattering/balance.h"
 
 namespace brisance {

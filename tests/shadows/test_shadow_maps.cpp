@@ -5,7 +5,7 @@
 
 #include "core/parallel.h"
 #include "fixtures/media.h"
-#include "shadows/octahedral.h"
+#include "shadows/octahedral_directions.h"
 #include "shadows/shadow_maps.h"
 
 namespace brisance {
@@ -222,13 +222,13 @@ TEST(ShadowMaps, StridesThroughEvenSmokeLoseNothing) {
                           maps);
     };
     build(steps);
-    const EvenParts everywhere(lit.medium.lattice, lit.medium.reference_node,
-                               std::vector<std::uint8_t>(lit.medium.lattice.brick_count(), 1));
-    const EvenParts none(lit.medium.lattice, lit.medium.reference_node,
-                         std::vector<std::uint8_t>(lit.medium.lattice.brick_count(), 0));
-    lit.pyramid.set_even_parts(&everywhere);
+    const HomogeneousBricks everywhere(lit.medium.lattice, lit.medium.reference_node,
+                                       std::vector<std::uint8_t>(lit.medium.lattice.brick_count(), 1));
+    const HomogeneousBricks none(lit.medium.lattice, lit.medium.reference_node,
+                                 std::vector<std::uint8_t>(lit.medium.lattice.brick_count(), 0));
+    lit.pyramid.set_homogeneous_bricks(&everywhere);
     build(strides);
-    lit.pyramid.set_even_parts(&none);
+    lit.pyramid.set_homogeneous_bricks(&none);
     build(nowhere);
     ASSERT_EQ(steps.size(), strides.size());
     double sum = 0.0, square = 0.0;

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/rng.h"
+#include "fixtures/estimate.h"
 #include "surface_fixture.h"
-#include "tracing/estimate.h"
 
 namespace brisance {
 namespace {

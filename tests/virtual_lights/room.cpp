@@ -99,7 +99,7 @@ Rgb Room::by_lights(const VirtualLights& lights, double x, double y, Rng& rng) c
     if (!segment.point)
         return Rgb(0.0f);
     const double through = direct.lines().transmittance(seen, segment.end, rng);
-    return float(through) * lights.shade(Scatterer(*segment.point, seen.direction), rng);
+    return float(through) * lights.shade(PathVertex(*segment.point, seen.direction), rng);
 }
 
 Rgb Room::in_smoke_by_lights(const VirtualLights& lights, double x, double y, Rng& rng) const {

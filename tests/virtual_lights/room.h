@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "tracing/estimate.h"
-#include "tracing/path_tracer.h"
+#include "fixtures/estimate.h"
+#include "reference/path_tracer.h"
 #include "virtual_lights/virtual_lights.h"
 
 namespace brisance::testing {

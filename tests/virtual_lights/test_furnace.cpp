@@ -77,7 +77,7 @@ TEST(Areas, AddUpToTheSurface) {
     Rng rng(Stream::Path, 1);
     int covered = 0;
     constexpr int kPoints = 20000;
-    const LightCover cover(room.surroundings.intersector(), lights.lights());
+    const PartitionOfUnity cover(room.surroundings.intersector(), lights.lights());
     for (int i = 0; i < kPoints; ++i) {
         const int axis = static_cast<int>(rng.next_double() * 3.0);
         dvec3 p(2.0 * rng.next_double() - 1.0, 2.0 * rng.next_double() - 1.0, 2.0 * rng.next_double() - 1.0), n(0.0);

@@ -25,7 +25,7 @@ TEST(NothingToDo, WithoutSurroundings) {
     Rng rng(Stream::Path, 0);
     EXPECT_EQ(lights.report().candidates, 0u);
     EXPECT_EQ(lights.report().bytes, 0u);
-    EXPECT_EQ(lights.shade(Scatterer(dvec3(0.0), dvec3(0, 0, 1), 0.0f), rng), Rgb(0.0f));
+    EXPECT_EQ(lights.shade(PathVertex(dvec3(0.0), dvec3(0, 0, 1), 0.0f), rng), Rgb(0.0f));
 }
 
 TEST(NothingToDo, WithoutSurfaces) {

@@ -23,7 +23,7 @@ int vertices_along(const Room& room, const VirtualLights& lights, const Ray& ray
     const RaySegment segment = room.direct.segment_along(ray);
     Rng rng(Stream::Path, number);
     int vertices = 0;
-    lights.shade(Scatterer(*segment.point, ray.direction), rng, &vertices);
+    lights.shade(PathVertex(*segment.point, ray.direction), rng, &vertices);
     return vertices;
 }
 
@@ -74,7 +74,7 @@ TEST(PathLengths, CountingChangesNothing) {
     for (std::uint64_t i = 0; i < 20; ++i) {
         Rng counted(Stream::Path, i), plain(Stream::Path, i);
         int vertices = 0;
-        const Scatterer place(*segment.point, ray.direction);
+        const PathVertex place(*segment.point, ray.direction);
         EXPECT_EQ(lights.shade(place, counted, &vertices), lights.shade(place, plain));
     }
 }

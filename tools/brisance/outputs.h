@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "render/write_light_pictures.h"
+#include "diagnostics/write_light_pictures.h"
 #include "shot/shot.h"
 #include "volume/frame_path.h"
 

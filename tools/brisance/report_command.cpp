@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <set>
 
+#include "camera/camera.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
@@ -19,7 +20,6 @@
 #include "page.h"
 #include "page_pictures.h"
 #include "reference.h"
-#include "render/camera.h"
 #include "render/frame_input.h"
 #include "report.h"
 #include "report_json.h"

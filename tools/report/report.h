@@ -10,7 +10,7 @@
 #include "machine.h"
 #include "methods.h"
 #include "metrics/comparison.h"
-#include "render/statistics.h"
+#include "statistics/statistics.h"
 
 namespace brisance {
 

@@ -1,5 +1,5 @@
 // Albedo from 0 to 1, grey and coloured.
-#include "lights/voxel_lights.h"
+#include "lighting_grid/voxel_lights.h"
 #include "stability/closed_forms.h"
 #include "stability/scenes.h"
 

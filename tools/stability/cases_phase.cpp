@@ -1,7 +1,7 @@
 // Henyey-Greenstein phase functions from backward to forward.
 #include <fmt/format.h>
 
-#include "lights/voxel_lights.h"
+#include "lighting_grid/voxel_lights.h"
 #include "stability/scenes.h"
 
 namespace brisance::stability {

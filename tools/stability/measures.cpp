@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/camera.h"
+#include "camera/camera.h"
 #include "stability/case.h"
 #include "stability/closed_forms.h"
 

@@ -1,0 +1,56 @@
+#include "camera_rays/picture_writer.h"
+
+namespace brisance {
+
+PictureWriter::PictureWriter(const Camera& camera, const PictureSettings& settings) : camera_(camera) {
+    image_.width = camera.settings().width;
+    image_.height = camera.settings().height;
+    const std::size_t pixels = std::size_t(image_.width) * image_.height;
+    const auto add = [&](const char* name, std::vector<std::string> channels, bool full) {
+        Layer layer{name, std::move(channels), full, {}};
+        layer.pixels.assign(pixels * layer.channels.size(), 0.0f);
+        image_.layers.push_back(std::move(layer));
+        return static_cast<int>(image_.layers.size()) - 1;
+    };
+    beauty_ = add("", {"R", "G", "B", "A"}, false);
+    cells_.fill(-1);
+    for (int cell = 0; cell < kCells; ++cell)
+        if (settings.cells && settings.layers[cell])
+            cells_[cell] = add(kCellNames[cell], {"R", "G", "B"}, false);
+    z_ = add("Z", {"Z"}, true);
+    albedo_ = add("albedo", {"R", "G", "B"}, false);
+}
+
+void PictureWriter::pixel(int x, int y, const RaySum& seen) {
+    add(x, y, seen);
+    // Distances are along the ray; Z is along the view axis.
+    const double cosine = glm::dot(camera_.ray(x + 0.5, y + 0.5).direction, camera_.forward());
+    image_.layers[z_].pixels[std::size_t(y) * image_.width + x] =
+        seen.distance_weight > 0.0f ? static_cast<float>(seen.distance_sum / seen.distance_weight * cosine) : 1e10f;
+}
+
+void PictureWriter::add(int x, int y, const RaySum& more) {
+    const std::size_t i = std::size_t(y) * image_.width + x;
+    Rgb beauty(0.0f);
+    for (const Rgb& cell : more.cells)
+        beauty += cell;
+    float* b = &image_.layers[beauty_].pixels[4 * i];
+    b[0] += beauty.x, b[1] += beauty.y, b[2] += beauty.z, b[3] += more.alpha;
+    for (int cell = 0; cell < kCells; ++cell)
+        put(cells_[cell], i, more.cells[cell]);
+    put(albedo_, i, more.albedo_sum);
+}
+
+float PictureWriter::luminance_at(int x, int y) const {
+    const float* b = &image_.layers[beauty_].pixels[4 * (std::size_t(y) * image_.width + x)];
+    return luminance(Rgb(b[0], b[1], b[2]));
+}
+
+void PictureWriter::put(int layer, std::size_t pixel, const Rgb& c) {
+    if (layer < 0)
+        return;
+    float* p = &image_.layers[layer].pixels[3 * pixel];
+    p[0] += c.x, p[1] += c.y, p[2] += c.z;
+}
+
+}  // namespace brisance

@@ -1,0 +1,34 @@
+// Walking a ray through the cells of a medium and integrating what it sees, segment by segment, exactly.
+#pragma once
+
+#include <limits>
+
+#include "camera_rays/source_field.h"
+#include "core/cell.h"
+#include "medium/attenuation.h"
+#include "medium/voxel_walk.h"
+
+namespace brisance {
+
+// Calls visit(segment) for every cell with extinction or emission that the ray crosses in front of its origin, in
+// order, up to `end` metres, until visit returns false.
+template <class Visit>
+void walk_voxels(const SourceField& field, const Ray& ray, const Visit& visit,
+                 double end = std::numeric_limits<double>::infinity()) {
+    walk_bricks(field.bricks(), lattice_ray(field.bricks(), field.medium(), ray, end),
+                [&](const VoxelSegment& brick) { return walk_cubes<1>(brick, visit); });
+}
+
+// What one ray sees.
+struct RaySum {
+    CellSum cells;
+    float depth = 0.0f;            // optical depth of the ray so far, ...
+    float similar_depth = 0.0f;    // ... in the medium that scattered light was followed through
+    Rgb forward{0.0f};             // optical depth of scattering straight on, where that is followed by itself
+    float alpha = 0.0f;            // 1 - exp(-depth), set when the ray is done
+    float distance_weight = 0.0f;  // opacity gathered, ...
+    float distance_sum = 0.0f;     // ... times the distance along the ray [m]
+    Rgb albedo_sum{0.0f};          // ... times albedo (the medium's as luminance)
+};
+
+}  // namespace brisance

@@ -1,0 +1,21 @@
+// Who is lit by lights in the medium.
+#pragma once
+
+#include "tracking/segment.h"
+
+namespace brisance {
+
+// A ray of the camera through the medium, or a point of a surface.
+struct LightReceiver {
+    bool is_ray = true;
+    Segment ray;  // the part that is mostly seen
+    dvec3 point{0.0}, normal{0.0};
+    static LightReceiver along(const Segment& seen) { return {true, seen, {}, {}}; }
+    // A point of the medium that is seen along `direction` (unit). `short_way`: against all it sees [m].
+    static LightReceiver in_smoke(const dvec3& point, const dvec3& direction, double short_way) {
+        return along({point, direction, short_way});
+    }
+    static LightReceiver at(const dvec3& point, const dvec3& normal) { return {false, {}, point, normal}; }
+};
+
+}  // namespace brisance

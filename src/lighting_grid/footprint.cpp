@@ -1,0 +1,77 @@
+#include "lighting_grid/footprint.h"
+
+#include <algorithm>
+
+namespace brisance {
+
+double FootprintPicker::search_brick(int brick, const ivec3& centre, double passed) {
+    const int h = 1 << level_;
+    const ivec3 first = medium_.lattice.first_node(brick);
+    const float* weights = &weights_[std::size_t(brick) * BrickLattice::kNodes];
+    for (int n = 0; n < BrickLattice::kNodes; ++n) {
+        if (!(weights[n] > 0.0f))
+            continue;
+        const ivec3 node = first + BrickLattice::node_in_brick(n);
+        const ivec3 rest = h - glm::abs(node - centre);
+        if (std::min({rest.x, rest.y, rest.z}) <= 0)
+            continue;
+        passed += double(weights[n]) * (double(rest.x) / h) * (double(rest.y) / h) * (double(rest.z) / h);
+        found_.push_back({node, std::size_t(brick) * BrickLattice::kNodes + n, passed});
+    }
+    return passed;
+}
+
+void FootprintPicker::search(const ivec3& vertex) {
+    const int h = 1 << level_;
+    const ivec3 centre = vertex * h;
+    const ivec3 low = (centre - h + 1) >> 3, high = (centre + h - 1) >> 3;
+    found_.clear();
+    double passed = 0.0;
+    for (int x = low.x; x <= high.x; ++x)
+        for (int y = low.y; y <= high.y; ++y)
+            for (int z = low.z; z <= high.z; ++z)
+                if (const int b = medium_.lattice.find({x, y, z}); b >= 0)
+                    passed = search_brick(b, centre, passed);
+}
+
+const std::vector<ivec3>& FootprintPicker::pick(const ivec3& vertex, int count) {
+    search(vertex);
+    picks_.clear();
+    std::size_t at = 0;
+    for (int k = 0; k < count && !found_.empty(); ++k) {
+        const double goal = (k + 0.5) / count * found_.back().passed;
+        while (at + 1 < found_.size() && found_[at].passed < goal)
+            ++at;
+        picks_.push_back(found_[at].node);
+    }
+    return picks_;
+}
+
+const std::vector<FootprintPicker::WeightedPick>& FootprintPicker::pick(const ivec3& vertex, int count,
+                                                                        const NodeWeights& importance) {
+    search(vertex);
+    weighted_picks_.clear();
+    if (found_.empty())
+        return weighted_picks_;
+    double mean = 0.0, before = 0.0;
+    for (const Found& f : found_) {
+        mean += (f.passed - before) * importance[f.index];
+        before = f.passed;
+    }
+    mean /= before;
+    const auto density = [&](const Found& f) {
+        return mean > 0.0 ? kLeastShare + (1.0 - kLeastShare) * importance[f.index] / mean : 1.0;
+    };
+    // The density's sum is that of the weights.
+    std::size_t at = 0;
+    double passed = found_[0].passed * density(found_[0]);
+    for (int k = 0; k < count; ++k) {
+        const double goal = (k + 0.5) / count * before;
+        for (; at + 1 < found_.size() && passed < goal; ++at)
+            passed += (found_[at + 1].passed - found_[at].passed) * density(found_[at + 1]);
+        weighted_picks_.push_back({found_[at].node, float(1.0 / density(found_[at]))});
+    }
+    return weighted_picks_;
+}
+
+}  // namespace brisance

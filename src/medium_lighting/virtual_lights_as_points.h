@@ -1,0 +1,19 @@
+// Virtual lights of surfaces as the lights of a medium: what the cell MS asks.
+#pragma once
+
+#include <array>
+
+#include "lighting_grid/point_grid.h"
+#include "virtual_lights/virtual_lights.h"
+
+namespace brisance {
+
+// Lights by the side of a fixed, oblique plane that their normals point to. The two faces of a wall have opposite
+// normals, so that no coarse light stands for both: it would stand in the wall, and shine through it.
+using PointsOfSides = std::array<PointLights, 2>;
+
+// Each shines by Lambert's cosine about its normal, in spherical harmonics of degree 2 (6 % too bright along the
+// normal, less than 2 % wrong on average over the hemisphere). Glossy profiles count by their power alone.
+PointsOfSides points_of_virtual_lights(const VirtualLights& lights);
+
+}  // namespace brisance

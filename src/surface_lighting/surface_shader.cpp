@@ -1,0 +1,232 @@
+#include "surface_lighting/surface_shader.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "core/parallel.h"
+#include "surface_lighting/shared_receivers.h"
+
+namespace brisance {
+
+namespace {
+
+constexpr std::size_t kSamplesAtOnce = 256;
+
+bool has_base(const SurfaceMaterial& m) {
+    return m.metallic < 1.0f && m.transmission < 1.0f && m.base_colour != Rgb(0.0f);
+}
+
+bool has_specular(const SurfaceMaterial& m) {
+    return needs_energy_tables(m);
+}
+
+// Of those that are not the base, lobes that are no deltas.
+bool has_wide_lobes(const SurfaceMaterial& m) {
+    return has_specular(m) && double(m.roughness) * m.roughness >= kSmoothAlpha;
+}
+
+}  // namespace
+
+SurfaceShader::SurfaceShader(const Plan& plan, const SourceField& field, MediumLighting* lighting,
+                             const VirtualLights* lights, const PathTracer& paths, int parts,
+                             const InScattering* scattered_lights, PathLengths* lengths)
+    : plan_(plan),
+      lighting_(lighting),
+      lights_(lights),
+      paths_(paths),
+      surroundings_(*paths.direct().surroundings()),
+      scattered_lights_(scattered_lights),
+      lengths_(lengths),
+      medium_(plan, field, paths.direct(), parts, scattered_lights),
+      panes_(surroundings_),
+      mirrors_(paths.direct(), medium_, plan.needs(Cell::SS)) {}
+
+// Who is lit, and what draws its random numbers.
+struct SurfaceShader::Place {
+    BehindMirrors seen;
+    Rng ray_rng;  // for rays through the medium
+    int vertices;
+};
+
+Rgb SurfaceShader::from_emitters(const PathVertex& place, Rng& rng) const {
+    const DirectLight& direct = paths_.direct();
+    Rgb sum(0.0f);
+    if (!place.only_delta())
+        sum += direct.from_emitters(place, rng);
+    const std::optional<PathVertex::Sample> turn = place.sample(rng);
+    if (!turn)
+        return sum;
+    const RaySegment segment = direct.segment_along(place.leaving(turn->wi));
+    const Rgb seen = direct.at_end(segment, turn->pdf, turn->delta, &place);
+    if (seen != Rgb(0.0f))
+        sum += turn->weight * seen * float(direct.lines().transmittance(segment.ray, segment.end, rng));
+    return sum;
+}
+
+std::vector<SurfaceShader::Place> SurfaceShader::places(const std::vector<SurfaceSample>& samples,
+                                                        std::vector<CellSum>& light) const {
+    std::vector<Place> places(samples.size(), Place{{}, Rng(Stream::RayLightSurface, 0), 0});
+    parallel_for(
+        samples.size(),
+        [&](std::size_t i) {
+            const SurfaceSample& s = samples[i];
+            Place& place = places[i];
+            place.ray_rng = scattered_lights_ ? scattered_lights_->rng(Stream::RayLightSurface, s.pixel, s.number)
+                                              : Rng(Stream::RayLightSurface, s.pixel, s.number);
+            const SurfacePoint point = surface_point(surroundings_.scene(), s.hit, -s.ray.direction);
+            place.seen = mirrors_.follow(s, point, place.ray_rng, light[i]);
+            place.vertices = place.seen.mirrors;
+        },
+        kSamplesAtOnce);
+    return places;
+}
+
+// What the base reflects of the light that arrives past other surfaces, over what a white Lambert surface would reflect
+// of all of it.
+SurfaceShader::SeenPart SurfaceShader::seen_part(const VisibilityRatio* light, const SurfacePoint& point,
+                                                 const dvec3& toward_viewer, Rng& rng) const {
+    std::array<VisibilityRatio::Draw, VisibilityRatio::kDraws> draws;
+    const LitPoint lit{point.position, point.frame.normal, LitPoint::Kind::Surface};
+    if (!light || !light->draw(lit, rng, draws))
+        return {};
+    const Bsdf base(point.material, point.frame, Lobes::Base);
+    SeenPart seen;
+    float white = 0.0f;
+    for (const VisibilityRatio::Draw& d : draws) {
+        if (!(d.weight > 0.0f))
+            continue;
+        white += d.weight / std::numbers::pi_v<float>;
+        const dvec3 direction(d.direction);
+        const bool above =
+            glm::dot(point.geometric_normal, direction) * glm::dot(point.geometric_normal, toward_viewer) > 0.0;
+        if (!above)
+            continue;
+        const float cosine = glm::dot(vec3(point.frame.normal), d.direction);
+        const dvec3 from = point.start_toward(dvec3(d.place));
+        const dvec3 way = dvec3(d.place) - from;
+        const double distance = glm::length(way);
+        const Panes::Passage passage = panes_.along({from, way / distance}, distance);
+        if (!passage.blocked)
+            (passage.panes > 0 ? seen.through_panes : seen.clear) +=
+                base.evaluate(toward_viewer, direction) * (d.weight / cosine) * passage.weight;
+    }
+    if (!(white > 0.0f))
+        return {};
+    return {seen.clear / white, seen.through_panes / white};
+}
+
+// All lobes but the base, and who lights them.
+struct SurfaceShader::GlossyLobes {
+    Bsdf bsdf;
+    GlossSplit split;
+    GlossyLobes(const SurfacePoint& point, const dvec3& toward_viewer, int places)
+        : bsdf(point.material, point.frame, Lobes::Specular), split(point, bsdf, toward_viewer, places) {}
+    GlossyLobes(const GlossyLobes&) = delete;
+    GlossyLobes& operator=(const GlossyLobes&) = delete;
+};
+
+// One direction of those lobes, and all that glows and scatters along it.
+void SurfaceShader::reflect_medium(const SurfacePoint& point, const dvec3& toward_viewer, const GlossyLobes& lobes,
+                                   Rng& rng, Rng& ray_rng, CellSum& light) const {
+    const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
+    const std::optional<BsdfSample> drawn = lobes.bsdf.sample(toward_viewer, {x, y, z});
+    if (!drawn || point.leaks(toward_viewer, drawn->wi))
+        return;
+    const float of_rays = drawn->delta ? 1.0f : float(lobes.split.of_rays(drawn->wi));
+    Rgb weight = drawn->weight;
+    RaySegment segment = paths_.direct().segment_along(point.leaving(drawn->wi));
+    for (int panes = 0;; ++panes) {
+        RaySum seen = medium_.look(segment.ray, segment.end, ray_rng);
+        seen.cells.at(Cell::MM) *= of_rays;
+        light.at(panes == 0 ? Cell::SV : Cell::SS) += weight * seen.cells.at(Cell::V);
+        light.at(panes == 0 ? Cell::SM : Cell::SS) += weight * scattered_by_medium(seen.cells);
+        if (!asks_through_panes() || !segment.point || seen.depth > kOpaqueDepth)
+            return;
+        weight *= std::exp(-seen.depth) * Panes::straight_on(*segment.point, segment.ray.direction);
+        if (weight == Rgb(0.0f))
+            return;
+        segment = paths_.direct().segment_along(segment.point->leaving(segment.ray.direction));
+    }
+}
+
+// What neither fire's grids nor those of smoke show of the medium: lights in the smoke, and glossy lobes.
+void SurfaceShader::reflect_scattered(const SurfacePoint& point, const dvec3& toward_viewer, Rng& rng, Rng& ray_rng,
+                                      CellSum& light) const {
+    const int places = scattered_lights_ && has_wide_lobes(point.material) ? scattered_lights_->gloss_places() : 0;
+    std::optional<GlossyLobes> gloss;
+    if (lighting_ && has_specular(point.material))
+        gloss.emplace(point, toward_viewer, places);
+    if (scattered_lights_) {
+        const bool shared = gloss && places > 0;
+        const Bsdf base(point.material, point.frame, Lobes::Base);
+        if (shared || has_base(point.material))
+            light.at(Cell::SM) += scattered_lights_->at_surface(
+                point, AskedLobes(base, shared ? &gloss->split : nullptr), toward_viewer, ray_rng);
+    }
+    if (gloss)
+        reflect_medium(point, toward_viewer, *gloss, rng, ray_rng, light);
+}
+
+void SurfaceShader::shade_place(const SurfaceSample& sample, const SurfaceReceiver& receiver, Place& at,
+                                CellSum& out) const {
+    const SurfacePoint& point = at.seen.point;
+    const dvec3 toward_viewer = -at.seen.arriving;
+    Rng rng(Stream::Surface, sample.pixel, sample.number);
+    if (lighting_ && has_base(point.material)) {
+        const auto add = [&](Cell cell, const std::array<Rgb, 2>& arriving, const ToAimAt& aims) {
+            for (int part = 0; part < 2; ++part) {
+                const SeenPart seen = seen_part(aims[part], point, toward_viewer, rng);
+                out.at(cell) += arriving[part] * seen.clear;
+                if (asks_through_panes())
+                    out.at(Cell::SS) += arriving[part] * seen.through_panes;
+            }
+        };
+        add(Cell::SV, receiver.fire, lighting_->fire_to_aim_at());
+        add(Cell::SM, receiver.smoke, lighting_->smoke_to_aim_at());
+    }
+    reflect_scattered(point, toward_viewer, rng, at.ray_rng, out);
+    const PathVertex place(point, at.seen.arriving);
+    if (plan_.needs(Cell::SA))
+        out.at(Cell::SA) += from_emitters(place, rng);
+    if (!plan_.needs(Cell::SS))
+        return;
+    if (lights_) {
+        out.at(Cell::SS) +=
+            lights_->shade(place, rng, &at.vertices,
+                           asks_through_panes() ? VirtualLights::Panes::Asked : VirtualLights::Panes::Followed);
+        return;
+    }
+    PathSum path{};
+    paths_.trace_from_surface(point, at.seen.arriving, rng, path);
+    out.at(Cell::SS) += path.cells.at(Cell::SS);
+}
+
+void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) const {
+    std::vector<Place> places = this->places(samples, light);
+    SharedReceivers receivers(paths_.direct().field().medium());
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        receivers.add(samples[i].pixel, vec3(places[i].seen.point.position), vec3(places[i].seen.point.frame.normal));
+    if (lighting_)
+        lighting_->at_surfaces(receivers.receivers());
+    parallel_for(
+        samples.size(),
+        [&](std::size_t i) {
+            const BehindMirrors& seen = places[i].seen;
+            if (seen.lost)
+                return;
+            if (seen.mirrors == 0) {
+                shade_place(samples[i], receivers.of_sample(i), places[i], light[i]);
+                return;
+            }
+            CellSum there;
+            shade_place(samples[i], receivers.of_sample(i), places[i], there);
+            for (const Rgb& cell : there)
+                light[i].at(Cell::SS) += seen.throughput * cell;
+        },
+        kSamplesAtOnce);
+    for (std::size_t i = 0; lengths_ && i < samples.size(); ++i)
+        lengths_->add(samples[i].pixel, places[i].vertices);
+}
+
+}  // namespace brisance

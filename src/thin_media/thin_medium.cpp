@@ -1,0 +1,204 @@
+#include "thin_media/thin_medium.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "gathering/escape_probability.h"
+#include "medium/thin_smoke.h"
+
+namespace brisance {
+
+namespace {
+
+// Extinction over the mean that light meets in the smoke (by extinction): above the first a node is smoke proper,
+// below the second thin.
+constexpr float kSmoke = 0.15f, kThin = kThinSmoke;
+// Thin nodes over all: haze begins to count, and counts in full.
+constexpr float kFewNodes = kFringes, kManyNodes = 0.6f;
+// Mean transmittance to the outside: hollows in the smoke see less, and are no haze.
+constexpr float kHollow = 0.02f, kOpen = 0.1f;
+// From the camera, in bricks: nearer, the direction to it turns too fast to be interpolated.
+constexpr float kAroundCamera = 4.0f;
+
+float ramp(float from, float to, float x) {
+    const float t = std::clamp((x - from) / (to - from), 0.0f, 1.0f);
+    return t * t * (3.0f - 2.0f * t);
+}
+
+// Points `kIntervals` + 1 along each side of a brick, shared with the next; between them values are trilinear.
+template <int kIntervals>
+struct BrickPoints {
+    static constexpr int kSide = kIntervals + 1, kCount = kSide * kSide * kSide;
+    static constexpr int kStep = BrickLattice::kSize / kIntervals;
+
+    static ivec3 node(int point) {
+        return kStep * ivec3(point / (kSide * kSide), point / kSide % kSide, point % kSide);
+    }
+    static float at(const float* values, int offset) {
+        const ivec3 n = BrickLattice::node_in_brick(offset), low = n / kStep;
+        const vec3 part = vec3(n - low * kStep) / float(kStep);
+        float sum = 0.0f;
+        for (int k = 0; k < 8; ++k) {
+            const ivec3 corner(k >> 2, k >> 1 & 1, k & 1);
+            const ivec3 p = low + corner;
+            const vec3 w = glm::mix(1.0f - part, part, vec3(corner));
+            sum += w.x * w.y * w.z * values[(p.x * kSide + p.y) * kSide + p.z];
+        }
+        return sum;
+    }
+};
+using LightPoints = BrickPoints<2>;
+using OpenPoints = BrickPoints<1>;
+static_assert(LightPoints::kCount <= 2 * Receivers::kGroup);
+
+std::vector<float> thinness(const Medium& medium, const std::vector<std::uint8_t>& needed) {
+    const float typical = float(extinction_met(medium.extinction));
+    std::vector<float> thin(needed.size(), 0.0f);
+    double of_haze = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < needed.size(); ++i) {
+        if (!needed[i])
+            continue;
+        thin[i] = ramp(kSmoke * typical, kThin * typical, medium.extinction[i]);
+        of_haze += medium.extinction[i] > 0.0f ? thin[i] : 0.0f;
+        all += medium.extinction[i] > 0.0f;
+    }
+    const float counts = ramp(kFewNodes, kManyNodes, all > 0.0 ? float(of_haze / all) : 0.0f);
+    if (counts == 0.0f)
+        return {};
+    for (float& t : thin)
+        t *= counts;
+    return thin;
+}
+
+}  // namespace
+
+ThinMedium::ThinMedium(const Medium& medium, const PointDepths& depths, const std::vector<std::uint8_t>& needed,
+                       const std::optional<vec3>& eye)
+    : eye_(eye) {
+    const std::vector<float> thin = thinness(medium, needed);
+    if (thin.empty())
+        return;
+    find_even_bricks(medium, thin);
+    look_outside(medium, depths, thin);
+    weight_.resize(thin.size());
+    nodes_.resize(thin.size());
+    for (std::size_t i = 0; i < thin.size(); ++i) {
+        weight_[i] = thin[i] * ramp(kHollow, kOpen, open_[i]);
+        nodes_[i] = weight_[i] > 0.0f;
+    }
+    single_ = nodes_;
+    for (const std::uint32_t b : even_)
+        std::fill_n(single_.begin() + std::ptrdiff_t(b) * BrickLattice::kNodes, BrickLattice::kNodes, 0);
+}
+
+// Bricks in which, and around which, nothing is smoke proper.
+void ThinMedium::find_even_bricks(const Medium& medium, const std::vector<float>& thin) {
+    const BrickLattice& lattice = medium.lattice;
+    const float fullest = *std::max_element(thin.begin(), thin.end());
+    std::vector<std::uint8_t> wholly(lattice.brick_count());
+    parallel_for(
+        wholly.size(),
+        [&](std::size_t b) {
+            const std::size_t first = b * BrickLattice::kNodes;
+            wholly[b] = true;
+            for (std::size_t i = first; i < first + BrickLattice::kNodes; ++i)
+                wholly[b] &= thin[i] == fullest || medium.extinction[i] == 0.0f;
+        },
+        64);
+    homogeneous_bricks_ = HomogeneousBricks(lattice, medium.reference_node, wholly);
+    const float brick = BrickLattice::kSize * medium.spacing;
+    for (std::uint32_t b = 0; b < wholly.size(); ++b) {
+        const vec3 middle = medium.local_of_node(lattice.first_node(b) + BrickLattice::kSize / 2);
+        const bool slow = !eye_ || glm::distance(*eye_, middle) > kAroundCamera * brick;
+        if (slow && homogeneous_bricks_.at(lattice.brick(b) - (medium.reference_node >> 3)))
+            even_.push_back(b);
+    }
+}
+
+void ThinMedium::look_outside(const Medium& medium, const PointDepths& depths, const std::vector<float>& thin) {
+    open_.assign(thin.size(), -1.0f);
+    std::vector<std::uint8_t> even(medium.lattice.brick_count(), 0);
+    for (const std::uint32_t b : even_)
+        even[b] = 1;
+    parallel_for(
+        even.size(),
+        [&](std::size_t b) {
+            const ivec3 first = medium.lattice.first_node(b);
+            const std::size_t base = b * BrickLattice::kNodes;
+            float corners[OpenPoints::kCount];
+            for (int p = 0; even[b] && p < OpenPoints::kCount; ++p)
+                corners[p] =
+                    mean_transmittance_outside(medium, depths, medium.local_of_node(first + OpenPoints::node(p)));
+            for (int n = 0; n < BrickLattice::kNodes; ++n)
+                if (thin[base + n] > 0.0f)
+                    open_[base + n] =
+                        even[b] ? OpenPoints::at(corners, n)
+                                : mean_transmittance_outside(
+                                      medium, depths, medium.local_of_node(first + BrickLattice::node_in_brick(n)));
+        },
+        4);
+}
+
+std::size_t ThinMedium::node_count() const {
+    return static_cast<std::size_t>(std::count(nodes_.begin(), nodes_.end(), std::uint8_t{1}));
+}
+
+std::size_t ThinMedium::point_count() const {
+    return even_.size() * LightPoints::kCount +
+           static_cast<std::size_t>(std::count(single_.begin(), single_.end(), std::uint8_t{1}));
+}
+
+Gathered ThinMedium::gather(const LightField& field, const GridLevel& bottom, const LightField* of_haze,
+                            const LatticeRequest& request, std::vector<LevelCost>& costs, Progress& progress) const {
+    const Medium& medium = field.pyramid->medium();
+    LatticeRequest single = request;
+    single.needed = &single_;
+    Gathered out = gather_at_nodes(field, single, costs, progress);
+    if (of_haze)
+        out.add(gather_from_outside(*of_haze, single, costs, progress));
+    Receivers receivers;
+    for (const std::uint32_t b : even_) {
+        std::vector<vec3> points, directions;
+        for (int p = 0; p < LightPoints::kCount; ++p) {
+            points.push_back(medium.local_of_node(medium.lattice.first_node(b) + LightPoints::node(p)));
+            if (request.toward_camera)
+                directions.push_back(glm::normalize(*eye_ - points.back()));
+        }
+        receivers.add_block(points, directions);
+    }
+    Gathered few = gather_at_points(field, bottom, receivers, request.mean_cosine, costs, progress,
+                                    ReceiverKind::Medium, request.moments);
+    if (of_haze)
+        few.add(gather_at_points(*of_haze, {}, receivers, request.mean_cosine, costs, progress, ReceiverKind::Medium,
+                                 request.moments));
+    const std::size_t nodes = nodes_.size(), asked = receivers.size();
+    const auto spread = [&](const std::vector<float>& from, std::vector<float>& to) {
+        parallel_for(even_.size(), [&](std::size_t k) {
+            const std::size_t place = receivers.blocks()[k].first_group * Receivers::kGroup;
+            const std::size_t first = std::size_t(even_[k]) * BrickLattice::kNodes;
+            for (std::size_t plane = 0; plane * nodes < to.size(); ++plane)
+                for (int n = 0; n < BrickLattice::kNodes; ++n)
+                    to[plane * nodes + first + n] = LightPoints::at(&from[plane * asked + place], n);
+        });
+    };
+    spread(few.fluence, out.fluence);
+    spread(few.scattered, out.scattered);
+    spread(few.moments, out.moments);
+    return out;
+}
+
+void ThinMedium::mix(const Gathered& of_haze, Gathered& all) const {
+    const std::size_t n = weight_.size();
+    const auto mix_planes = [&](const std::vector<float>& from, std::vector<float>& to) {
+        parallel_for(to.size() / n, [&](std::size_t plane) {
+            for (std::size_t i = 0, k = plane * n; i < n; ++i, ++k)
+                to[k] += weight_[i] * (from[k] - to[k]);
+        });
+    };
+    mix_planes(of_haze.fluence, all.fluence);
+    mix_planes(of_haze.scattered, all.scattered);
+    mix_planes(of_haze.moments, all.moments);
+}
+
+}  // namespace brisance

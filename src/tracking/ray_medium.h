@@ -1,0 +1,65 @@
+// The medium at points of a ray, and its optical depth along the ray.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "tracking/segment.h"
+#include "tracking/trackers.h"
+
+namespace brisance {
+
+struct Coefficients {
+    float extinction = 0.0f;  // [1/m]
+    Rgb scattering{0.0f};     // [1/m]
+};
+
+// Looks the medium up at points of one ray.
+class RayProbe {
+public:
+    RayProbe(const TrackingField& field, const Ray& ray) : field_(&field), way_(field.enter(ray)) {}
+    // At a distance [m]; nothing scatters outside the medium.
+    Coefficients at(double t) const;
+    // As a place where a flight might collide; none outside the medium.
+    std::optional<Collision> place(double t) const;
+
+private:
+    const TrackingField* field_;
+    LatticeRay way_;
+};
+
+// A ray of the camera with all cells on it: its transmittance is known everywhere, and points can be drawn where a
+// flight would collide. Beyond an optical depth of 64 nothing is seen (e^-64 is below single precision).
+class RayMedium {
+public:
+    // Overwrites what was there: keep the object for its memory. `end`: of the ray [m], where a surface is.
+    void look(const TrackingField& field, const Ray& ray, double end);
+
+    bool empty() const { return cells_.empty(); }
+    // From the first to the last cell with extinction.
+    const Segment& segment() const { return segment_; }
+    double transmittance(double t) const;  // from the ray's origin to t along the segment
+    Coefficients coefficients(double t) const { return probe_->at(begin_ + t); }
+    // Its distance is from the ray's origin.
+    std::optional<Collision> place(double t) const { return probe_->place(begin_ + t); }
+    double opacity() const;                        // of the whole segment
+    double sample_flight(double xi) const;         // t along the segment, of a flight that collides on it
+    double pdf_of_flight(double t) const;          // [1/m]
+    double distance_to_depth(double depth) const;  // t where that optical depth is reached, or the segment's length
+
+private:
+    struct Cell {
+        VoxelSegment segment;
+        Cubic extinction;
+        double begin_depth, end_depth;
+    };
+    const Cell& voxel_at(double t) const;
+    double depth_at(double t) const;
+
+    std::vector<Cell> cells_;
+    Segment segment_;
+    double begin_ = 0.0;  // of the segment on the ray [m]
+    std::optional<RayProbe> probe_;
+};
+
+}  // namespace brisance

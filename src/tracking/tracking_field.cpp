@@ -1,0 +1,166 @@
+#include "tracking/tracking_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+
+namespace brisance {
+
+namespace {
+
+constexpr int kSide = BrickLattice::kSize + 1;
+constexpr int kRecords = kSide * kSide * kSide;
+
+struct Corner {
+    std::size_t first;  // of the cell's eight corners
+    vec3 fraction;
+};
+
+Corner corner_of(std::size_t records, const vec3& p) {
+    const ivec3 base = glm::min(ivec3(p), ivec3(BrickLattice::kSize - 1));
+    return {records + (base.x * kSide + base.y) * kSide + base.z, p - vec3(base)};
+}
+
+template <class T>
+T trilinear(const T* v, const vec3& f) {
+    const auto along_z = [&](int at) { return v[at] + f.z * (v[at + 1] - v[at]); };
+    const auto plane = [&](int at) {
+        const T low = along_z(at);
+        return low + f.y * (along_z(at + kSide) - low);
+    };
+    const T low = plane(0);
+    return low + f.x * (plane(kSide * kSide) - low);
+}
+
+void copy_rgb(const Medium& medium, const std::vector<Rgb>& field, const ivec3& low, Rgb* out) {
+    std::vector<float> box(3 * kRecords);
+    copy_box(medium.lattice, {reinterpret_cast<const float*>(field.data()), field.size() * 3}, 3, low, ivec3(kSide),
+             box);
+    for (int i = 0; i < kRecords; ++i)
+        out[i] = {box[i], box[kRecords + i], box[2 * kRecords + i]};
+}
+
+// Whether a node of a brick glows: by its own emission, or as the source of what absorbs around it.
+bool glows(const Medium& medium, const ivec3& node) {
+    const std::int64_t n = medium.lattice.find_node(node);
+    return n >= 0 && ((!medium.source.empty() && medium.source[n] != Rgb(0.0f)) ||
+                      (!medium.emission.empty() && medium.emission[n] != Rgb(0.0f)));
+}
+
+}  // namespace
+
+TrackingField::TrackingField(const Medium& medium)
+    : medium_(&medium),
+      index_from_local_(glm::inverse(dmat3(medium.world_from_index))),
+      bricks_(voxel_lattice(medium)),
+      extinction_(bricks_.brick_count() * kRecords),
+      albedo_(medium.albedo_nodes.empty() ? 0 : bricks_.brick_count() * kRecords),
+      fire_index_(bricks_.brick_count(), -1),
+      minimum_(bricks_.brick_count()),
+      majorant_(bricks_.brick_count()) {
+    parallel_for(bricks_.brick_count(), [&](std::size_t b) { copy_brick(b); });
+    std::int32_t burning = 0;
+    for (std::int32_t& f : fire_index_)
+        f = f < 0 ? -1 : burning++;
+    source_.resize(medium.source.empty() ? 0 : burning * std::size_t(kRecords));
+    emission_.resize(medium.emission.empty() ? 0 : burning * std::size_t(kRecords));
+    burning_voxel_.resize(burning * std::size_t(BrickLattice::kNodes));
+    parallel_for(bricks_.brick_count(), [&](std::size_t b) { copy_fire(b); });
+}
+
+void TrackingField::copy_brick(std::size_t brick) {
+    const Medium& medium = *medium_;
+    const ivec3 low = bricks_.first_node(brick);
+    float* sigma = &extinction_[brick * kRecords];
+    copy_box(medium.lattice, medium.extinction, 1, low, ivec3(kSide), {sigma, std::size_t(kRecords)});
+    const auto [least, greatest] = std::minmax_element(sigma, sigma + kRecords);
+    minimum_[brick] = *least;
+    majorant_[brick] = *greatest;
+    for (int i = 0; i < kRecords; ++i) {
+        const ivec3 node = low + ivec3(i / (kSide * kSide), i / kSide % kSide, i % kSide);
+        if (!albedo_.empty()) {
+            const std::int64_t n = medium.lattice.find_node(node);
+            albedo_[brick * kRecords + i] = n < 0 ? medium.albedo : medium.albedo_nodes[n];
+        }
+        if (fire_index_[brick] < 0 && glows(medium, node))
+            fire_index_[brick] = 0;
+    }
+}
+
+void TrackingField::copy_fire(std::size_t brick) {
+    const std::int32_t fire = fire_index_[brick];
+    if (fire < 0)
+        return;
+    const ivec3 low = bricks_.first_node(brick);
+    if (!source_.empty())
+        copy_rgb(*medium_, medium_->source, low, &source_[fire * std::size_t(kRecords)]);
+    if (!emission_.empty())
+        copy_rgb(*medium_, medium_->emission, low, &emission_[fire * std::size_t(kRecords)]);
+    for (int c = 0; c < BrickLattice::kNodes; ++c)
+        for (int k = 0; k < 8; ++k) {
+            const ivec3 corner = BrickLattice::node_in_brick(c) + ivec3(k >> 2, k >> 1 & 1, k & 1);
+            if (glows(*medium_, low + corner))
+                burning_voxel_[fire * std::size_t(BrickLattice::kNodes) + c] = 1;
+        }
+}
+
+float TrackingField::extinction(std::size_t brick, const vec3& p) const {
+    const Corner c = corner_of(brick * kRecords, p);
+    return trilinear(&extinction_[c.first], c.fraction);
+}
+
+Rgb TrackingField::albedo(std::size_t brick, const vec3& p) const {
+    if (albedo_.empty())
+        return medium_->albedo;
+    const Corner c = corner_of(brick * kRecords, p);
+    return trilinear(&albedo_[c.first], c.fraction);
+}
+
+Rgb TrackingField::source(std::size_t brick, const vec3& p) const {
+    const Corner c = corner_of(fire_index_[brick] * std::size_t(kRecords), p);
+    return trilinear(&source_[c.first], c.fraction);
+}
+
+Rgb TrackingField::emission(std::size_t brick, const vec3& p) const {
+    const Corner c = corner_of(fire_index_[brick] * std::size_t(kRecords), p);
+    return trilinear(&emission_[c.first], c.fraction);
+}
+
+// The trilinear polynomial a + bx + cy + dz + exy + fxz + gyz + hxyz of the cell, along p(u) = q + u w.
+Cubic TrackingField::extinction_along(const VoxelSegment& s) const {
+    const ivec3& cell = s.cube;
+    const float* v = &extinction_[s.brick * kRecords + (cell.x * kSide + cell.y) * kSide + cell.z];
+    const double v000 = v[0], v001 = v[1], v010 = v[kSide], v011 = v[kSide + 1];
+    const float* x = v + kSide * kSide;
+    const double v100 = x[0], v101 = x[1], v110 = x[kSide], v111 = x[kSide + 1];
+    const double b = v100 - v000, c = v010 - v000, d = v001 - v000;
+    const double e = v110 - v100 - c, f = v101 - v100 - d, g = v011 - v010 - d;
+    const double h = v111 - v110 - v101 + v100 - g;
+    const dvec3 q = s.origin + s.direction * s.begin - dvec3(cell), w = s.direction * (s.end - s.begin);
+    Cubic out;
+    out.c[0] = v000 + q.x * (b + q.y * (e + q.z * h) + q.z * f) + q.y * (c + q.z * g) + q.z * d;
+    out.c[1] = w.x * (b + q.y * (e + q.z * h) + q.z * f) + w.y * (c + q.x * (e + q.z * h) + q.z * g) +
+               w.z * (d + q.x * (f + q.y * h) + q.y * g);
+    out.c[2] = w.x * w.y * (e + q.z * h) + w.x * w.z * (f + q.y * h) + w.y * w.z * (g + q.x * h);
+    out.c[3] = w.x * w.y * w.z * h;
+    return out;
+}
+
+bool TrackingField::voxel_burns(const VoxelSegment& s) const {
+    const std::int32_t fire = fire_index_[s.brick];
+    return fire >= 0 &&
+           burning_voxel_[fire * std::size_t(BrickLattice::kNodes) + BrickLattice::offset_in_brick(s.cube)];
+}
+
+double TrackingField::smoke_volume() const {
+    const auto bricks = std::count_if(majorant_.begin(), majorant_.end(), [](float m) { return m > 0.0f; });
+    return double(bricks) * BrickLattice::kNodes * std::abs(glm::determinant(dmat3(medium().local_from_index)));
+}
+
+std::uint64_t TrackingField::bytes() const {
+    return (extinction_.size() + minimum_.size() + majorant_.size() + fire_index_.size()) * sizeof(float) +
+           (albedo_.size() + source_.size() + emission_.size()) * sizeof(Rgb) + burning_voxel_.size() + bricks_.bytes();
+}
+
+}  // namespace brisance

@@ -1,0 +1,102 @@
+#include "transport/direct_light.h"
+
+#include <cmath>
+
+namespace brisance {
+
+namespace {
+
+// Lines toward the fire at a place in smoke, where what is around lets them get there: its optical depth across the
+// fire's radius is less than this. Deeper in the smoke they cost more than they bring (measured), and what they would
+// find is found along the path's own segments.
+constexpr float kLightLines = 0.25f;
+constexpr float kThickToFire = 1.0f;
+
+}  // namespace
+
+DirectLight::DirectLight(const Medium& medium, const TracingSettings& settings, const Surroundings* surroundings)
+    : settings_(settings), surroundings_(surroundings), field_(medium), fire_(field_), lines_(field_, settings_) {}
+
+RaySegment DirectLight::segment_along(const Ray& ray) const {
+    RaySegment segment{ray, kNoEnd, std::nullopt, std::nullopt};
+    if (!surroundings_)
+        return segment;
+    segment.hit = surroundings_->intersector().first_hit(ray);
+    if (segment.hit) {
+        segment.end = segment.hit->distance;
+        segment.point = surface_point(surroundings_->scene(), *segment.hit, -ray.direction);
+    }
+    return segment;
+}
+
+PathVertex DirectLight::in_smoke(const Ray& ray, const Collision& collision) const {
+    return {ray.origin + ray.direction * collision.distance, ray.direction, field_.mean_cosine()};
+}
+
+float DirectLight::lines_in_smoke(const Collision& c) const {
+    const bool thin = settings_.light_sampling && !fire_.empty() &&
+                      field_.extinction(c.brick, c.position) * fire_.radius() < kThickToFire;
+    return thin ? kLightLines : 0.0f;
+}
+
+float DirectLight::lines_on_surface(const PathVertex& place) const {
+    return settings_.light_sampling && !fire_.empty() && !place.only_delta() ? 1.0f : 0.0f;
+}
+
+// With the balance heuristic the line's weight cancels all but both densities in the denominator.
+Rgb DirectLight::from_fire(const PathVertex& place, float light_lines, Rng& rng) const {
+    const Ray line = place.leaving(fire_.sample(place.position(), rng));
+    const PathVertex::Value scattered = place.at(line.direction);
+    if (scattered.value == Rgb(0.0f))
+        return Rgb(0.0f);
+    double end = kNoEnd;
+    if (surroundings_)
+        if (const std::optional<SurfaceHit> hit = surroundings_->intersector().first_hit(line))
+            end = hit->distance;
+    const Rgb seen = lines_.follow_line(line, rng, end);
+    if (seen == Rgb(0.0f))
+        return seen;
+    return scattered.value / float(light_lines * fire_.pdf(line) + scattered.pdf) * seen;
+}
+
+float DirectLight::share_of_sample(float light_lines, const Ray& ray, double pdf) const {
+    if (light_lines == 0.0f)
+        return 1.0f;
+    return static_cast<float>(pdf / (light_lines * fire_.pdf(ray) + pdf));
+}
+
+Rgb DirectLight::from_emitters(const PathVertex& place, Rng& rng) const {
+    const std::optional<EmitterSample> light = surroundings_->emitters().sample(place.lit(), rng);
+    if (!light)
+        return Rgb(0.0f);
+    const PathVertex::Value scattered = place.at(light->direction);
+    if (scattered.value == Rgb(0.0f))
+        return Rgb(0.0f);
+    double end = light->distance;
+    const bool near = std::isfinite(end);
+    const Ray ray = near ? place.toward(light->end, end) : place.leaving(light->direction);
+    if (surroundings_->intersector().occluded(ray, end))
+        return Rgb(0.0f);
+    const double seen = lines_.transmittance(ray, end, rng);
+    const double share = light->pdf > 0.0 ? light->pdf / (light->pdf + scattered.pdf) : 1.0;
+    return scattered.value * light->weight * float(seen * share);
+}
+
+Rgb DirectLight::at_end(const RaySegment& segment, double pdf, bool delta, const PathVertex* from) const {
+    const Emitters& emitters = surroundings_->emitters();
+    const dvec3& direction = segment.ray.direction;
+    Rgb seen(0.0f);
+    double other = 0.0;
+    if (segment.hit) {
+        seen = segment.point->emission;
+        if (seen != Rgb(0.0f) && from && !delta)
+            other = emitters.pdf_of_hit(from->lit(), *segment.hit, direction, segment.end);
+    } else {
+        seen = emitters.background(direction);
+        if (seen != Rgb(0.0f) && from && !delta)
+            other = emitters.pdf_of_background(direction);
+    }
+    return other > 0.0 ? seen * float(pdf / (pdf + other)) : seen;
+}
+
+}  // namespace brisance

@@ -1,0 +1,141 @@
+#include "transport/emitters_along_ray.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "light_selection/joint_sampling.h"
+
+namespace brisance {
+
+namespace {
+
+// What the phase function finds, by a ray of its own.
+Rgb by_phase(const DirectLight& scene, const PathVertex& place, Rng& rng) {
+    const std::optional<PathVertex::Sample> turn = place.sample(rng);
+    if (!turn)
+        return Rgb(0.0f);
+    const RaySegment segment = scene.segment_along(place.leaving(turn->wi));
+    const Rgb shining = scene.at_end(segment, turn->pdf, turn->delta, &place);
+    if (shining == Rgb(0.0f))
+        return shining;
+    return turn->weight * shining * float(scene.lines().transmittance(segment.ray, segment.end, rng));
+}
+
+// More lamps than this are left to flights.
+constexpr std::size_t kMostLamps = 8;
+
+// The part of the segment in the lamp's cone, from `begin` to `end`; empty where there is none.
+struct Lit {
+    double begin = 0.0, end = 0.0;
+};
+
+Lit lit_part(const PointEmitter& lamp, const Segment& ray) {
+    if (lamp.cosine <= 0.0)  // no convex cone
+        return {0.0, ray.length};
+    const dvec3 way = ray.start - lamp.position;
+    const double along = glm::dot(lamp.axis, ray.direction), before = glm::dot(lamp.axis, way);
+    const double c2 = lamp.cosine * lamp.cosine;
+    // Where (axis . w)^2 = cosine^2 w^2 on the line: a t^2 + 2 b t + c = 0.
+    const double a = along * along - c2, b = along * before - c2 * glm::dot(ray.direction, way),
+                 c = before * before - c2 * glm::dot(way, way), root = std::sqrt(std::max(0.0, b * b - a * c));
+    std::array<double, 4> cut = {0.0, (-b - root) / a, (-b + root) / a, ray.length};
+    for (double& t : cut)
+        t = t > 0.0 ? std::min(t, ray.length) : 0.0;  // so for what is not a number
+    std::sort(cut.begin(), cut.end());
+    Lit part;
+    for (int i = 0; i < 3; ++i) {
+        const dvec3 middle = way + 0.5 * (cut[i] + cut[i + 1]) * ray.direction;
+        if (!(cut[i + 1] > cut[i]) || glm::dot(lamp.axis, middle) < lamp.cosine * glm::length(middle))
+            continue;
+        if (part.end == 0.0)
+            part.begin = cut[i];
+        part.end = cut[i + 1];
+    }
+    return part;
+}
+
+// Places on a ray by how near they are to lamps.
+class LampPlaces {
+public:
+    LampPlaces(const std::vector<PointEmitter>& lamps, const Segment& ray, double mean_cosine) {
+        if (lamps.size() > kMostLamps)
+            return;
+        for (const PointEmitter& lamp : lamps) {
+            const Lit lit = lit_part(lamp, ray);
+            const Segment part{ray.at(lit.begin), ray.direction, lit.end - lit.begin};
+            if (!(part.length > 1e-9 * ray.length))
+                continue;
+            const AngularDensity plain(lamp.position, part, {});
+            const dvec3 way = part.at(0.5 * part.length) - lamp.position;
+            // Uniform in the angle: its inverse is the integral of 1 / distance^2.
+            const double seen = 1.0 / (plain.pdf(0.5 * part.length) * glm::dot(way, way));
+            if (!(seen > 0.0) || !std::isfinite(seen))
+                continue;
+            all_ += lamp.intensity * seen;
+            lamps_[count_++] = {lit, lamp.intensity * seen,
+                                AngularDensity(lamp.position, part, {{-ray.direction, mean_cosine}})};
+        }
+    }
+    bool empty() const { return count_ == 0; }
+
+    double sample(double xi, Rng& rng) const {
+        std::size_t i = 0;
+        for (double left = xi * all_ - lamps_[0]->weight; left >= 0.0 && i + 1 < count_;)
+            left -= lamps_[++i]->weight;
+        return lamps_[i]->lit.begin + lamps_[i]->density.sample(rng);
+    }
+    double pdf(double t) const {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < count_; ++i)
+            if (const Lamp& lamp = *lamps_[i]; t >= lamp.lit.begin && t <= lamp.lit.end)
+                sum += lamp.weight * lamp.density.pdf(t - lamp.lit.begin);
+        return sum / all_;
+    }
+
+private:
+    struct Lamp {
+        Lit lit;
+        double weight;
+        AngularDensity density;
+    };
+    std::array<std::optional<Lamp>, kMostLamps> lamps_;
+    std::size_t count_ = 0;
+    double all_ = 0.0;
+};
+
+}  // namespace
+
+bool aims_at_lamps(const DirectLight& scene) {
+    const std::size_t lamps = scene.surroundings()->emitters().points().size();
+    return lamps > 0 && lamps <= kMostLamps;
+}
+
+Rgb emitters_along_ray(const DirectLight& scene, const RayMedium& seen, const Ray& ray, int places, Rng& rng) {
+    Rgb sum(0.0f);
+    if (seen.empty())
+        return sum;
+    const LampPlaces lamps(scene.surroundings()->emitters().points(), seen.segment(), scene.field().mean_cosine());
+    const double by_flights = lamps.empty() ? 1.0 : 0.5, shift = rng.next_double();
+    for (int i = 0; i < places; ++i) {
+        const double xi = (i + shift) / places;
+        const double t = xi < by_flights ? seen.sample_flight(xi / by_flights)
+                                         : lamps.sample((xi - by_flights) / (1.0 - by_flights), rng);
+        const std::optional<Collision> c = seen.place(t);
+        if (!c)
+            continue;
+        double weight = seen.opacity();
+        if (!lamps.empty()) {
+            const double collides = seen.pdf_of_flight(t);
+            weight *= collides / (by_flights * collides + (1.0 - by_flights) * lamps.pdf(t));
+        }
+        if (!(weight > 0.0))
+            continue;
+        const PathVertex place = scene.in_smoke(ray, *c);
+        sum += scene.field().albedo(c->brick, c->position) * float(weight) *
+               (scene.from_emitters(place, rng) + by_phase(scene, place, rng));
+    }
+    return sum / float(places);
+}
+
+}  // namespace brisance

@@ -1,0 +1,37 @@
+// Particles of light: where they start, and the power that each of them carries.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "transport/direct_light.h"
+
+namespace brisance {
+
+// Where particles from infinity are aimed at.
+struct BoundingBall {
+    dvec3 centre{0.0};
+    double radius = 0.0;
+};
+BoundingBall ball_around(const DirectLight& scene);
+
+// Power that particles carry, luminance [W].
+double emitted_power(const DirectLight& scene, const BoundingBall& ball);
+
+// A number of particles that share all power of fire and emitters. Those of the fire come first.
+class Particles {
+public:
+    // Keeps a reference.
+    Particles(const DirectLight& scene, const BoundingBall& ball, std::uint64_t total);
+
+    bool from_fire(std::uint64_t index) const { return index < from_fire_; }
+    // Its power is divided by the number of its kind. None where the light it was drawn from sends none.
+    std::optional<EmittedParticle> emit(std::uint64_t index, Rng& rng) const;
+
+private:
+    const DirectLight& scene_;
+    BoundingBall ball_;
+    std::uint64_t total_, from_fire_ = 0;
+};
+
+}  // namespace brisance

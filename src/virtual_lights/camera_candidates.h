@@ -1,0 +1,31 @@
+// Places where virtual lights may lie: where light that the camera sees may have come from.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "transport/direct_light.h"
+#include "virtual_lights/settings.h"
+
+namespace brisance {
+
+// A camera as the module needs it.
+struct PixelCamera {
+    int width = 0, height = 0;                   // [pixels]
+    std::function<Ray(double x, double y)> ray;  // local; x, y in pixels from the upper left corner
+};
+
+struct LightCandidate {
+    SurfaceHit hit;
+    vec3 position;       // local [m]
+    vec3 toward_viewer;  // unit: along the path's way back
+    int scene_material = 0;
+};
+
+// The first surface that camera paths meet after they were scattered, by a surface that is no mirror or by smoke; and,
+// where that is glossy, the next. Their density follows what the camera may see of light from there. Paths are numbered
+// and draw their random numbers by that number; `paths` of them are spread over the picture.
+std::vector<LightCandidate> light_candidates(const DirectLight& scene, const PixelCamera& camera, std::size_t paths,
+                                             std::uint32_t seed);
+
+}  // namespace brisance

@@ -1,0 +1,157 @@
+#include "virtual_lights/octahedral_profiles.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "core/parallel.h"
+#include "virtual_lights/octahedral_map.h"
+
+namespace brisance {
+
+namespace {
+
+// A table serves this many lights before it is worth its making.
+constexpr std::size_t kWorthTable = 8;
+
+float rounded(float x, float steps) {
+    return std::round(x * steps) / steps;
+}
+
+// Base colours of metal in even steps of their square root: what is dark is scaled up again (VirtualLights::reflected).
+SurfaceMaterial rounded(SurfaceMaterial m) {
+    for (int c = 0; c < 3; ++c) {
+        const float root = rounded(std::sqrt(m.base_colour[c]), 32.0f);
+        m.base_colour[c] = m.metallic == 1.0f ? std::max(root * root, 1e-3f) : rounded(m.base_colour[c], 64.0f);
+        m.specular_colour[c] = rounded(m.specular_colour[c], 32.0f);
+    }
+    m.metallic = rounded(m.metallic, 32.0f);
+    m.roughness = rounded(m.roughness, 32.0f);
+    m.specular = rounded(m.specular, 32.0f);
+    return m;
+}
+
+std::array<float, 10> key_of(const SurfaceMaterial& m) {
+    return {m.base_colour.x,     m.base_colour.y,     m.base_colour.z,
+            m.specular_colour.x, m.specular_colour.y, m.specular_colour.z,
+            m.metallic,          m.roughness,         m.ior,
+            m.specular};
+}
+
+// Mean of the BSDF (without cosine) between texels, by one direction in each quarter of either.
+class Reflection {
+public:
+    Reflection(const SurfaceMaterial& material, int side) : bsdf_(material, {}), side_(side) {}
+
+    Rgb between(std::size_t in, std::size_t out) const {
+        constexpr int kOpposite[] = {3, 0, 2, 1};
+        Rgb sum(0.0f);
+        for (int quarter = 0; quarter < 4; ++quarter) {
+            const dvec3 wi = direction(in, quarter), wo = direction(out, kOpposite[quarter]);
+            sum += bsdf_.evaluate(wo, wi) / float(wi.z);
+        }
+        return 0.25f * sum;
+    }
+
+private:
+    dvec3 direction(std::size_t texel, int quarter) const {
+        const std::size_t row = texel / static_cast<std::size_t>(side_),
+                          column = texel % static_cast<std::size_t>(side_);
+        const double x = double(column) + 0.25 + 0.5 * (quarter & 1), y = double(row) + 0.25 + 0.5 * (quarter >> 1);
+        return hemisphere_of_square(x / side_, y / side_);
+    }
+
+    Bsdf bsdf_;
+    int side_;
+};
+
+using Group = std::vector<std::size_t>;  // lights of one material
+
+// All pairs, [in][out].
+std::vector<Rgb> table_of(const Reflection& reflection, std::size_t texels) {
+    std::vector<Rgb> table(texels * texels);
+    parallel_for(texels, [&](std::size_t in) {
+        for (std::size_t out = 0; out < texels; ++out)
+            table[in * texels + out] = reflection.between(in, out);
+    });
+    return table;
+}
+
+}  // namespace
+
+Profiles::Profiles(std::span<VirtualLight> lights, const LightAccounts& accounts, int resolution)
+    : side_(static_cast<std::size_t>(resolution)) {
+    const std::size_t texels = side_ * side_;
+    std::map<std::array<float, 10>, Group> groups;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < lights.size(); ++i)
+        if (lights[i].profile >= 0) {
+            lights[i].material = rounded(lights[i].material);
+            groups[key_of(lights[i].material)].push_back(i);
+            ++count;
+        }
+    texels_.assign(count * texels, Rgb(0.0f));
+    for (const auto& [key, group] : groups) {
+        const Reflection reflection(lights[group.front()].material, resolution);
+        const bool by_table = group.size() >= kWorthTable;
+        const std::vector<Rgb> table = by_table ? table_of(reflection, texels) : std::vector<Rgb>{};
+        parallel_for(group.size(), [&, &group = group](std::size_t g) {
+            const VirtualLight& light = lights[group[g]];
+            Rgb* const map = texels_.data() + static_cast<std::size_t>(light.profile) * texels;
+            for (std::size_t in = 0; in < texels; ++in) {
+                const Rgb irradiance = accounts.texel(group[g], in) / float(light.area);
+                if (irradiance == Rgb(0.0f))
+                    continue;
+                for (std::size_t out = 0; out < texels; ++out)
+                    map[out] += irradiance * (by_table ? table[in * texels + out] : reflection.between(in, out));
+            }
+        });
+    }
+}
+
+Rgb base_flux(const VirtualLight& light, std::size_t index, const LightAccounts& accounts, int resolution) {
+    const Bsdf bsdf(light.material, {});
+    const auto side = static_cast<std::size_t>(resolution);
+    Rgb sum(0.0f);
+    for (std::size_t y = 0; y < side; ++y)
+        for (std::size_t x = 0; x < side; ++x) {
+            const dvec3 in = hemisphere_of_square((double(x) + 0.5) / resolution, (double(y) + 0.5) / resolution);
+            sum += accounts.texel(index, y * side + x) * bsdf.base_albedo(in);
+        }
+    return sum;
+}
+
+Rgb Profiles::radiance(const VirtualLight& light, const dvec3& toward) const {
+    const Rgb* const map = map_of(light);
+    const glm::dvec2 p = square_of_hemisphere(light.frame.local_from_world(toward)) * double(side_) - 0.5;
+    const double last = double(side_) - 1.0;
+    const double x = std::clamp(p.x, 0.0, last), y = std::clamp(p.y, 0.0, last);
+    const auto x0 = static_cast<std::size_t>(x), y0 = static_cast<std::size_t>(y);
+    const std::size_t x1 = std::min(x0 + 1, side_ - 1), y1 = std::min(y0 + 1, side_ - 1);
+    const auto fx = static_cast<float>(x - double(x0)), fy = static_cast<float>(y - double(y0));
+    const auto row = [&](std::size_t r) { return (1.0f - fx) * map[r * side_ + x0] + fx * map[r * side_ + x1]; };
+    return (1.0f - fy) * row(y0) + fy * row(y1);
+}
+
+Rgb Profiles::exitance(const VirtualLight& light) const {
+    const Rgb* const map = map_of(light);
+    const double solid_angle = 2.0 * std::numbers::pi / double(side_ * side_);
+    Rgb sum(0.0f);
+    for (std::size_t y = 0; y < side_; ++y)
+        for (std::size_t x = 0; x < side_; ++x) {
+            const dvec3 d = hemisphere_of_square((double(x) + 0.5) / double(side_), (double(y) + 0.5) / double(side_));
+            sum += map[y * side_ + x] * float(d.z * solid_angle);
+        }
+    return sum;
+}
+
+float Profiles::brightest(const VirtualLight& light) const {
+    float most = 0.0f;
+    for (std::size_t t = 0; t < side_ * side_; ++t)
+        most = std::max(most, luminance(map_of(light)[t]));
+    return most;
+}
+
+}  // namespace brisance

@@ -1,0 +1,44 @@
+// From light that arrived by direction to light that is reflected by direction.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "virtual_lights/photon_splitting.h"
+
+namespace brisance {
+
+// Of the power that arrived at light `index`, what the Lambert base of its material reflects [W].
+Rgb base_flux(const VirtualLight& light, std::size_t index, const LightAccounts& accounts, int resolution);
+
+// The radiance that lights with profiles reflect, by direction in the light's own frame (octahedral_map.h).
+class Profiles {
+public:
+    Profiles() = default;
+    // Of the lights that ask for one (profile >= 0, numbered in order). Rounds their materials a little, so that lights
+    // of about the same share one table of reflection.
+    Profiles(std::span<VirtualLight> lights, const LightAccounts& accounts, int resolution);
+
+    // Between texels linear [W/(m^2 sr)]. `toward`: unit, world.
+    Rgb radiance(const VirtualLight& light, const dvec3& toward) const;
+
+    // Reflected power over area [W/m^2], and the largest radiance.
+    Rgb exitance(const VirtualLight& light) const;
+    float brightest(const VirtualLight& light) const;
+
+    // Texels along a side of each map, 0 without any, and one light's map in rows (octahedral_map.h) [W/(m^2 sr)].
+    int resolution() const { return static_cast<int>(side_); }
+    std::span<const Rgb> map(const VirtualLight& light) const { return {map_of(light), side_ * side_}; }
+
+    std::uint64_t bytes() const { return texels_.size() * sizeof(Rgb); }
+
+private:
+    const Rgb* map_of(const VirtualLight& light) const {
+        return texels_.data() + static_cast<std::size_t>(light.profile) * side_ * side_;
+    }
+
+    std::size_t side_ = 0;
+    std::vector<Rgb> texels_;
+};
+
+}  // namespace brisance

@@ -1,0 +1,181 @@
+#include "virtual_lights/photon_splitting.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "transport/roulette.h"
+#include "virtual_lights/octahedral_map.h"
+
+namespace brisance {
+
+namespace {
+
+constexpr std::size_t kBlock = 1024;
+// Where a shading normal leans far from a surface seen at a grazing angle, one photon would outshine all others.
+constexpr double kMostBrighter = 4.0;
+
+bool finite(const Rgb& c) {
+    return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);
+}
+
+// Particles by number.
+class PhotonPaths {
+public:
+    PhotonPaths(const DirectLight& scene, const BoundingBall& ball, std::size_t total, Stream stream,
+                std::uint32_t seed)
+        : scene_(scene), particles_(scene, ball, total), stream_(stream), seed_(seed) {}
+
+    // Calls meet(segment, power) wherever the particle meets a surface.
+    template <class Meet>
+    void trace(std::uint64_t index, PhotonReport& report, const Meet& meet) const {
+        Rng rng(stream_, index, seed_);
+        report.from_fire += particles_.from_fire(index);
+        ++report.photons;
+        const std::optional<EmittedParticle> particle = particles_.emit(index, rng);
+        if (!particle)
+            return;
+        const Rgb power = particle->power;
+        if (!finite(power) || !(largest(power) > 0.0f)) {
+            report.not_finite += !finite(power);
+            return;
+        }
+        report.emitted += luminance(power);
+        follow(particle->ray, power, rng, report, meet);
+    }
+
+private:
+    // What is absorbed ends the path by roulette: powers stay about equal.
+    template <class Meet>
+    void follow(Ray ray, Rgb power, Rng& rng, PhotonReport& report, const Meet& meet) const {
+        for (int turn = 1;; ++turn) {
+            const RaySegment segment = scene_.segment_along(ray);
+            const std::optional<Collision> collision = null_collision_flight(scene_.field(), ray, segment.end, rng);
+            if (!collision && !segment.point) {
+                report.escaped += luminance(power);
+                return;
+            }
+            if (!collision)
+                meet(segment, power);
+            const PathVertex place =
+                collision ? scene_.in_smoke(ray, *collision) : PathVertex(*segment.point, ray.direction);
+            const std::optional<PathVertex::Sample> next = place.sample_particle(rng);
+            if (!next)
+                return;
+            const Rgb left =
+                power * (collision ? scene_.field().albedo(collision->brick, collision->position) : next->weight);
+            const float part = std::min(largest(left) / largest(power), turn > kManyScatterings ? kGoesOn : 1.0f);
+            if (!(rng.next() < part))  // so for what is not finite
+                return;
+            power = left / part;
+            ray = place.leaving(next->wi);
+        }
+    }
+
+    const DirectLight& scene_;
+    Particles particles_;
+    Stream stream_;
+    std::uint32_t seed_;
+};
+
+int material_of(const DirectLight& scene, const RaySegment& segment) {
+    return scene.surroundings()->scene().meshes[segment.hit->mesh].material;
+}
+
+// By how much a surface's shading normal takes more light than the surface itself.
+float brightness_by_shading(const SurfacePoint& point, const dvec3& toward_source) {
+    const double shading = std::abs(glm::dot(point.frame.normal, toward_source));
+    const double geometric = std::abs(glm::dot(point.geometric_normal, toward_source));
+    return static_cast<float>(std::min(shading / std::max(geometric, 1e-9), kMostBrighter));
+}
+
+void share_out(const DirectLight& scene, const RaySegment& segment, const Rgb& power, const PartitionOfUnity& cover,
+               LightAccounts& accounts, PhotonReport& report) {
+    const SurfacePoint& point = *segment.point;
+    if (!holds_light(point.material))
+        return;
+    const LightShares shares = cover.shares(point.position, lit_normal(point), material_of(scene, segment));
+    (shares.count > 0 ? report.shared : report.unshared) += luminance(power);
+    const dvec3 toward_source = -segment.ray.direction;
+    const float brighter = brightness_by_shading(point, toward_source);
+    for (int i = 0; i < shares.count; ++i)
+        accounts.add(shares.light[i], toward_source, power * (shares.weight[i] * brighter));
+}
+
+void add(PhotonReport& to, const PhotonReport& r) {
+    to.photons += r.photons;
+    to.from_fire += r.from_fire;
+    to.not_finite += r.not_finite;
+    to.emitted += r.emitted;
+    to.shared += r.shared;
+    to.unshared += r.unshared;
+    to.escaped += r.escaped;
+}
+
+}  // namespace
+
+LightAccounts::LightAccounts(std::span<const VirtualLight> lights, int profile_resolution, double power)
+    : lights_(lights), resolution_(profile_resolution), sums_(0, power) {
+    std::size_t records = 0;
+    for (const VirtualLight& light : lights) {
+        first_.push_back(records);
+        records += light.profile < 0 ? 1 : static_cast<std::size_t>(resolution_) * resolution_;
+    }
+    sums_ = FixedSums(records, power);
+}
+
+void LightAccounts::add(std::size_t light, const dvec3& toward_source, const Rgb& power) {
+    std::size_t record = first_[light];
+    if (lights_[light].profile >= 0)
+        record += texel_of(lights_[light].frame.local_from_world(toward_source), resolution_);
+    sums_.add(record, dvec3(power));
+}
+
+Rgb LightAccounts::read(std::size_t record) const {
+    return Rgb(sums_.read(record));
+}
+
+PhotonArrivals photon_arrivals(const DirectLight& scene, std::size_t paths, Stream stream, std::uint32_t seed) {
+    const PhotonPaths all(scene, ball_around(scene), paths, stream, seed);
+    std::vector<PhotonArrivals> parts((paths + kBlock - 1) / kBlock);
+    parallel_blocks(paths, kBlock, [&](std::size_t begin, std::size_t end) {
+        auto& [arrivals, report] = parts[begin / kBlock];
+        for (std::size_t i = begin; i < end; ++i)
+            all.trace(i, report,
+                      [&, &arrivals = arrivals, &report = report](const RaySegment& segment, const Rgb& power) {
+                          if (!holds_light(segment.point->material))
+                              return;
+                          const dvec3 toward_source = -segment.ray.direction;
+                          report.shared += luminance(power);
+                          arrivals.push_back({{*segment.hit, vec3(segment.point->position), vec3(toward_source),
+                                               material_of(scene, segment)},
+                                              power * brightness_by_shading(*segment.point, toward_source)});
+                      });
+    });
+    PhotonArrivals out;
+    for (const PhotonArrivals& part : parts) {
+        out.arrivals.insert(out.arrivals.end(), part.arrivals.begin(), part.arrivals.end());
+        add(out.report, part.report);
+    }
+    return out;
+}
+
+PhotonReport trace_photons(const DirectLight& scene, const BoundingBall& ball, const PartitionOfUnity& cover,
+                           const VirtualLightSettings& settings, LightAccounts& accounts) {
+    const auto total = static_cast<std::size_t>(settings.photons);
+    const PhotonPaths paths(scene, ball, total, Stream::Photon, settings.seed);
+    std::vector<PhotonReport> parts((total + kBlock - 1) / kBlock);
+    parallel_blocks(total, kBlock, [&](std::size_t begin, std::size_t end) {
+        PhotonReport& report = parts[begin / kBlock];
+        for (std::size_t i = begin; i < end; ++i)
+            paths.trace(i, report, [&](const RaySegment& segment, const Rgb& power) {
+                share_out(scene, segment, power, cover, accounts, report);
+            });
+    });
+    PhotonReport report;
+    for (const PhotonReport& part : parts)
+        add(report, part);
+    return report;
+}
+
+}  // namespace brisance

@@ -1,0 +1,65 @@
+// Light on its way from the fire and the emitters, shared out among virtual lights wherever it meets a surface.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/fixed_sums.h"
+#include "transport/particles.h"
+#include "virtual_lights/camera_candidates.h"
+#include "virtual_lights/partition_of_unity.h"
+
+namespace brisance {
+
+// Powers are luminance [W].
+struct PhotonReport {
+    std::uint64_t photons = 0, from_fire = 0;
+    std::uint64_t not_finite = 0;  // left out
+    double emitted = 0.0;          // by the particles that were drawn
+    // Incident on surfaces that hold light, every time it arrives: given to lights, and where there are none. The
+    // latter is not lost to what is gathered with path extension, as paths go on there.
+    double shared = 0.0, unshared = 0.0;
+    double escaped = 0.0;
+    double unshared_fraction() const { return unshared > 0.0 ? unshared / (shared + unshared) : 0.0; }
+};
+
+// The power that each light received [W]. Sums are integers, the same in any order.
+class LightAccounts {
+public:
+    // A map of directions (octahedral_map.h) for every light with a profile. `power`: of everything emitted, [W].
+    LightAccounts(std::span<const VirtualLight> lights, int profile_resolution, double power);
+
+    // From any thread. `toward_source`: unit.
+    void add(std::size_t light, const dvec3& toward_source, const Rgb& power);
+
+    // The whole of a light that has no map, and one texel of a map.
+    Rgb whole(std::size_t light) const { return read(first_[light]); }
+    Rgb texel(std::size_t light, std::size_t texel) const { return read(first_[light] + texel); }
+    std::uint64_t bytes() const { return sums_.bytes() + first_.size() * sizeof(std::size_t); }
+
+private:
+    Rgb read(std::size_t record) const;
+
+    std::span<const VirtualLight> lights_;
+    int resolution_;
+    std::vector<std::size_t> first_;  // record of a light
+    FixedSums sums_;                  // of all records [W]
+};
+
+// A particle on a surface that holds light.
+struct PhotonArrival {
+    LightCandidate place;  // `toward_viewer`: toward the source
+    Rgb power{0.0f};       // [W], for the surface's shading normal
+};
+
+// Where the particles of `paths` light paths, which share all power among them, meet surfaces that hold light.
+struct PhotonArrivals {
+    std::vector<PhotonArrival> arrivals;
+    PhotonReport report;
+};
+PhotonArrivals photon_arrivals(const DirectLight& scene, std::size_t paths, Stream stream, std::uint32_t seed);
+
+PhotonReport trace_photons(const DirectLight& scene, const BoundingBall& ball, const PartitionOfUnity& cover,
+                           const VirtualLightSettings& settings, LightAccounts& accounts);
+
+}  // namespace brisance
