@@ -189,9 +189,9 @@ TEST(RayLightPasses, ShrinkBeamsAndDoNotAddUpInMemory) {
     const Statistics one = statistics(0.3, 1), four = statistics(0.3, 4), automatic = statistics(kAutomaticRadius, 4);
     EXPECT_EQ(detail_of(one)["last_radius"], 0.3);
     EXPECT_EQ(detail_of(four)["first_radius"], 0.3);
-    EXPECT_DOUBLE_EQ(detail_of(four)["last_radius"].get<double>(), 0.3 * radius_shrunk(3, RayLightSettings{}.shrink));
+    EXPECT_DOUBLE_EQ(detail_of(four)["last_radius"].get<double>(), 0.3 * radius_shrunk(3, RayLightSettings{}.radius_reduction));
     EXPECT_NEAR(detail_of(automatic)["last_radius"].get<double>() / detail_of(automatic)["first_radius"].get<double>(),
-                radius_shrunk(3, RayLightSettings{}.shrink), 1e-9);
+                radius_shrunk(3, RayLightSettings{}.radius_reduction), 1e-9);
     EXPECT_EQ(detail_of(statistics(0.0, 2))["last_radius"], 0.0);
     EXPECT_EQ(detail_of(four)["particles"], 4 * detail_of(one)["particles"].get<int>());
     EXPECT_NEAR(bytes(four) / bytes(one), 1.0, 0.1);

@@ -6,7 +6,7 @@
 #include "core/parallel.h"
 #include "fixtures/media.h"
 #include "fixtures/sets.h"
-#include "medium_lighting/specular_photons.h"
+#include "medium_lighting/stages/specular_photons.h"
 #include "render/render_frame.h"
 
 namespace brisance {

@@ -47,7 +47,7 @@ TEST(SceneDifferences, AreNotInTheMethodNorInWhatIsWritten) {
                            "ray_lights.length=long",
                            "ray_lights.radius=auto",
                            "ray_lights.passes=3",
-                           "ray_lights.shrink=0.5",
+                           "ray_lights.radius_reduction=0.5",
                            "point_lights.paths=9",
                            "point_lights.count=9",
                            "point_lights.samples=9",

@@ -1,4 +1,4 @@
-#include "shot/codec.h"
+#include "codec/codec.h"
 
 #include <fmt/format.h>
 

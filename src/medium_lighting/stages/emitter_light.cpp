@@ -1,4 +1,4 @@
-#include "medium_lighting/emitter_light.h"
+#include "medium_lighting/stages/emitter_light.h"
 
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "medium_lighting/specular_photons.h"
+#include "medium_lighting/stages/specular_photons.h"
 
 #include <algorithm>
 #include <cmath>

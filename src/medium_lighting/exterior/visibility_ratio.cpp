@@ -1,4 +1,4 @@
-#include "medium_lighting/visibility_ratio.h"
+#include "medium_lighting/exterior/visibility_ratio.h"
 
 #include <algorithm>
 #include <cmath>

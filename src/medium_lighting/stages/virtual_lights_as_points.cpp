@@ -1,4 +1,4 @@
-#include "medium_lighting/virtual_lights_as_points.h"
+#include "medium_lighting/stages/virtual_lights_as_points.h"
 
 #include <algorithm>
 #include <numbers>
