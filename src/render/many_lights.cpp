@@ -54,7 +54,16 @@ bool lights_medium(const Plan& plan) {
     return plan.single || plan.needs(Cell::SV) || plan.needs(Cell::MA) || plan.needs(Cell::MS);
 }
 
-MediumLightingInput lighting_input(const DrawInput& input, const Plan& plan, const Medium& medium,
+// Whether MV and MA of the lighting hold light that scattered more than once, and a layer wants it apart.
+bool wants_single_scattering_apart(const DrawInput& input) {
+    const Plan& plan = input.plan;
+    return plan.multiple && !plan.scattering_method && input.shot.scattering.bounces < 0 &&
+           forward_share(input.medium.mean_cosine) > 0.0f && input.shot.output.cell_layers;
+}
+
+}  // namespace
+
+MediumLightingInput medium_lighting_input(const DrawInput& input, const Plan& plan, const Medium& medium,
                                    const ReflectedLight& reflected, bool orders_apart) {
     MediumLightingInput out{
         medium,   vec3(input.camera.eye_local()), input.shot.lighting, input.shot.scattering, input.surroundings,
@@ -71,21 +80,12 @@ MediumLightingInput lighting_input(const DrawInput& input, const Plan& plan, con
     return out;
 }
 
-// Whether MV and MA of the lighting hold light that scattered more than once, and a layer wants it apart.
-bool wants_single_scattering_apart(const DrawInput& input) {
-    const Plan& plan = input.plan;
-    return plan.multiple && !plan.scattering_method && input.shot.scattering.bounces < 0 &&
-           forward_share(input.medium.mean_cosine) > 0.0f && input.shot.output.cell_layers;
-}
-
-}  // namespace
-
 LitMedium::LitMedium(const DrawInput& input, const Plan& plan, int bounces, const ReflectedLight& reflected,
                      bool orders_apart, Statistics& statistics, Progress& progress) {
     if (lights_medium(plan)) {
         similar_ = similar_medium(input.medium, bounces);
         lighting_ = std::make_unique<MediumLighting>(
-            lighting_input(input, plan, similar_ ? *similar_ : input.medium, reflected, orders_apart), statistics,
+            medium_lighting_input(input, plan, similar_ ? *similar_ : input.medium, reflected, orders_apart), statistics,
             progress);
     }
     static const NodeLighting none;

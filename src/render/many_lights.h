@@ -13,6 +13,10 @@
 
 namespace brisance {
 
+// `plan`: which light is wanted; `medium`: through which it is followed.
+MediumLightingInput medium_lighting_input(const DrawInput& input, const Plan& plan, const Medium& medium,
+                                          const ReflectedLight& reflected = {}, bool orders_apart = false);
+
 // The medium's lighting, and what the camera samples of it.
 class LitMedium {
 public:

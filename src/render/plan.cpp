@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace brisance {
 
@@ -79,32 +80,64 @@ std::string other_methods() {
     return names;
 }
 
+using Skip = std::function<void(const std::string& part, const std::string& reason)>;
+
+// Who owns MM and SM, and how MA and MS are found beside them.
+std::string choose_owners(Plan& plan, const Shot& shot, const Medium& medium, const Skip& skip) {
+    const Choice choice = choose_scattering(shot, medium);
+    plan.scattering_choice = choice.method;
+    const bool many_lights = shot.method == RenderMethod::LightingGrid;
+    const ScatteringMethod* const method = many_lights ? find_scattering_method(choice.method) : nullptr;
+    const bool twice = plan.multiple || plan.needs(Cell::SM);
+    plan.scattering_method = twice ? method : nullptr;
+    plan.emitters_by_rays = many_lights && plan.needs(Cell::MA) && (plan.scattering_method || haze_alone(shot));
+    plan.reflected_by_particles = many_lights && plan.needs(Cell::MS) && scatters_sharply(medium);
+    if (method && !plan.scattering_method)
+        skip(method->product, "no light is scattered twice");
+    if (many_lights && twice && !method)
+        skip(other_methods(), choice.reason);
+    return choice.reason + ", which owns MM and SM";
+}
+
+void skip_without_emission(const Plan& plan, const Shot& shot, const Medium& medium, const std::string& owner,
+                           const Skip& skip) {
+    skip("V", why_no_emission(shot, medium));
+    for (const Cell cell : {Cell::MV, Cell::MM, Cell::SV})
+        if (!plan.needs(cell) && (cell != Cell::SV || plan.surfaces))
+            skip(name_of(cell), "nothing emits");
+    skip("lights, hierarchy, shadow maps", "nothing emits");
+    if (plan.scattering_method)
+        skip("scattered hierarchies", owner);
+}
+
+void skip_with_emission(const Plan& plan, const Shot& shot, const Medium& medium, const std::string& owner,
+                        const Skip& skip) {
+    const bool many_lights = shot.method == RenderMethod::LightingGrid, scatters = medium.scatters();
+    const std::string dark = medium.max_extinction <= 0.0f ? "there is no smoke to scatter" : "the albedo is zero";
+    if (!plan.single)
+        skip("MV", scatters ? "scattering.bounces is 0" : dark);
+    if (!plan.multiple)
+        skip("MM", scatters ? "scattering.bounces is " + std::to_string(shot.scattering.bounces) : dark);
+    if (!plan.single || !many_lights)
+        skip("lights, hierarchy, shadow maps", many_lights ? "no cell needs them" : "method is path");
+    else if (plan.scattering_method)
+        skip("scattered hierarchies", owner);
+    else if (!plan.multiple)
+        skip("scattered hierarchies", "one scattering only");
+}
+
 }  // namespace
 
 Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surroundings) {
     Plan plan;
-    const auto skip = [&](const std::string& part, const std::string& reason) {
+    const Skip skip = [&](const std::string& part, const std::string& reason) {
         plan.skipped.push_back({part, reason});
     };
     plan.surfaces = surroundings && surroundings->has_surfaces();
     plan.emitters = surroundings && !surroundings->emitters().empty();
     plan.emission = medium.emits();
-    const int bounces = shot.scattering.bounces;
-    const bool scatters = medium.scatters();
-    decide(plan, scatters, plan.emitters && surroundings->emitters().visible(), bounces);
-    const Choice choice = choose_scattering(shot, medium);
-    plan.scattering_choice = choice.method;
-    const bool lit_by_grid = shot.method == RenderMethod::LightingGrid;
-    const ScatteringMethod* const method = lit_by_grid ? find_scattering_method(choice.method) : nullptr;
-    const bool twice = plan.multiple || plan.needs(Cell::SM);
-    plan.scattering_method = twice ? method : nullptr;
-    plan.emitters_by_rays = lit_by_grid && plan.needs(Cell::MA) && (plan.scattering_method || haze_alone(shot));
-    plan.reflected_by_particles = lit_by_grid && plan.needs(Cell::MS) && scatters_sharply(medium);
-    if (method && !plan.scattering_method)
-        skip(method->product, "no light is scattered twice");
-    if (lit_by_grid && twice && !method)
-        skip(other_methods(), choice.reason);
-    const std::string owners = choice.reason + ", which owns MM and SM";
+    decide(plan, medium.scatters(), plan.emitters && surroundings->emitters().visible(), shot.scattering.bounces);
+    const std::string owner = choose_owners(plan, shot, medium, skip);
     if (!plan.surfaces)
         skip("row S, column S", "no surfaces in the shot");
     if (!plan.emitters)
@@ -113,31 +146,12 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
         skip("column V, row M, column M", "no volume in the shot");
         return plan;
     }
+    const bool many_lights = shot.method == RenderMethod::LightingGrid;
     const bool lights_smoke = plan.single || plan.needs(Cell::MA) || plan.needs(Cell::MS);
-    plan.directional = lit_by_grid && lights_smoke && medium.mean_cosine != 0.0f;
-    if (lit_by_grid && lights_smoke && !plan.directional)
+    plan.directional = many_lights && lights_smoke && medium.mean_cosine != 0.0f;
+    if (many_lights && lights_smoke && !plan.directional)
         skip("directional storage", "the phase function is isotropic");
-    if (!plan.emission) {
-        skip("V", why_no_emission(shot, medium));
-        for (const Cell cell : {Cell::MV, Cell::MM, Cell::SV})
-            if (!plan.needs(cell) && (cell != Cell::SV || plan.surfaces))
-                skip(name_of(cell), "nothing emits");
-        skip("lights, hierarchy, shadow maps", "nothing emits");
-        if (plan.scattering_method)
-            skip("scattered hierarchies", owners);
-        return plan;
-    }
-    const std::string dark = medium.max_extinction <= 0.0f ? "there is no smoke to scatter" : "the albedo is zero";
-    if (!plan.single)
-        skip("MV", scatters ? "scattering.bounces is 0" : dark);
-    if (!plan.multiple)
-        skip("MM", scatters ? "scattering.bounces is " + std::to_string(bounces) : dark);
-    if (!plan.single || !lit_by_grid)
-        skip("lights, hierarchy, shadow maps", lit_by_grid ? "no cell asks for them" : "method is path");
-    else if (plan.scattering_method)
-        skip("scattered hierarchies", owners);
-    else if (!plan.multiple)
-        skip("scattered hierarchies", "one scattering only");
+    (plan.emission ? skip_with_emission : skip_without_emission)(plan, shot, medium, owner, skip);
     return plan;
 }
 

@@ -1,5 +1,7 @@
 #include "shot/keys.h"
 
+#include "shot/renamed_keys.h"
+
 namespace brisance {
 namespace {
 
@@ -66,6 +68,9 @@ Affects affected_by(const std::string& path) {
     for (const ScatteringMethod& method : scattering_methods())
         if (path.starts_with(method.name + "."))
             return Affects::Method;
+    // Shots stored in older pictures: all keys that were renamed so far are of the method.
+    if (renamed_key(path))
+        return Affects::Method;
     for (const char* key : {"$schema", "name", "method", "camera.samples_per_axis", "camera.edge_refinement"})
         if (path == key)
             return Affects::Method;

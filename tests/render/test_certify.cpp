@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "fixtures/media.h"
 #include "reference/trace_picture.h"
+#include "render/plan.h"
 #include "render/render_frame.h"
 
 namespace brisance {
@@ -113,9 +114,13 @@ protected:
         return path_picture(tracer_, camera_, first, first + samples_per_pixel);
     }
 
+    CertifiedScene scene() const {
+        return {medium_, camera_, nullptr, shot_.tracing, shot_.scattering.bounces, plan_.emission || plan_.emitters};
+    }
+
     Certificate certificate(const Image& image, int seed, int samples = 4096) const {
         Progress silent;
-        return certify(image, shot_, plan_, medium_, camera_, {true, samples, seed}, silent);
+        return certify(image, scene(), {true, samples, seed}, silent);
     }
 
     std::vector<Certificate> certificates(const Image& image, int first_seed) const {
@@ -248,7 +253,7 @@ TEST_F(Certificates, LeaveOutPixelsThatAreNotFiniteAndSaySo) {
     image.layers[0].pixels[3 * 300] = std::numeric_limits<float>::quiet_NaN();
     image.layers[2].pixels[3 * 301 + 1] = std::numeric_limits<float>::infinity();
     testing::Listener listener;
-    const Certificate c = certify(image, shot_, plan_, medium_, camera_, {true, 4096, 1}, listener);
+    const Certificate c = certify(image, scene(), {true, 4096, 1}, listener);
     EXPECT_EQ(c.not_finite_pixels, 2u);
     ASSERT_FALSE(listener.warnings.empty());
     EXPECT_NE(listener.warnings.front().second.find("2 pixels are not finite"), std::string::npos);
@@ -260,7 +265,7 @@ TEST_F(Certificates, LeaveOutPixelsThatAreNotFiniteAndSaySo) {
     }
     for (Layer& layer : image.layers)
         std::fill(layer.pixels.begin(), layer.pixels.end(), std::numeric_limits<float>::quiet_NaN());
-    const Certificate none = certify(image, shot_, plan_, medium_, camera_, {true, 4096, 1}, listener);
+    const Certificate none = certify(image, scene(), {true, 4096, 1}, listener);
     EXPECT_EQ(none.not_finite_pixels, kPixels);
     EXPECT_EQ(none.errors.front().error_interval.high, std::numeric_limits<double>::infinity());
     EXPECT_TRUE(none.to_json()["picture"]["error_interval"][1].is_null() ||

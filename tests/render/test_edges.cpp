@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "camera/pixel_samples.h"
-#include "camera_rays/integrate.h"
+#include "camera_rays/picture.h"
 #include "fixtures/sets.h"
 
 namespace brisance {
@@ -66,10 +66,10 @@ std::vector<float> picture(const Rectangle& r, int samples, int refinement) {
     PictureSettings settings;
     settings.samples_per_axis = samples;
     settings.edge_refinement = refinement;
-    settings.layers = PictureSettings::layers_of({Cell::A});
+    settings.layers = {Cell::A};
     settings.surroundings = &surroundings;
     Progress silent;
-    const Image image = render_picture(SourceField(medium, {}), camera, settings, {}, silent);
+    const Image image = render_picture(SourceField(medium, {}), camera, settings, silent);
     std::vector<float> out;
     const std::vector<float>& a = image.layer("A").pixels;
     for (std::size_t i = 0; i < a.size(); i += 3)

@@ -13,7 +13,7 @@
 #include "gathering/escape_probability.h"
 #include "lighting_grid/voxel_lights.h"
 #include "medium/local_bounds.h"
-#include "medium_lighting/medium_lighting.h"
+#include "render/many_lights.h"
 #include "scattering/balance.h"
 
 namespace brisance {
@@ -102,7 +102,7 @@ protected:
     static Plan plan_of_sets() {
         Plan plan;
         plan.emission = plan.surfaces = true;
-        plan.needed[static_cast<int>(Cell::SV)] = true;
+        plan.needed.set(Cell::SV, true);
         return plan;
     }
 
@@ -115,7 +115,8 @@ protected:
     Statistics statistics;
     Progress silent;
     const Camera camera{framed_camera(medium, shot.camera), medium};
-    MediumLighting lighting{shot, plan, medium, camera, statistics, silent};
+    const DrawInput input{shot, plan, medium, nullptr, camera};
+    const MediumLighting lighting{medium_lighting_input(input, plan, medium), statistics, silent};
 };
 
 TEST_F(OutsideLights, LittleEscapes) {

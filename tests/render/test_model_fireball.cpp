@@ -5,9 +5,10 @@
 
 #include <cmath>
 
+#include "camera_rays/integrate.h"
 #include "core/parallel.h"
 #include "fixtures/media.h"
-#include "medium_lighting/medium_lighting.h"
+#include "render/many_lights.h"
 
 namespace brisance {
 namespace {
@@ -38,7 +39,8 @@ Lit light_ball(float optical_radius, float albedo, float g = 0.0f, int nodes = 1
     eye.target = dvec3(0.0);
     const Camera camera(eye, lit.medium);
     Progress silent;
-    MediumLighting lighting(lit.shot, lit.plan, lit.medium, camera, lit.statistics, silent);
+    const DrawInput input{lit.shot, lit.plan, lit.medium, nullptr, camera};
+    const MediumLighting lighting(medium_lighting_input(input, lit.plan, lit.medium), lit.statistics, silent);
     lit.nodes = lighting.at_nodes();
     const SourceField field(lit.medium, lit.nodes);
     const RaySum sum = integrate(field, camera.ray(0.5 * eye.width, 0.5 * eye.height), 2);
@@ -118,7 +120,9 @@ TEST(ModelFireball, AskingForNScatteringsLeavesOutTheRest) {
         Statistics statistics;
         NodeLighting nodes;
         if (plan.single)
-            nodes = MediumLighting(shot, plan, medium, camera, statistics, silent).at_nodes();
+            nodes = MediumLighting(medium_lighting_input({shot, plan, medium, nullptr, camera}, plan, medium),
+                                   statistics, silent)
+                        .at_nodes();
         const SourceField field(medium, nodes);
         const RaySum sum = integrate(field, camera.ray(0.5 * eye.width, 0.5 * eye.height), 2);
         const double now = sum.cells.at(Cell::V).x + sum.cells.at(Cell::MV).x + sum.cells.at(Cell::MM).x;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "camera_rays/integrate.h"
+#include "camera_rays/picture.h"
 #include "core/parallel.h"
 #include "fixtures/media.h"
 #include "render/render_frame.h"
@@ -44,7 +44,7 @@ Image picture(const Medium& medium, const CameraSettings& camera, int samples = 
     PictureSettings settings;
     settings.samples_per_axis = samples;
     Progress silent;
-    return render_picture(field, Camera(camera, medium), settings, {}, silent);
+    return render_picture(field, Camera(camera, medium), settings, silent);
 }
 
 double largest_difference(const Layer& a, const Layer& b) {
@@ -113,9 +113,9 @@ TEST(Picture, BeautyIsTheSumOfItsCells) {
     }
     const SourceField field(medium, {single, multiple, {}, {}});
     PictureSettings settings;
-    settings.layers = PictureSettings::layers_of({Cell::V, Cell::MV, Cell::MM});
+    settings.layers = {Cell::V, Cell::MV, Cell::MM};
     Progress silent;
-    const Image image = render_picture(field, Camera(front(), medium), settings, {}, silent);
+    const Image image = render_picture(field, Camera(front(), medium), settings, silent);
     double largest = 0.0;
     for (std::size_t p = 0; p < 24 * 20; ++p)
         for (int c = 0; c < 3; ++c) {
@@ -203,30 +203,6 @@ TEST(Picture, TheNumberOfThreadsDoesNotShow) {
         EXPECT_EQ(layer.pixels, images[1].layer(layer.name).pixels);
         EXPECT_EQ(layer.pixels, images[2].layer(layer.name).pixels);
     }
-}
-
-TEST(Picture, LightAskedForAlongTheRayIsLightFromTheField) {
-    const Medium medium = make_medium(cloud());
-    const std::vector<Rgb> constant(medium.lattice.node_count(), Rgb(0.5f, 0.25f, 0.125f));
-    PictureSettings settings;
-    settings.layers = PictureSettings::layers_of({Cell::V, Cell::MV});
-    Progress silent;
-    const Camera camera(front(), medium);
-    const SourceField lit(medium, {constant, {}, {}, {}}), dark(medium);
-    const Image cached = render_picture(lit, camera, settings, {}, silent);
-    const LightPoints same = [&](const std::vector<MarchPoint>& points, std::vector<PointLighting>& lighting) {
-        ASSERT_EQ(points.size(), lighting.size());
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            const dvec3 way = glm::normalize(camera.eye_local() - dvec3(points[i].local));
-            ASSERT_LT(glm::length(way - dvec3(points[i].toward_camera)), 1e-5);
-            lighting[i].single = Rgb(0.5f, 0.25f, 0.125f);
-        }
-    };
-    const Image marched = render_picture(dark, camera, settings, same, silent);
-    // The field's source falls to 0 at bricks that are not stored; no extinction is there.
-    EXPECT_LT(largest_difference(cached.layer("MV"), marched.layer("MV")), 1e-5);
-    EXPECT_LT(largest_difference(cached.layer("V"), marched.layer("V")), 1e-6);
-    EXPECT_GT(brightest(cached.layer("MV")), 0.1);
 }
 
 TEST(Picture, FinerPixelsNeedFewerSamples) {
