@@ -6,8 +6,8 @@
 #include <functional>
 #include <string>
 
+#include "fixtures/ray_fixture.h"
 #include "light_selection/joint_sampling.h"
-#include "ray_fixture.h"
 
 namespace brisance {
 namespace {

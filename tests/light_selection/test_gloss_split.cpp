@@ -3,7 +3,7 @@
 
 #include <cstdio>
 
-#include "ray_fixture.h"
+#include "fixtures/ray_fixture.h"
 
 namespace brisance {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "fixtures/tracing_fixture.h"
 #include "medium/phase.h"
-#include "tracing_fixture.h"
 
 namespace brisance {
 namespace {
