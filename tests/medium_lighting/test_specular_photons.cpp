@@ -3,7 +3,7 @@
 
 #include "fixtures/media.h"
 #include "fixtures/sets.h"
-#include "medium_lighting/specular_photons.h"
+#include "medium_lighting/stages/specular_photons.h"
 
 namespace brisance {
 namespace {
