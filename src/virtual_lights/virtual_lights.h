@@ -59,6 +59,7 @@ public:
     const VirtualLightReport& report() const { return report_; }
 
 private:
+    class ExtendedPath;  // path_extension.cpp
     // A surface at the end of a ray, and the lights that speak for it.
     struct Seen {
         const RaySegment& segment;

@@ -201,6 +201,13 @@ TEST(DeltaTracking, LetsThroughWhatTheOpticalDepthSays) {
     }
 }
 
+// The end of a path's segment when LineTracker inverts the optical depth of each voxel.
+std::optional<Collision> exact_flight(const TrackingField& field, const Ray& ray, double end, Rng& rng) {
+    TracingSettings settings;
+    settings.free_flight = FreeFlight::Exact;
+    return LineTracker(field, settings).follow_path(ray, rng, end).collision;
+}
+
 TEST(Trackers, SeeNothingThroughNeedles) {
     const Field f(pipe(kPipes[5].extinction));
     Rng rng(Stream::Path, 1);

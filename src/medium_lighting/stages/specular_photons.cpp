@@ -96,7 +96,7 @@ void SpecularPhotons::cast(const RaySegment& segment, const Rgb& power, Rng& rng
         return;
     const PathVertex place(point, Bsdf(point.material, point.frame, held ? Lobes::Specular : Lobes::All),
                            segment.ray.direction);
-    const std::optional<PathVertex::Sample> next = place.sample_particle(rng);
+    const std::optional<PathVertex::Sample> next = place.sample(rng, Transport::Importance);
     if (!next)
         return;
     const Rgb sent = power * next->weight;
@@ -113,9 +113,10 @@ void SpecularPhotons::follow(std::uint64_t index, const Particles& particles, Wa
     FlightReport report;
     const std::optional<EmittedParticle> particle = particles.emit(index, rng);
     if (counts(particle, report))
-        follow_particle(scene_, *particle, index, -1, rng, [&](const ParticleFlight& flight) {
-            if (!flight.collision && flight.segment->point)
-                cast(*flight.segment, flight.power, cast_rng, ways);
+        walk_particle(scene_, *particle, index, {}, rng, [&](const ParticleFlight& flight) {
+            if (flight.landing())
+                cast(flight.segment, flight.power, cast_rng, ways);
+            return true;
         });
 }
 

@@ -1,4 +1,4 @@
-#include "tracking/trackers.h"
+#include "tracking/medium_trackers.h"
 
 #include <array>
 #include <cmath>
@@ -7,8 +7,8 @@ namespace brisance {
 
 namespace {
 
-// Beyond this many tentative collisions to a cell, walking cells exactly is cheaper than null collisions, and the only
-// way that ends where a voxel is 1e8 times denser than its neighbours.
+// Tentative collisions per voxel above which inverting the optical depth voxel by voxel is cheaper than null
+// collisions. Next to a voxel 1e8 times denser than its neighbours nothing else ends.
 constexpr double kTentativePerVoxel = 8.0;
 
 double exponential(Rng& rng) {
@@ -20,7 +20,7 @@ bool stiff(const TrackingField& field, const VoxelSegment& in_brick) {
     return field.majorant(in_brick.brick) * metres_per_voxel > kTentativePerVoxel;
 }
 
-// Walks the cells of one brick; `depth` is what is left to the collision.
+// Inverts the optical depth voxel by voxel; `depth` is what remains up to the collision.
 std::optional<Collision> flight_in_brick(const TrackingField& field, const VoxelSegment& in_brick, double& depth) {
     std::optional<Collision> found;
     walk_cubes<1>(in_brick, [&](const VoxelSegment& cell) {
@@ -159,18 +159,7 @@ double optical_depth(const TrackingField& field, const Ray& ray, double end) {
     return depth;
 }
 
-std::optional<Collision> exact_flight(const TrackingField& field, const Ray& ray, double end, Rng& rng) {
-    std::optional<Collision> found;
-    double depth = exponential(rng);
-    walk_bricks(field.bricks(), field.enter(ray, end), [&](const VoxelSegment& s) {
-        // A brick that cannot hold the collision even at its majorant still has to be measured.
-        found = flight_in_brick(field, s, depth);
-        return !found;
-    });
-    return found;
-}
-
-// The exponential forgets where it began: every brick may draw anew.
+// The exponential distribution has no memory: every brick may sample it anew.
 std::optional<Collision> null_collision_in_brick(const TrackingField& field, const VoxelSegment& brick, Rng& rng) {
     if (!stiff(field, brick))
         return woodcock_in_brick(field, brick, rng);

@@ -1,5 +1,5 @@
-// Transmittance and free flights along one ray, by methods that check one another. Distances are metres along the ray;
-// all estimators are unbiased for the trilinear field itself.
+// Transmittance and free flights in the medium along one ray. Distances are metres along the ray; all estimators are
+// unbiased for the trilinear field itself, and the tests hold them against one another.
 #pragma once
 
 #include <optional>
@@ -9,11 +9,11 @@
 
 namespace brisance {
 
-// Where along a segment of one cell, as a part of it, the optical depth reaches `depth`; `metres` is the segment's
-// length, and the segment's whole depth is at least `depth`.
+// The fraction of a segment in one voxel at which the optical depth reaches `depth`; `metres` is the segment's length,
+// and the depth of the whole segment is at least `depth`.
 double invert_depth(const Cubic& extinction, double metres, double depth);
 
-// Optical depth of [0, end], exact but for rounding.
+// Optical depth of [0, end], exact up to rounding.
 double optical_depth(const TrackingField& field, const Ray& ray, double end);
 
 struct Collision {
@@ -22,11 +22,9 @@ struct Collision {
     vec3 position;  // in nodes from the brick's first node
 };
 
-// The next collision before `end`, if there is one: by inverting the optical depth cell by cell, ...
-std::optional<Collision> exact_flight(const TrackingField& field, const Ray& ray, double end, Rng& rng);
-
-// ... or by Woodcock's null collisions against each brick's majorant (Woodcock et al. 1965). Bricks so uneven that
-// null collisions would outnumber their cells many times are walked exactly.
+// The next collision, if there is one in the brick or before `end` [m]: by Woodcock's null collisions against each
+// brick's majorant (Woodcock et al. 1965). Bricks so uneven that null collisions would outnumber their voxels many
+// times are walked by inverting the optical depth of each voxel. LineTracker can do so everywhere.
 std::optional<Collision> null_collision_in_brick(const TrackingField& field, const VoxelSegment& brick, Rng& rng);
 std::optional<Collision> null_collision_flight(const TrackingField& field, const Ray& ray, double end, Rng& rng);
 

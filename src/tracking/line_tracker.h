@@ -6,16 +6,16 @@
 #include <optional>
 #include <vector>
 
+#include "tracking/medium_trackers.h"
 #include "tracking/settings.h"
-#include "tracking/trackers.h"
 
 namespace brisance {
 
 constexpr double kNoEnd = std::numeric_limits<double>::infinity();
 
 struct LineResult {
-    Rgb radiance{0.0f};                  // what glows along the line, seen from its origin [W/(m^2 sr)]
-    std::optional<Collision> collision;  // where a path along the line collides next
+    Rgb radiance{0.0f};                  // emission along the line, seen from its origin [W/(m^2 sr)]
+    std::optional<Collision> collision;  // the end of a free flight along the line
 };
 
 struct PassedVoxel {
@@ -37,8 +37,8 @@ class LineTracker {
 public:
     LineTracker(const TrackingField& field, const TracingSettings& settings);
 
-    // A path's next segment: a free flight, and an estimate of the emission along the whole line by what lies before
-    // its end: cell by cell, or at the null collisions where those are many. No collision: the ray escapes.
+    // A path's next segment: a free flight, which estimates the emission along the whole line by that before its end,
+    // voxel by voxel, or at the null collisions where those are many. No collision: the ray escapes.
     LineResult follow_path(const Ray& ray, Rng& rng, double end = kNoEnd) const;
 
     // The emission along the whole line. Russian roulette ends it deep in the smoke.
@@ -50,9 +50,9 @@ public:
     // Of [0, end] [m], by the estimator that the settings name.
     double transmittance(const Ray& ray, double end, Rng& rng) const;
 
-    // A collision that is forced to happen on the line, whose opacity must be above 0: `place` in [0, 1) of the way
-    // through the distribution of flights that collide.
-    Collision choose(const CameraLine& line, double place) const;
+    // A collision forced to lie on the line, whose opacity must be above 0: `position` in [0, 1) inverts the
+    // distribution of free flights that collide there.
+    Collision choose(const CameraLine& line, double position) const;
 
 private:
     double end_of_fire(const LatticeRay& ray) const;

@@ -1,4 +1,4 @@
-#include "tracking/line.h"
+#include "tracking/line_tracker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,11 @@ namespace brisance {
 
 namespace {
 
-// Optical depth from which roulette decides how much farther emission is followed: a tenth of it is seen from there.
+// Optical depth at which Russian roulette begins to end a line: transmittance 0.1.
 constexpr double kRouletteDepth = 2.3;
-// The same for the camera's own rays: only a ten-millionth.
+// The same for the camera's own rays: transmittance 1e-7.
 constexpr double kCameraRouletteDepth = 16.0;
-// Cells thinner than this are sampled uniformly along the ray, thicker ones by their transmittance.
+// Cells of less optical depth are sampled uniformly along the ray, others in proportion to transmittance.
 constexpr double kThinVoxel = 0.1;
 
 double exponential(Rng& rng) {
@@ -38,7 +38,7 @@ public:
         return sum;
     }
 
-    // Two samples that mirror each other: what changes linearly along the cell is known exactly.
+    // Two antithetic samples: exact for what changes linearly along the cell.
     Rgb estimate_pair(double xi) const { return 0.5f * (estimate(xi) + estimate(1.0 - xi)); }
 
 private:
@@ -70,21 +70,21 @@ private:
     double metres_, depth_;
 };
 
-// Places in [0, 1) along a line: one random number, then steps of the golden ratio, each of them uniform.
-class Places {
+// Positions in [0, 1) along a line: one random number, then steps of the golden ratio. Each of them is uniform.
+class Positions {
 public:
-    explicit Places(Rng& rng) : place_(rng.next_double()) {}
+    explicit Positions(Rng& rng) : position_(rng.next_double()) {}
     double next() {
-        place_ += 0.6180339887498949;
-        return place_ -= place_ >= 1.0;
+        position_ += 0.6180339887498949;
+        return position_ -= position_ >= 1.0;
     }
 
 private:
-    double place_;
+    double position_;
 };
 
-// How much of what is met at an optical depth counts: T up to the depth where roulette begins; from there on T of that
-// depth, until a random depth that is reached with the rest of the probability.
+// The weight of emission at an optical depth: T up to the depth at which roulette begins; beyond it T of that depth, up
+// to a random depth that is reached with the remaining probability.
 class Visibility {
 public:
     explicit Visibility(double roulette_depth) : from_(roulette_depth) {}
@@ -115,7 +115,7 @@ bool crowded(const TrackingField& field, const VoxelSegment& brick) {
     return !field.has_emission() && per_voxel > 0.05 && per_voxel < 8.0;
 }
 
-// A flight through a brick that gathers what glows at its tentative collisions. False: it collided.
+// A free flight through a brick that collects emission at its tentative collisions. False: it collided.
 bool meet_in_brick(const TrackingField& field, const VoxelSegment& brick, LineResult& out, Rng& rng) {
     const double majorant = field.majorant(brick.brick);
     for (double t = brick.begin + exponential(rng) / majorant; t < brick.end; t += exponential(rng) / majorant) {
@@ -161,7 +161,7 @@ double LineTracker::end_of_fire(const LatticeRay& ray) const {
 
 LineResult LineTracker::follow_path(const Ray& ray, Rng& rng, double end) const {
     LineResult out;
-    Places places(rng);
+    Positions positions(rng);
     const bool exact = settings_.free_flight == FreeFlight::Exact;
     walk_bricks(field_.bricks(), field_.enter(ray, end), [&](const VoxelSegment& brick) {
         const bool burns = field_.burns(brick.brick);
@@ -171,13 +171,13 @@ LineResult LineTracker::follow_path(const Ray& ray, Rng& rng, double end) const 
         }
         if (!exact && crowded(field_, brick))
             return meet_in_brick(field_, brick, out, rng);
-        // The exponential forgets where it began: every brick draws anew.
+        // The exponential distribution has no memory: every brick samples it anew.
         double left = exponential(rng);
         return walk_cubes<1>(brick, [&](const VoxelSegment& cell) {
             const Cubic sigma = field_.extinction_along(cell);
             const double tau = std::max(0.0, sigma.integral(1.0) * (cell.end - cell.begin));
             if (burns && field_.voxel_burns(cell))
-                out.radiance += VoxelEmission(field_, cell, sigma, tau).estimate(places.next());
+                out.radiance += VoxelEmission(field_, cell, sigma, tau).estimate(positions.next());
             if (tau > left)
                 out.collision = collision_in(sigma, cell, left);
             left -= tau;
@@ -194,7 +194,7 @@ Rgb LineTracker::follow_line(const Ray& ray, Rng& rng, double end) const {
         return radiance_by_estimates(way, rng);
     Rgb radiance(0.0f);
     Visibility visibility(kRouletteDepth);
-    Places places(rng);
+    Positions positions(rng);
     double depth = 0.0;
     walk_bricks(field_.bricks(), way, [&](const VoxelSegment& brick) {
         const bool burns = field_.burns(brick.brick);
@@ -203,7 +203,7 @@ Rgb LineTracker::follow_line(const Ray& ray, Rng& rng, double end) const {
             const double tau = std::max(0.0, sigma.integral(1.0) * (cell.end - cell.begin));
             if (burns && field_.voxel_burns(cell))
                 radiance +=
-                    float(visibility.of(depth)) * VoxelEmission(field_, cell, sigma, tau).estimate(places.next());
+                    float(visibility.of(depth)) * VoxelEmission(field_, cell, sigma, tau).estimate(positions.next());
             depth += tau;
             visibility.pass(depth, rng);
             return !visibility.ended(depth);
@@ -216,7 +216,7 @@ void LineTracker::follow_camera(const Ray& ray, Rng& rng, CameraLine& line, doub
     line.radiance = Rgb(0.0f);
     line.cells.clear();
     Visibility visibility(kCameraRouletteDepth);
-    Places places(rng);
+    Positions positions(rng);
     double depth = 0.0;
     walk_bricks(field_.bricks(), field_.enter(ray, end), [&](const VoxelSegment& brick) {
         const bool burns = field_.burns(brick.brick);
@@ -224,8 +224,8 @@ void LineTracker::follow_camera(const Ray& ray, Rng& rng, CameraLine& line, doub
             const Cubic sigma = field_.extinction_along(cell);
             const double tau = std::max(0.0, sigma.integral(1.0) * (cell.end - cell.begin));
             if (burns && field_.voxel_burns(cell))
-                line.radiance +=
-                    float(visibility.of(depth)) * VoxelEmission(field_, cell, sigma, tau).estimate_pair(places.next());
+                line.radiance += float(visibility.of(depth)) *
+                                 VoxelEmission(field_, cell, sigma, tau).estimate_pair(positions.next());
             if (tau > 0.0)
                 line.cells.push_back({cell, depth, depth + tau});
             depth += tau;
@@ -248,8 +248,8 @@ double LineTracker::transmittance(const Ray& ray, double end, Rng& rng) const {
 }
 
 // Where roulette ended the walk, less than e^-16 of the ray's collisions lie beyond: below single precision.
-Collision LineTracker::choose(const CameraLine& line, double place) const {
-    const double depth = std::min(-std::log1p(-place * line.opacity()), line.cells.back().end_depth);
+Collision LineTracker::choose(const CameraLine& line, double position) const {
+    const double depth = std::min(-std::log1p(-position * line.opacity()), line.cells.back().end_depth);
     const auto cell = std::upper_bound(line.cells.begin(), line.cells.end() - 1, depth,
                                        [](double d, const PassedVoxel& c) { return d < c.end_depth; });
     const double inside = std::clamp(depth - cell->begin_depth, 0.0, cell->end_depth - cell->begin_depth);
@@ -260,7 +260,7 @@ Collision LineTracker::choose(const CameraLine& line, double place) const {
 // transmittance is estimated; independent factors, so that their product is unbiased.
 Rgb LineTracker::radiance_by_estimates(const LatticeRay& ray, Rng& rng) const {
     Rgb radiance(0.0f);
-    Places places(rng);
+    Positions positions(rng);
     double seen = 1.0, gap_begin = ray.begin;
     walk_bricks(field_.bricks(), ray, [&](const VoxelSegment& brick) {
         if (!field_.burns(brick.brick))
@@ -281,7 +281,7 @@ Rgb LineTracker::radiance_by_estimates(const LatticeRay& ray, Rng& rng) const {
             const Cubic sigma = field_.extinction_along(cell);
             const double tau = std::max(0.0, sigma.integral(1.0) * (cell.end - cell.begin));
             if (field_.voxel_burns(cell))
-                radiance += float(seen) * VoxelEmission(field_, cell, sigma, tau).estimate(places.next());
+                radiance += float(seen) * VoxelEmission(field_, cell, sigma, tau).estimate(positions.next());
             seen *= std::exp(-tau);
             return true;
         });
