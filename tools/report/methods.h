@@ -5,9 +5,8 @@
 //   counted along their tracks), point_lights (the same
 //   by volumetric virtual point lights, unbounded), point_lights_bounded (too dark), point_lights_compensated
 //   (exactly), point_lights_local (approximately), path, path_plain (the path tracer without what makes it fast), or
-//   one for light between surfaces: vbnl (virtual blue noise lighting), vbnl_resampled, vbnl_power, vbnl_light_tree,
-//   vbnl_bsdf (the same lights, asked otherwise), rich_vsl, vsl, vpl (virtual spherical and point lights where photons
-//   arrive).
+//   one for light between surfaces: vbnl (virtual blue noise lighting), vbnl_GATHERER (the same lights, sampled
+//   otherwise), or a baseline of virtual lights (the presets of virtual_lights/choices.h).
 // A budget:  LIST for all path methods, or LABEL:LIST:     4,16,64,256    path:16,64    lighting_grid:2,4
 //   For path methods samples per pixel, for lighting_grid numbers of steps of the built-in ladder, 1 to 4, for those
 //   of virtual lights samples along a pixel's side.

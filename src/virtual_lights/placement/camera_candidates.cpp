@@ -1,4 +1,4 @@
-#include "virtual_lights/camera_candidates.h"
+#include "virtual_lights/placement/camera_candidates.h"
 
 #include <algorithm>
 #include <array>
@@ -15,7 +15,7 @@ constexpr int kPerPath = 2;     // candidates
 constexpr int kMostTurns = 16;  // of a path, mirrors and smoke included
 
 struct Found {
-    std::array<LightCandidate, kPerPath> candidates;
+    std::array<Deposit, kPerPath> candidates;
     int count = 0;
 };
 
@@ -49,8 +49,8 @@ void follow(const DirectLight& scene, Ray ray, Rng& rng, Found& found) {
 
 }  // namespace
 
-std::vector<LightCandidate> light_candidates(const DirectLight& scene, const PixelCamera& camera, std::size_t paths,
-                                             std::uint32_t seed) {
+std::vector<Deposit> light_candidates(const DirectLight& scene, const PixelCamera& camera, std::size_t paths,
+                                      std::uint32_t seed) {
     const double pixels = double(camera.width) * camera.height;
     if (!(pixels > 0.0) || !scene.surroundings())
         return {};
@@ -65,7 +65,7 @@ std::vector<LightCandidate> light_candidates(const DirectLight& scene, const Pix
             follow(scene, camera.ray(x, y), rng, found[i]);
         }
     });
-    std::vector<LightCandidate> out;
+    std::vector<Deposit> out;
     for (const Found& f : found)
         out.insert(out.end(), f.candidates.begin(), f.candidates.begin() + f.count);
     return out;
