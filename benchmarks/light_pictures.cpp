@@ -114,20 +114,6 @@ void tell(const VirtualLightReport& r) {
     std::printf("%.1f MB, and %.1f MB for photons\n", double(r.bytes) / 1e6, double(r.photon_bytes) / 1e6);
 }
 
-LightSampling sampling_of(const std::string& name) {
-    const std::pair<const char*, LightSampling> names[] = {{"power", LightSampling::Power},
-                                                           {"tree", LightSampling::LightTree},
-                                                           {"bsdf", LightSampling::Bsdf},
-                                                           {"combined", LightSampling::Combined},
-                                                           {"combined_tree", LightSampling::CombinedTree},
-                                                           {"resampled", LightSampling::Resampled},
-                                                           {"all", LightSampling::All}};
-    for (const auto& [known, sampling] : names)
-        if (name == known)
-            return sampling;
-    throw Error(ExitCode::Usage, "no such sampling: " + name);
-}
-
 void compare_with_paths(const std::filesystem::path& folder, const View& view, int samples, int reference_samples,
                         const PathTracer& tracer, const Pixels& ours) {
     const Pixels a = reference(folder / "reference_SS_a", view, reference_samples, 3, tracer);
@@ -144,7 +130,7 @@ void compare_with_paths(const std::filesystem::path& folder, const View& view, i
     compare(a, b, paths);
 }
 
-// "name=value".
+// "name=value"; the names of placements, fluxes, kinds and gatherers are checked with the settings.
 void apply(VirtualLightSettings& s, const std::string& text) {
     const std::size_t equals = text.find('=');
     const std::string name = text.substr(0, equals), value = equals < text.size() ? text.substr(equals + 1) : "";
@@ -165,18 +151,14 @@ void apply(VirtualLightSettings& s, const std::string& text) {
         s.n_max = number;
     else if (name == "radius_factor")
         s.radius_factor = number;
-    else if (name == "extension")
-        s.extension = number != 0.0;
+    else if (name == "path_extension")
+        s.path_extension = number != 0.0;
     else if (name == "uniform")
         s.radius = number != 0.0 ? LightRadius::Uniform : LightRadius::Adaptive;
-    else if (name == "random")
-        s.placement = number != 0.0 ? LightPlacement::Random : LightPlacement::BlueNoise;
-    else if (name == "light_paths")
-        s.placement = number != 0.0 ? LightPlacement::LightPaths : LightPlacement::BlueNoise;
-    else if (name == "relaxed")
-        s.placement = number != 0.0 ? LightPlacement::RelaxedLightPaths : LightPlacement::BlueNoise;
-    else if (name == "own")
-        s.flux = number != 0.0 ? LightFlux::Own : LightFlux::Gathered;
+    else if (name == "placement")
+        s.placement = value;
+    else if (name == "flux")
+        s.flux = value;
     else if (name == "bound")
         s.point_bound = number;
     else if (name == "sphere_neighbours")
@@ -186,13 +168,11 @@ void apply(VirtualLightSettings& s, const std::string& text) {
     else if (name == "resampling")
         s.resampling_candidates = static_cast<int>(number);
     else if (name == "kind")
-        s.kind = value == "point"    ? VirtualLightKind::Point
-                 : value == "sphere" ? VirtualLightKind::Sphere
-                                     : VirtualLightKind::Patch;
+        s.kind = value;
     else if (name == "seed")
         s.seed = static_cast<std::uint32_t>(number);
     else if (name == "sampling")
-        s.sampling = sampling_of(value);
+        s.sampling = value;
     else
         throw Error(ExitCode::Usage, "no such setting: " + text);
 }

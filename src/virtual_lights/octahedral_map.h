@@ -1,4 +1,4 @@
-// Directions of a hemisphere around z as places in a square: texels of equal size are equal solid angles.
+// Directions of a hemisphere around z as points in a square: texels of equal size are equal solid angles.
 //
 // The square becomes a disc (Shirley and Chiu, A Low Distortion Map Between Disk and Square, JGT 2(3), 1997) and the
 // disc a hemisphere (Lambert's azimuthal projection); together the octahedral map that keeps areas (Clarberg, Fast

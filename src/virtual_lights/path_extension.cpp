@@ -1,4 +1,4 @@
-// Path extension: what virtual lights hold of the surface at the end of a ray, and the path beyond it.
+// Path extension: the light that virtual lights hold where a ray ends, and how the path continues from there.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -15,78 +15,10 @@ bool goes_straight_on(const PathVertex& vertex, const PathVertex::Sample& sample
     return sample.delta && glm::dot(sample.wi, vertex.arriving()) > 1.0 - 1e-12;
 }
 
-// Points on every segment through smoke at which the light of lamps is estimated.
+// Points on every segment through smoke at which lamps are sampled.
 constexpr int kLampPoints = 2;
 
-// The factor that replaces one base colour by another.
-Rgb recoloured(const Rgb& to, const Rgb& from) {
-    return {from.x > 0.0f ? to.x / from.x : 0.0f, from.y > 0.0f ? to.y / from.y : 0.0f,
-            from.z > 0.0f ? to.z / from.z : 0.0f};
-}
-
 }  // namespace
-
-LightShares VirtualLights::shares_at(const SurfaceHit& hit, const SurfacePoint& point) const {
-    if (settings_.flux != LightFlux::Gathered || !holds_light(point.material))
-        return {};
-    const int material = scene_.surroundings()->scene().meshes[hit.mesh].material;
-    return cover_.shares(point.position, lit_normal(point), material);
-}
-
-bool VirtualLights::hold_base(const SurfaceHit& hit, const SurfacePoint& point) const {
-    return settings_.flux == LightFlux::Own ? holds_light(point.material) && !lights_.empty()
-                                            : speaking_for(hit, point) > 0;
-}
-
-VirtualLights::Seen VirtualLights::seen_by(const RaySegment& segment) const {
-    return {segment, shares_at(*segment.hit, *segment.point)};
-}
-
-// What one of the lights adds to the radiance seen.
-Rgb VirtualLights::reflected(const Seen& seen, int share) const {
-    const VirtualLight& light = lights_[seen.shares.light[share]];
-    const SurfaceMaterial& there = seen.segment.point->material;
-    if (light.profile < 0)
-        return light.irradiance * there.base_colour * (seen.shares.weight[share] / std::numbers::pi_v<float>);
-    const Rgb radiance = seen.shares.weight[share] * profiles_.radiance(light, -seen.segment.ray.direction);
-    const bool metal = there.metallic == 1.0f && light.material.metallic == 1.0f;
-    return metal ? radiance * recoloured(there.base_colour, light.material.base_colour) : radiance;
-}
-
-// The probability that a path ends in the lights at the end of its ray: by how many of them lie in the ray's footprint.
-double VirtualLights::termination_probability(const Seen& seen, double pdf) const {
-    if (settings_.flux == LightFlux::Own)  // photons have left lights on every surface that can hold them
-        return holds_light(seen.segment.point->material) ? 1.0 : 0.0;
-    if (seen.shares.count == 0)
-        return 0.0;
-    if (!settings_.extension)
-        return 1.0;  // sampling spheres and points has found all that such surfaces reflect
-    double area = 0.0;
-    for (int i = 0; i < seen.shares.count; ++i)
-        area += seen.shares.weight[i] * lights_[seen.shares.light[i]].area;
-    const RaySegment& segment = seen.segment;
-    const double cosine = std::abs(glm::dot(segment.point->geometric_normal, segment.ray.direction));
-    const double n = segment.end * segment.end / (pdf * cosine * area);
-    if (!(n < settings_.n_max))  // pdf * cosine of 0 as well
-        return 1.0;
-    return std::clamp((n - settings_.n_min) / (settings_.n_max - settings_.n_min), 0.0, 1.0);
-}
-
-// The radiance of all lights that share the end of a ray that `vertex` sampled, weighted against sampling the lights.
-Rgb VirtualLights::at_end_of_ray(const PathVertex& vertex, const Seen& seen, double pdf) const {
-    Rgb sum(0.0f);
-    if (!draws_rays(settings_.sampling))
-        return sum;
-    for (int i = 0; i < seen.shares.count; ++i) {
-        const std::size_t light = seen.shares.light[i];
-        const double other = choice_.by_lights()
-                                 ? choice_.probability(vertex.lit(), light) *
-                                       pdf_toward(lights_[light], vertex.lit(), seen.segment.ray.direction)
-                                 : 0.0;
-        sum += reflected(seen, i) * float(pdf / (pdf + other));
-    }
-    return sum;
-}
 
 Rgb VirtualLights::lamps_on(const RaySegment& segment, Rng& rng) const {
     thread_local RayMedium seen;

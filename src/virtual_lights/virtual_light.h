@@ -10,14 +10,14 @@ namespace brisance {
 struct VirtualLight {
     dvec3 position{0.0};     // local [m]
     ShadingFrame frame;      // around the surface's normal, on the side that is lit
-    double radius = 0.0;     // of the sphere within which surfaces take part [m]
+    double radius = 0.0;     // of the sphere within which it covers surfaces [m]
     double clearance = 0.0;  // of its surface (SurfacePoint::clearance) [m]
-    double area = 0.0;       // of surface that the light speaks for: what it shares with others counts in part [m^2]
+    double area = 0.0;       // covered: surface shared with other lights counts by its weight [m^2]
     double spread = 0.0;     // largest angle of the surface's normals to its own [rad]
     int scene_material = 0;
     SurfaceMaterial material;   // at its position
     Rgb irradiance{0.0f};       // mean over its area [W/m^2]
-    dvec3 toward_source{0.0};   // of flux of its own: unit, where that came from
+    dvec3 toward_source{0.0};   // of the flux of one deposit: unit, where that came from
     std::int32_t profile = -1;  // of light reflected, by direction; -1: plain Lambert, `irradiance` is all there is
     Rgb flux{0.0f};             // reflected in all directions [W]
     Rgb base_flux{0.0f};        // ... by the Lambert base alone [W]
@@ -25,13 +25,13 @@ struct VirtualLight {
     double intensity = 0.0;     // the largest in any direction, luminance [W/sr]
 };
 
-// Height above the surface at which a light is looked for, of its radius, as surfaces are not flat.
+// Height above the surface at which the visibility of a light is tested, of its radius, as surfaces are not flat.
 inline constexpr double kAboveSurface = 1e-3;
 
-// Smoother than this the map of directions cannot hold what is reflected.
+// Profiles cannot resolve what smoother surfaces reflect.
 inline constexpr float kLeastRoughness = 0.25f;
 
-// Whether what a surface reflects can be held by virtual lights. Where not, paths go on.
+// Whether virtual lights can hold what a surface reflects. Where not, paths continue.
 inline bool holds_light(const SurfaceMaterial& m) {
     if (m.transmission > 0.0f)
         return false;

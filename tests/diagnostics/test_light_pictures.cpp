@@ -302,11 +302,11 @@ TEST(LightPictures, PathsHaveOneVertexWithoutExtensionAndMoreWithIt) {
     shot.virtual_lights.count = 2000;
     shot.virtual_lights.radius = LightRadius::Uniform;
     shot.virtual_lights.radius_factor = 2.5;  // no place between lights is left out
-    shot.virtual_lights.extension = false;
+    shot.virtual_lights.path_extension = false;
     const RenderedFrame plain = render(shot, heard);
     for (const float length : plain.light_pictures->image.layer("path_length").pixels)
         ASSERT_EQ(length, 1.0f);
-    shot.virtual_lights.extension = true;
+    shot.virtual_lights.path_extension = true;
     const RenderedFrame extended = render(shot, heard);
     double sum = 0.0;
     for (const float length : extended.light_pictures->image.layer("path_length").pixels) {

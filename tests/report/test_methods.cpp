@@ -202,8 +202,8 @@ TEST(Runs, OfVirtualLightsChangeTheirChoicesAndTheSamples) {
     ASSERT_EQ(planned[5].runs.size(), 2u);
     EXPECT_EQ(planned[5].runs[0].shot.camera.samples_per_axis, 2) << "also where the camera is given";
     EXPECT_EQ(planned[5].runs[1].shot.camera.samples_per_axis, 4);
-    EXPECT_EQ(planned[5].runs[1].shot.virtual_lights.kind, VirtualLightKind::Sphere);
-    EXPECT_EQ(planned[7].runs[0].shot.virtual_lights.flux, LightFlux::Own);
+    EXPECT_EQ(planned[5].runs[1].shot.virtual_lights.kind, "sphere");
+    EXPECT_EQ(planned[7].runs[0].shot.virtual_lights.flux, "own");
 }
 
 TEST(Runs, OfAShotOfSurfacesAloneAreShots) {

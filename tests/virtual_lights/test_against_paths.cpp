@@ -62,7 +62,7 @@ TEST(AgainstPaths, InADiffuseRoom) {
 
 TEST(AgainstPaths, WithoutExtension) {
     VirtualLightSettings settings = some_lights();
-    settings.extension = false;
+    settings.path_extension = false;
     expect_regions(Room(coloured_room()), settings, 0.06, 0.02);
 }
 
@@ -88,18 +88,18 @@ TEST(AgainstPaths, ByEnvironmentAndPointLight) {
 
 TEST(AgainstPaths, PlacedByLightPaths) {
     VirtualLightSettings settings = some_lights();
-    settings.placement = LightPlacement::LightPaths;
+    settings.placement = "light_paths";
     expect_regions(Room(coloured_room()), settings, 0.03, 0.015);
 }
 
 // Balls of fixed area overlap edges, and points lose what their bound takes: near the truth, no more.
 TEST(AgainstPaths, BallsAndPointsComeNear) {
     VirtualLightSettings settings = some_lights();
-    settings.extension = false;
-    settings.sampling = LightSampling::LightTree;
-    settings.kind = VirtualLightKind::Sphere;
+    settings.path_extension = false;
+    settings.sampling = "light_tree";
+    settings.kind = "sphere";
     expect_regions(Room(coloured_room()), settings, 0.3, 0.08);
-    settings.kind = VirtualLightKind::Point;
+    settings.kind = "point";
     expect_regions(Room(coloured_room()), settings, 0.3, 0.08);
 }
 

@@ -1,20 +1,32 @@
-// The kinds of virtual lights that others use: what they lose, what they keep, and that all ways of asking agree.
+// The kinds of virtual lights that others use: what they lose, what they keep, and that all gatherers agree.
 #include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "core/parallel.h"
 #include "room.h"
+#include "virtual_lights/choices.h"
 
 namespace brisance {
 namespace {
 
 using namespace testing;
 
-constexpr LightSampling kByLights[] = {LightSampling::Power, LightSampling::LightTree, LightSampling::Resampled,
-                                       LightSampling::All};
+// Gatherers that do without rays: those for points.
+std::vector<std::string> by_lights_alone() {
+    std::vector<std::string> names;
+    for (const TechniqueChoice& gatherer : light_gatherers()) {
+        VirtualLightSettings settings;
+        settings.kind = "point";
+        settings.path_extension = false;
+        settings.sampling = gatherer.name;
+        if (why_not_together(settings).empty())
+            names.push_back(gatherer.name);
+    }
+    return names;
+}
 
 // Floor and ceiling 2 m apart, without walls, and a lamp under the ceiling that shines down. Whatever surfaces send
-// each other travels 2 m and more: no light is near a place that it lights, the cosine over the squared distance is 1/4
+// each other travels 2 m and more: no light is near a point that it lights, the cosine over the squared distance is 1/4
 // per m^2 at most.
 SceneSettings two_plates() {
     SceneSettings scene = coloured_room();
@@ -29,18 +41,18 @@ SceneSettings glossy_room() {
     return scene;
 }
 
-VirtualLightSettings asked_by(LightSampling sampling, VirtualLightKind kind) {
+VirtualLightSettings sampled_by(const std::string& sampling, const std::string& kind) {
     VirtualLightSettings settings = few_lights();
     settings.sampling = sampling;
     settings.kind = kind;
-    settings.extension = false;
+    settings.path_extension = false;
     return settings;
 }
 
-VirtualLightSettings of_photons(VirtualLightKind kind, LightSampling sampling = LightSampling::Power) {
-    VirtualLightSettings settings = asked_by(sampling, kind);
-    settings.placement = LightPlacement::LightPaths;
-    settings.flux = LightFlux::Own;
+VirtualLightSettings of_photons(const std::string& kind, const std::string& sampling = "power") {
+    VirtualLightSettings settings = sampled_by(sampling, kind);
+    settings.placement = "light_paths";
+    settings.flux = "own";
     return settings;
 }
 
@@ -92,7 +104,7 @@ void expect_same(const Mean& ours, const Mean& theirs, double allowed, const std
 // What a bound that is nowhere reached takes is nothing: instant radiosity is unbiased.
 TEST(PlainPoints, WithoutBoundAreUnbiased) {
     const Room room(two_plates());
-    VirtualLightSettings settings = of_photons(VirtualLightKind::Point);
+    VirtualLightSettings settings = of_photons("point");
     settings.point_bound = 1e9;
     expect_same(over_sets_of_lights(room, settings), by_paths(room), 0.0, "points");
 }
@@ -100,7 +112,7 @@ TEST(PlainPoints, WithoutBoundAreUnbiased) {
 // Half of what the nearest lights send may pass: at 2 m a quarter over m^2 is what there is.
 TEST(PlainPoints, LoseWhatTheirBoundTakes) {
     const Room room(two_plates());
-    VirtualLightSettings settings = of_photons(VirtualLightKind::Point);
+    VirtualLightSettings settings = of_photons("point");
     settings.point_bound = 0.05;
     const Mean bounded = over_sets_of_lights(room, settings), truth = by_paths(room);
     EXPECT_LT(bounded.value + kSigmas * bounded.error, 0.8 * truth.value);
@@ -113,7 +125,7 @@ TEST(PlainPoints, LoseLessWithALargerBound) {
     const Mean truth = by_paths(room);
     double before = 0.0;
     for (const double bound : {0.3, 3.0, 30.0}) {
-        VirtualLightSettings settings = of_photons(VirtualLightKind::Point);
+        VirtualLightSettings settings = of_photons("point");
         settings.point_bound = bound;
         const Mean bounded = over_sets_of_lights(room, settings);
         EXPECT_LT(bounded.value, truth.value + kSigmas * bounded.error) << bound;
@@ -127,12 +139,12 @@ TEST(PlainPoints, LoseLessWithALargerBound) {
 // of the plate no surface is missing, as it is the sender that is widened.
 TEST(PlainSpheres, KeepTheirEnergy) {
     const Room room(two_plates());
-    expect_same(over_sets_of_lights(room, of_photons(VirtualLightKind::Sphere)), by_paths(room), 0.02, "spheres");
+    expect_same(over_sets_of_lights(room, of_photons("sphere")), by_paths(room), 0.02, "spheres");
 }
 
 TEST(PlainLights, AreAboutAsManyAsAsked) {
     const Room room(coloured_room());
-    const VirtualLights lights = room.lights(of_photons(VirtualLightKind::Point));
+    const VirtualLights lights = room.lights(of_photons("point"));
     EXPECT_NEAR(double(lights.lights().size()), 500.0, 75.0);
     double flux = 0.0;
     for (const VirtualLight& light : lights.lights())
@@ -142,63 +154,62 @@ TEST(PlainLights, AreAboutAsManyAsAsked) {
     EXPECT_LT(flux, 0.7 * lights.report().photons.shared);
 }
 
-// All kinds, all places, all ways of asking: the path tracer's mean, with 2 % for blur and 10^5 photons' noise.
+// All kinds and all placements: the path tracer's mean, with 2 % for blur and 10^5 photons' noise.
 TEST(EveryKind, AgreesWithPathsBetweenPlates) {
     const Room room(two_plates());
     const Mean truth = by_paths(room);
-    for (const VirtualLightKind kind : {VirtualLightKind::Patch, VirtualLightKind::Sphere, VirtualLightKind::Point})
-        for (const LightPlacement placement : {LightPlacement::BlueNoise, LightPlacement::Random,
-                                               LightPlacement::LightPaths, LightPlacement::RelaxedLightPaths}) {
-            VirtualLightSettings settings = asked_by(LightSampling::Power, kind);
-            settings.placement = placement;
+    for (const TechniqueChoice& kind : light_kinds())
+        for (const TechniqueChoice& placement : light_placements()) {
+            VirtualLightSettings settings = sampled_by("power", kind.name);
+            settings.placement = placement.name;
             expect_same(by_lights(room, settings, 128), truth, 0.02,
-                        "kind " + std::to_string(int(kind)) + ", placement " + std::to_string(int(placement)));
+                        "kind " + kind.name + ", placement " + placement.name);
         }
 }
 
-// Of one set of lights in a room with corners, so that what agrees is the asking.
+// Of one set of lights in a room with corners, so that what agrees are the gatherers.
 void expect_one_mean(VirtualLightSettings settings, const SceneSettings& scene = glossy_room()) {
     const Room room(scene);
     settings.count = 60;
-    settings.sampling = LightSampling::All;
+    settings.sampling = "all";
     settings.point_bound = 3.0;
     const Mean truth = by_lights(room, settings, 24);
-    for (const LightSampling sampling : kByLights) {
+    for (const std::string& sampling : by_lights_alone()) {
         settings.sampling = sampling;
-        const bool all = sampling == LightSampling::All;
+        const bool all = sampling == "all";
         expect_same(by_lights(room, settings, all ? 24 : 256), truth, 0.0,
-                    "sampling " + std::to_string(int(sampling)) + " of kind " + std::to_string(int(settings.kind)));
+                    "sampling " + sampling + " of kind " + settings.kind);
     }
 }
 
 TEST(EverySampling, HasOneMeanOfPatches) {
-    expect_one_mean(asked_by(LightSampling::All, VirtualLightKind::Patch), coloured_room());
+    expect_one_mean(sampled_by("all", "patch"), coloured_room());
 }
 
 TEST(EverySampling, HasOneMeanOfRichSpheres) {
-    VirtualLightSettings settings = asked_by(LightSampling::All, VirtualLightKind::Sphere);
-    settings.placement = LightPlacement::RelaxedLightPaths;
+    VirtualLightSettings settings = sampled_by("all", "sphere");
+    settings.placement = "relaxed_light_paths";
     expect_one_mean(settings);
 }
 
 TEST(EverySampling, HasOneMeanOfRichPoints) {
-    expect_one_mean(asked_by(LightSampling::All, VirtualLightKind::Point));
+    expect_one_mean(sampled_by("all", "point"));
 }
 
 TEST(EverySampling, HasOneMeanOfPlainSpheres) {
-    expect_one_mean(of_photons(VirtualLightKind::Sphere));
+    expect_one_mean(of_photons("sphere"));
 }
 
 TEST(EverySampling, HasOneMeanOfPlainPoints) {
-    expect_one_mean(of_photons(VirtualLightKind::Point));
+    expect_one_mean(of_photons("point"));
 }
 
-// Of one candidate resampling is asking by power; of any number the mean is the same.
+// Of one candidate resampling is sampling by power; of any number the mean is the same.
 TEST(Resampling, HasOneMeanForAnyNumberOfCandidates) {
     const Room room(glossy_room());
-    const Mean truth = by_lights(room, asked_by(LightSampling::Power, VirtualLightKind::Patch), 512);
+    const Mean truth = by_lights(room, sampled_by("power", "patch"), 512);
     for (const int candidates : {1, 2, 8, 64}) {
-        VirtualLightSettings settings = asked_by(LightSampling::Resampled, VirtualLightKind::Patch);
+        VirtualLightSettings settings = sampled_by("resampled", "patch");
         settings.resampling_candidates = candidates;
         expect_same(by_lights(room, settings, candidates > 8 ? 64 : 256), truth, 0.0, std::to_string(candidates));
     }
@@ -206,7 +217,7 @@ TEST(Resampling, HasOneMeanForAnyNumberOfCandidates) {
 
 TEST(Resampling, OfManyCandidatesHasLessNoise) {
     const Room room(two_plates());
-    VirtualLightSettings settings = asked_by(LightSampling::Resampled, VirtualLightKind::Sphere);
+    VirtualLightSettings settings = sampled_by("resampled", "sphere");
     const auto error_of = [&](int candidates) {
         settings.resampling_candidates = candidates;
         return by_lights(room, settings, 64).error;
@@ -217,12 +228,11 @@ TEST(Resampling, OfManyCandidatesHasLessNoise) {
 // One direction is of the cone alone; of sixteen some are of the floor's BSDF and some of a glossy light's.
 TEST(SphereSamples, OfAnyNumberHaveOneMean) {
     const Room room(glossy_room());
-    for (VirtualLightSettings settings :
-         {of_photons(VirtualLightKind::Sphere), asked_by(LightSampling::Power, VirtualLightKind::Sphere)}) {
+    for (VirtualLightSettings settings : {of_photons("sphere"), sampled_by("power", "sphere")}) {
         settings.sphere_samples = 1;
         const Mean one = by_lights(room, settings, 512);
         settings.sphere_samples = 16;
-        expect_same(by_lights(room, settings, 256), one, 0.0, std::to_string(int(settings.flux)));
+        expect_same(by_lights(room, settings, 256), one, 0.0, settings.flux);
     }
 }
 
@@ -245,10 +255,9 @@ std::vector<float> fingerprint(const VirtualLightSettings& settings, int threads
 }
 
 TEST(Baselines, AreTheSameBitsOnAnyThreads) {
-    VirtualLightSettings rich = asked_by(LightSampling::Resampled, VirtualLightKind::Sphere);
-    rich.placement = LightPlacement::RelaxedLightPaths;
-    for (const VirtualLightSettings& settings :
-         {rich, of_photons(VirtualLightKind::Sphere, LightSampling::LightTree), of_photons(VirtualLightKind::Point)}) {
+    VirtualLightSettings rich = sampled_by("resampled", "sphere");
+    rich.placement = "relaxed_light_paths";
+    for (const VirtualLightSettings& settings : {rich, of_photons("sphere", "light_tree"), of_photons("point")}) {
         const std::vector<float> one = fingerprint(settings, 1);
         EXPECT_GT(one.size(), 2000u);
         EXPECT_EQ(one, fingerprint(settings, 2));
@@ -261,13 +270,13 @@ TEST(Baselines, InTheDarkOrWithoutSurfacesAreBlack) {
     SceneSettings scene;
     scene.lights.emplace_back();
     const Room room(scene);
-    EXPECT_TRUE(room.lights(of_photons(VirtualLightKind::Point)).lights().empty());
+    EXPECT_TRUE(room.lights(of_photons("point")).lights().empty());
     SceneSettings black;
     add_walls(black, dvec3(-1.0), dvec3(1.0), lambert(Rgb(0.0f)));
     add_lamp(black, {-0.3, 0.0, -0.3}, {0.3, 0.0, 0.3}, 0.95, Rgb(10.0f));
     const Room absorbing(black);
-    for (const VirtualLightKind kind : {VirtualLightKind::Point, VirtualLightKind::Sphere}) {
-        const VirtualLights lights = absorbing.lights(of_photons(kind, LightSampling::Resampled));
+    for (const std::string kind : {"point", "sphere"}) {
+        const VirtualLights lights = absorbing.lights(of_photons(kind, "resampled"));
         EXPECT_TRUE(lights.lights().empty());
         Rng rng(Stream::Path, 0);
         EXPECT_EQ(absorbing.by_lights(lights, 0.5, 0.5, rng), Rgb(0.0f));
@@ -276,8 +285,8 @@ TEST(Baselines, InTheDarkOrWithoutSurfacesAreBlack) {
 
 TEST(Baselines, OfOneLightAreFinite) {
     const Room room(coloured_room());
-    for (const LightSampling sampling : kByLights) {
-        VirtualLightSettings settings = asked_by(sampling, VirtualLightKind::Sphere);
+    for (const std::string& sampling : by_lights_alone()) {
+        VirtualLightSettings settings = sampled_by(sampling, "sphere");
         settings.count = 1;
         const VirtualLights lights = room.lights(settings);
         for (const VirtualLight& light : lights.lights())
@@ -296,21 +305,27 @@ TEST(Baselines, SaysWhatDoesNotGoTogether) {
             ADD_FAILURE() << word;
         } catch (const Error& error) {
             const std::string line = error.what();
+            EXPECT_EQ(error.code(), ExitCode::Usage) << line;
             EXPECT_NE(line.find(word), std::string::npos) << line;
             EXPECT_EQ(line.find('\n'), std::string::npos) << line;
         }
     };
     using S = VirtualLightSettings;
-    const S plain = of_photons(VirtualLightKind::Point),
-            rich = asked_by(LightSampling::Power, VirtualLightKind::Sphere);
+    const S plain = of_photons("point"), rich = sampled_by("power", "sphere");
     refused(
-        plain, [](S& s) { s.placement = LightPlacement::BlueNoise; }, "light_paths");
+        plain, [](S& s) { s.placement = "blue_noise"; }, "placement light_paths, not blue_noise");
     refused(
-        plain, [](S& s) { s.kind = VirtualLightKind::Patch; }, "flux own");
+        plain, [](S& s) { s.kind = "patch"; }, "flux own goes with kind sphere, point");
     refused(
-        plain, [](S& s) { s.sampling = LightSampling::Combined; }, "sampling");
+        plain, [](S& s) { s.kind = "patch"; }, "kind patch needs flux that covers surface: flux gathered");
     refused(
-        rich, [](S& s) { s.extension = true; }, "extension");
+        plain, [](S& s) { s.sampling = "combined"; },
+        "sampling combined needs a kind of light that rays can hit: kind patch; kind point goes with sampling power, "
+        "light_tree, resampled, all");
+    refused(
+        rich, [](S& s) { s.path_extension = true; }, "kind sphere goes with path_extension=false");
+    refused(
+        rich, [](S& s) { s.kind = "ball"; }, "\"ball\" is not known; there are patch, sphere, point");
     refused(
         rich, [](S& s) { s.sphere_neighbours = 0; }, "sphere_neighbours");
     refused(

@@ -35,7 +35,7 @@ TEST_P(Furnaces, ReflectWhatTheSeriesSays) {
     VirtualLightSettings settings;
     settings.count = 400;
     settings.photons = 100000;
-    settings.extension = extension;
+    settings.path_extension = extension;
     const VirtualLights lights = room.lights(settings);
     double error = 0.0;
     const double mean = mean_of(room, lights, error), expected = albedo * albedo / (1.0 - albedo);

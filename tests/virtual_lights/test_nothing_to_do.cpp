@@ -105,13 +105,13 @@ TEST(Settings, OutOfRangeAreRefused) {
     refused([](VirtualLightSettings& s) { s.n_max = 1.0; });
     refused([](VirtualLightSettings& s) { s.point_bound = 0.0; });
     refused([](VirtualLightSettings& s) {
-        s.kind = VirtualLightKind::Point;
-        s.sampling = LightSampling::Power;  // and extension
+        s.kind = "point";
+        s.sampling = "power";  // and extension
     });
     refused([](VirtualLightSettings& s) {
-        s.kind = VirtualLightKind::Sphere;
-        s.extension = false;
-        s.sampling = LightSampling::Bsdf;
+        s.kind = "sphere";
+        s.path_extension = false;
+        s.sampling = "bsdf";
     });
 }
 

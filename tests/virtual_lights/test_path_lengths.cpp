@@ -38,7 +38,7 @@ double mean_vertices(const Room& room, const VirtualLights& lights, double x, do
 VirtualLightSettings settings(bool extension) {
     VirtualLightSettings s = few_lights();
     s.count = 2000;
-    s.extension = extension;
+    s.path_extension = extension;
     // No place between lights is left out: paths would go on there.
     s.radius = LightRadius::Uniform;
     s.radius_factor = 2.5;

@@ -1,16 +1,23 @@
-// All ways of asking the same lights have one mean, and threads change nothing.
+// All gatherers of the same lights have one mean, and threads change nothing.
 #include <gtest/gtest.h>
 
 #include "core/parallel.h"
 #include "room.h"
+#include "virtual_lights/choices.h"
 
 namespace brisance {
 namespace {
 
 using namespace testing;
 
-constexpr LightSampling kOthers[] = {LightSampling::Power, LightSampling::LightTree, LightSampling::Combined,
-                                     LightSampling::CombinedTree, LightSampling::Resampled};
+// All but the one they are compared with, and the one that visits every light, which takes long.
+std::vector<std::string> others() {
+    std::vector<std::string> names;
+    for (const TechniqueChoice& gatherer : light_gatherers())
+        if (gatherer.name != "bsdf" && gatherer.name != "all")
+            names.push_back(gatherer.name);
+    return names;
+}
 
 SceneSettings glossy_room() {
     SceneSettings scene = coloured_room();
@@ -27,14 +34,14 @@ Estimate mean_of(const Room& room, const VirtualLights& lights, std::uint64_t pe
 }
 
 void expect_one_mean(const Room& room, VirtualLightSettings settings) {
-    settings.sampling = LightSampling::Bsdf;
+    settings.sampling = "bsdf";
     const Estimate truth = mean_of(room, room.lights(settings), 128);
-    for (const LightSampling sampling : kOthers) {
+    for (const std::string& sampling : others()) {
         settings.sampling = sampling;
         const Estimate other = mean_of(room, room.lights(settings), 128);
         for (int c = 0; c < 3; ++c)
             EXPECT_NEAR(other.mean[c], truth.mean[c], kSigmas * std::hypot(other.error[c], truth.error[c]))
-                << "sampling " << static_cast<int>(sampling) << ", channel " << c;
+                << "sampling " << sampling << ", channel " << c;
     }
 }
 
@@ -48,13 +55,13 @@ TEST(Sampling, HasOneMeanInAGlossyRoom) {
 
 TEST(Sampling, HasOneMeanWithoutExtension) {
     VirtualLightSettings settings = few_lights();
-    settings.extension = false;
+    settings.path_extension = false;
     expect_one_mean(Room(glossy_room()), settings);
 }
 
 TEST(Sampling, HasOneMeanWithLesserLights) {
     VirtualLightSettings settings = few_lights();
-    settings.placement = LightPlacement::Random;
+    settings.placement = "random";
     expect_one_mean(Room(coloured_room()), settings);
     settings.radius = LightRadius::Uniform;
     expect_one_mean(Room(coloured_room()), settings);

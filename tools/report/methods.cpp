@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "scattering_methods/methods.h"
+#include "virtual_lights/choices.h"
 
 namespace brisance {
 namespace {
@@ -25,11 +26,11 @@ struct BuiltIn {
     StepsOf steps = StepsOf::Grid;
 };
 
-// Virtual blue noise lighting with other choices in some places.
-BuiltIn by_virtual_lights(const std::string& name, const Settings& choices) {
-    BuiltIn method{name, {"method=lighting_grid"}, StepsOf::Samples};
-    for (const std::string& choice : choices)
-        method.settings.push_back("virtual_lights." + choice);
+// Virtual lights by the settings of a preset.
+BuiltIn by_virtual_lights(const TechniquePreset& preset) {
+    BuiltIn method{preset.name, {"method=lighting_grid"}, StepsOf::Samples};
+    for (const auto& [key, value] : preset.settings)
+        method.settings.push_back("virtual_lights." + key + "=" + value);
     return method;
 }
 
@@ -54,24 +55,16 @@ std::vector<BuiltIn> make_built_ins() {
           "tracing.free_flight=null_collision"},
          StepsOf::Paths}};
     add_scattering_methods(methods);
-    const std::vector<BuiltIn> between_surfaces = {
-        by_virtual_lights("vbnl", {}),
-        by_virtual_lights("vbnl_resampled", {"sampling=resampled"}),
-        by_virtual_lights("vbnl_power", {"sampling=power"}),
-        by_virtual_lights("vbnl_light_tree", {"sampling=light_tree"}),
-        by_virtual_lights("vbnl_bsdf", {"sampling=bsdf"}),
-        by_virtual_lights("rich_vsl",
-                          {"placement=relaxed_light_paths", "kind=sphere", "sampling=power", "extension=false"}),
-        by_virtual_lights("vsl",
-                          {"placement=light_paths", "flux=own", "kind=sphere", "sampling=power", "extension=false"}),
-        by_virtual_lights("vpl",
-                          {"placement=light_paths", "flux=own", "kind=point", "sampling=power", "extension=false"})};
-    methods.insert(methods.end(), between_surfaces.begin(), between_surfaces.end());
     return methods;
 }
 
 const std::vector<BuiltIn>& built_ins() {
-    static const std::vector<BuiltIn> all = make_built_ins();
+    static const std::vector<BuiltIn> all = [] {
+        std::vector<BuiltIn> out = make_built_ins();
+        for (const TechniquePreset& preset : light_presets())
+            out.push_back(by_virtual_lights(preset));
+        return out;
+    }();
     return all;
 }
 

@@ -1,10 +1,10 @@
-// From light that arrived by direction to light that is reflected by direction.
+// Directional profiles of rich lights: from light that arrived by direction to light that is reflected by direction.
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "virtual_lights/photon_splitting.h"
+#include "virtual_lights/flux/photon_splitting.h"
 
 namespace brisance {
 
@@ -15,8 +15,8 @@ Rgb base_flux(const VirtualLight& light, std::size_t index, const LightAccounts&
 class Profiles {
 public:
     Profiles() = default;
-    // Of the lights that ask for one (profile >= 0, numbered in order). Rounds their materials a little, so that lights
-    // of about the same share one table of reflection.
+    // Of the lights that have one (profile >= 0, numbered in order). Rounds their materials a little, so that lights of
+    // similar materials share one table of reflection.
     Profiles(std::span<VirtualLight> lights, const LightAccounts& accounts, int resolution);
 
     // Between texels linear [W/(m^2 sr)]. `toward`: unit, world.

@@ -1,4 +1,4 @@
-#include "virtual_lights/packing_distance.h"
+#include "virtual_lights/placement/packing_distance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ double area_of_distance(double distance) {
     return 0.5 * std::numbers::sqrt3 * distance * distance;
 }
 
-// Everybody survives: only the distances are of interest.
+// All points survive: only their distances are wanted.
 std::vector<float> packing_distances(const std::vector<vec3>& points, int neighbours) {
     EliminationSettings settings;
     settings.neighbours = neighbours;

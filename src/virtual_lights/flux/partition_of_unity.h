@@ -1,8 +1,8 @@
-// Which virtual lights speak for a place on a surface, and with what weight.
+// A partition of unity over surfaces: which virtual lights cover a point, and with what weight.
 //
-// Weights fall off from a light to the edge of its sphere, and sum up to 1 wherever there is any light: the same
-// weights share a photon out among lights and interpolate between lights what they received. So a constant irradiance
-// comes back constant, at the edges of surfaces too, where kernels of fixed area would darken.
+// Weights fall off from a light to the edge of its sphere and sum up to 1 wherever there is any light. The same weights
+// divide a photon among lights and interpolate between lights what they received. A constant irradiance is therefore
+// reproduced as a constant, at the edges of surfaces too, where kernels of fixed area would darken.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace brisance {
 
 struct LightShares {
     static constexpr int kMost = 8;
-    int count = 0;  // 0: no light speaks for the place
+    int count = 0;  // 0: no light covers the point
     std::array<std::uint32_t, kMost> light;
     std::array<float, kMost> weight;  // their sum is 1
 };
@@ -27,8 +27,9 @@ public:
     // Keeps a reference to the surfaces.
     PartitionOfUnity(const Intersector& surfaces, std::span<const VirtualLight> lights);
 
-    // `normal`: unit, on the lit side. Of lights on the same material that face about the same way, with nothing in
-    // between: what stands on a surface hides the surface below, which no photon reaches, from the lights around.
+    // `normal`: unit, on the lit side. Only lights on the same material that face about the same way count, with
+    // nothing in between: an object that stands on a surface hides the surface below it, which no photon reaches, from
+    // the lights around.
     LightShares shares(const dvec3& position, const dvec3& normal, int scene_material) const;
 
     std::uint64_t bytes() const { return nodes_.size() * sizeof(Node) + spheres_.size() * sizeof(Sphere); }

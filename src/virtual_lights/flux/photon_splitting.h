@@ -1,4 +1,5 @@
-// Light on its way from the fire and the emitters, shared out among virtual lights wherever it meets a surface.
+// Photon splitting: particles from the fire and the emitters, whose power is divided among the virtual lights that
+// cover the point where they meet a surface.
 #pragma once
 
 #include <span>
@@ -6,8 +7,9 @@
 
 #include "core/fixed_sums.h"
 #include "transport/particles.h"
-#include "virtual_lights/camera_candidates.h"
-#include "virtual_lights/partition_of_unity.h"
+#include "virtual_lights/flux/partition_of_unity.h"
+#include "virtual_lights/placement/deposit.h"
+#include "virtual_lights/settings.h"
 
 namespace brisance {
 
@@ -16,8 +18,8 @@ struct PhotonReport {
     std::uint64_t photons = 0, from_fire = 0;
     std::uint64_t not_finite = 0;  // left out
     double emitted = 0.0;          // by the particles that were drawn
-    // Incident on surfaces that hold light, every time it arrives: given to lights, and where there are none. The
-    // latter is not lost to what is gathered with path extension, as paths go on there.
+    // Incident on surfaces that hold light, at every arrival: given to lights, and where none covers the surface. The
+    // latter is not lost with path extension, as paths continue there.
     double shared = 0.0, unshared = 0.0;
     double escaped = 0.0;
     double unshared_fraction() const { return unshared > 0.0 ? unshared / (shared + unshared) : 0.0; }
@@ -46,20 +48,16 @@ private:
     FixedSums sums_;                  // of all records [W]
 };
 
-// A particle on a surface that holds light.
-struct PhotonArrival {
-    LightCandidate place;  // `toward_viewer`: toward the source
-    Rgb power{0.0f};       // [W], for the surface's shading normal
-};
-
-// Where the particles of `paths` light paths, which share all power among them, meet surfaces that hold light.
+// Deposits, with their power, where the particles of `paths` light paths meet surfaces that hold light. The paths share
+// all emitted power among them.
 struct PhotonArrivals {
-    std::vector<PhotonArrival> arrivals;
+    std::vector<Deposit> arrivals;
     PhotonReport report;
 };
 PhotonArrivals photon_arrivals(const DirectLight& scene, std::size_t paths, Stream stream, std::uint32_t seed);
 
-PhotonReport trace_photons(const DirectLight& scene, const BoundingBall& ball, const PartitionOfUnity& cover,
+// Traces settings.photons particles and adds what arrives to the accounts of the lights that cover each hit.
+PhotonReport trace_photons(const DirectLight& scene, const BoundingBall& ball, const PartitionOfUnity& partition,
                            const VirtualLightSettings& settings, LightAccounts& accounts);
 
 }  // namespace brisance

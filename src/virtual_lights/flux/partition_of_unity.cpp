@@ -1,4 +1,4 @@
-#include "virtual_lights/partition_of_unity.h"
+#include "virtual_lights/flux/partition_of_unity.h"
 
 #include <algorithm>
 
@@ -7,13 +7,13 @@ namespace brisance {
 namespace {
 
 constexpr std::size_t kLeaf = 4;
-// Least cosine between normals of a place and of a light that speaks for it (Li et al., as they released it).
+// Least cosine between the normals of a point and of a light that covers it (Li et al., as they released it).
 constexpr float kSameWay = 0.7f;
 
-// Height above the surface from which lights see their places, of the light's radius.
+// Height above the surface at which visibility from a light is tested, of the light's radius.
 constexpr float kAbove = 0.05f;
 
-// Keeps the heaviest; of equal ones those of lower number, whatever the order of calls.
+// Keeps the largest weights; of equal ones those of lower index, whatever the order of calls.
 void insert(LightShares& shares, std::uint32_t light, float weight) {
     const auto before = [&](int i) {
         return shares.weight[i] > weight || (shares.weight[i] == weight && shares.light[i] < light);
@@ -72,7 +72,7 @@ void PartitionOfUnity::build(std::span<const VirtualLight> lights, std::span<Sph
     build(lights, spheres.subspan(half), first + half);
 }
 
-// Between places a little above the surface, so that it does not hide itself where it is curved.
+// Between points a little above the surface, so that it does not occlude itself where it is curved.
 bool PartitionOfUnity::hidden(const Sphere& sphere, const vec3& position, const vec3& normal) const {
     const float above = kAbove * sphere.radius;
     const dvec3 from(position + above * normal), way = dvec3(sphere.centre + above * sphere.normal) - from;

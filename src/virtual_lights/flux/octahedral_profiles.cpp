@@ -1,4 +1,4 @@
-#include "virtual_lights/octahedral_profiles.h"
+#include "virtual_lights/flux/octahedral_profiles.h"
 
 #include <algorithm>
 #include <array>
@@ -13,14 +13,14 @@ namespace brisance {
 
 namespace {
 
-// A table serves this many lights before it is worth its making.
+// A table pays off for this many lights of one material.
 constexpr std::size_t kWorthTable = 8;
 
 float rounded(float x, float steps) {
     return std::round(x * steps) / steps;
 }
 
-// Base colours of metal in even steps of their square root: what is dark is scaled up again (VirtualLights::reflected).
+// Base colours of metal in even steps of their square root: what is dark is scaled up again (LightSet::reflected).
 SurfaceMaterial rounded(SurfaceMaterial m) {
     for (int c = 0; c < 3; ++c) {
         const float root = rounded(std::sqrt(m.base_colour[c]), 32.0f);

@@ -1,4 +1,4 @@
-#include "virtual_lights/camera_candidates.h"
+#include "virtual_lights/placement/camera_candidates.h"
 
 #include <algorithm>
 #include <array>
@@ -17,7 +17,7 @@ constexpr WalkRules kCameraWalk{
     .transport = Transport::Radiance, .most_before = 15, .carries_colour = false};  // mirrors and smoke included
 
 struct Found {
-    std::array<LightCandidate, kPerPath> candidates;
+    std::array<Deposit, kPerPath> candidates;
     int count = 0;
 };
 
@@ -34,8 +34,8 @@ bool keep_candidate(const DirectLight& scene, const ParticleFlight& flight, Foun
 
 }  // namespace
 
-std::vector<LightCandidate> light_candidates(const DirectLight& scene, const PixelCamera& camera, std::size_t paths,
-                                             std::uint32_t seed) {
+std::vector<Deposit> light_candidates(const DirectLight& scene, const PixelCamera& camera, std::size_t paths,
+                                      std::uint32_t seed) {
     const double pixels = double(camera.width) * camera.height;
     if (!(pixels > 0.0) || !scene.surroundings())
         return {};
@@ -51,7 +51,7 @@ std::vector<LightCandidate> light_candidates(const DirectLight& scene, const Pix
             walk_particle(scene, {camera.ray(x, y), Rgb(1.0f)}, i, kCameraWalk, rng, visit);
         }
     });
-    std::vector<LightCandidate> out;
+    std::vector<Deposit> out;
     for (const Found& f : found)
         out.insert(out.end(), f.candidates.begin(), f.candidates.begin() + f.count);
     return out;

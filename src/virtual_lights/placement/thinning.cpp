@@ -1,38 +1,40 @@
-#include "virtual_lights/placement.h"
+#include "virtual_lights/placement/thinning.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "elimination/eliminate.h"
-#include "virtual_lights/packing_distance.h"
+#include "core/rng.h"
+#include "virtual_lights/placement/packing_distance.h"
 
 namespace brisance {
 
 namespace {
 
-// Neighbours from whose distance the room of each of few lights is taken: too many would blur it, too few make it
-// uneven.
+// Neighbours from whose distance the density around each of few lights is estimated: too many would blur it, too few
+// make it uneven.
 constexpr int kFewNeighbours = 12;
 
-Survivors blue_noise(const std::vector<vec3>& points, const VirtualLightSettings& s) {
+}  // namespace
+
+Survivors thin_to_blue_noise(const std::vector<vec3>& positions, const VirtualLightSettings& s) {
     EliminationSettings settings;
     settings.neighbours = s.neighbours;
     if (s.radius == LightRadius::Uniform) {
         settings.radius = EliminationRadius::Uniform;
-        for (const float distance : packing_distances(points, s.neighbours))
+        for (const float distance : packing_distances(positions, s.neighbours))
             settings.measure += area_of_distance(distance);
         if (!(settings.measure > 0.0))
             return {};
     }
-    return eliminate(points, static_cast<std::size_t>(s.count), settings);
+    return eliminate(positions, static_cast<std::size_t>(s.count), settings);
 }
 
 // The first of a shuffled sequence (Fisher and Yates). Of uniform radius: the mean area of all.
-Survivors at_random(const std::vector<vec3>& points, const VirtualLightSettings& s) {
-    std::vector<std::uint32_t> order(points.size());
+Survivors thin_at_random(const std::vector<vec3>& positions, const VirtualLightSettings& s) {
+    std::vector<std::uint32_t> order(positions.size());
     std::iota(order.begin(), order.end(), 0u);
-    const std::size_t count = std::min(points.size(), static_cast<std::size_t>(s.count));
+    const std::size_t count = std::min(positions.size(), static_cast<std::size_t>(s.count));
     for (std::size_t i = 0; i < count; ++i) {
         Rng rng(Stream::LightCandidate, ~i, s.seed);
         std::swap(order[i], order[i + static_cast<std::size_t>(rng.next_double() * double(order.size() - i))]);
@@ -42,7 +44,7 @@ Survivors at_random(const std::vector<vec3>& points, const VirtualLightSettings&
     std::vector<vec3> chosen;
     chosen.reserve(count);
     for (const std::uint32_t i : order)
-        chosen.push_back(points[i]);
+        chosen.push_back(positions[i]);
     Survivors out{order, packing_distances(chosen, kFewNeighbours)};
     if (s.radius == LightRadius::Uniform) {
         double area = 0.0;
@@ -54,36 +56,25 @@ Survivors at_random(const std::vector<vec3>& points, const VirtualLightSettings&
     return out;
 }
 
-}  // namespace
-
-std::vector<VirtualLight> place_lights(const Scene& scene, const std::vector<LightCandidate>& candidates,
-                                       const VirtualLightSettings& settings) {
-    if (candidates.empty() || settings.count <= 0)
-        return {};
-    std::vector<vec3> points;
-    points.reserve(candidates.size());
-    for (const LightCandidate& c : candidates)
-        points.push_back(c.position);
-    const bool even =
-        settings.placement == LightPlacement::BlueNoise || settings.placement == LightPlacement::RelaxedLightPaths;
-    const Survivors chosen = even ? blue_noise(points, settings) : at_random(points, settings);
+std::vector<VirtualLight> lights_of_deposits(const Scene& scene, const std::vector<Deposit>& deposits,
+                                             const Survivors& chosen, double radius_factor) {
     std::vector<VirtualLight> lights;
     for (std::size_t i = 0; i < chosen.index.size(); ++i) {
         if (!(chosen.distance[i] > 0.0f))
             continue;
-        lights.push_back(light_at(scene, candidates[chosen.index[i]]));
-        lights.back().radius = settings.radius_factor * chosen.distance[i];
+        lights.push_back(light_at(scene, deposits[chosen.index[i]]));
+        lights.back().radius = radius_factor * chosen.distance[i];
     }
     return lights;
 }
 
-VirtualLight light_at(const Scene& scene, const LightCandidate& place) {
-    const SurfacePoint point = surface_point(scene, place.hit, dvec3(place.toward_viewer));
+VirtualLight light_at(const Scene& scene, const Deposit& deposit) {
+    const SurfacePoint point = surface_point(scene, deposit.hit, dvec3(deposit.direction));
     VirtualLight light;
     light.position = point.position;
     light.clearance = point.clearance;
     light.frame = frame_around(lit_normal(point));
-    light.scene_material = place.scene_material;
+    light.scene_material = deposit.scene_material;
     light.material = point.material;
     return light;
 }

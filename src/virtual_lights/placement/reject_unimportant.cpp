@@ -1,4 +1,4 @@
-#include "virtual_lights/reject_unimportant.h"
+#include "virtual_lights/placement/reject_unimportant.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,21 +6,22 @@
 
 #include "core/parallel.h"
 #include "core/rng.h"
-#include "virtual_lights/packing_distance.h"
+#include "virtual_lights/placement/packing_distance.h"
 
 namespace brisance {
 
 namespace {
 
-// Candidates of the camera that density is estimated from at most, and how many of evenly spread ones a kernel holds.
+// Deposits of the camera that density is estimated from at most, and how many of them a kernel holds if they lie
+// evenly.
 constexpr std::size_t kMostPoints = 100000;
 constexpr double kInKernel = 16.0;
 constexpr double kLeastChance = 0.01;
 
-// Beside the seed, so that places are not judged by the numbers that drew them.
-constexpr std::uint64_t kJudging = std::uint64_t{1} << 32;
+// Beside the seed, so that rejection and placement draw independent numbers.
+constexpr std::uint64_t kRejection = std::uint64_t{1} << 32;
 
-// Points sorted into cubes; those near a place are in 27 of them.
+// Points sorted into cubes; those near a position are in 27 of them.
 class PointCubes {
 public:
     PointCubes(const std::vector<vec3>& points, float side) : side_(side) {
@@ -62,7 +63,7 @@ private:
     std::vector<Entry> entries_;
 };
 
-std::vector<vec3> thinned(const std::vector<LightCandidate>& from) {
+std::vector<vec3> thinned(const std::vector<Deposit>& from) {
     const std::size_t step = from.size() / kMostPoints + 1;
     std::vector<vec3> points;
     for (std::size_t i = 0; i < from.size(); i += step)
@@ -100,22 +101,21 @@ double scale_for(const std::vector<double>& importance, double target) {
 
 }  // namespace
 
-std::vector<LightCandidate> reject_unimportant(const std::vector<LightCandidate>& places,
-                                               const std::vector<LightCandidate>& from_camera, std::size_t target,
-                                               std::uint32_t seed) {
+std::vector<Deposit> reject_unimportant(const std::vector<Deposit>& deposits, const std::vector<Deposit>& from_camera,
+                                        std::size_t target, std::uint32_t seed) {
     const std::vector<vec3> points = thinned(from_camera);
     const float radius = points.empty() ? 0.0f : kernel_radius(points);
-    if (places.size() <= target || !(radius > 0.0f))
-        return places;
+    if (deposits.size() <= target || !(radius > 0.0f))
+        return deposits;
     const PointCubes cubes(points, radius);
-    std::vector<double> importance(places.size());
+    std::vector<double> importance(deposits.size());
     parallel_for(
-        places.size(), [&](std::size_t i) { importance[i] = cubes.kernel_sum(places[i].position); }, 256);
+        deposits.size(), [&](std::size_t i) { importance[i] = cubes.kernel_sum(deposits[i].position); }, 256);
     const double scale = scale_for(importance, double(target));
-    std::vector<LightCandidate> kept;
-    for (std::size_t i = 0; i < places.size(); ++i)
-        if (Rng(Stream::LightCandidate, i, kJudging | seed).next_double() < chance(importance[i], scale))
-            kept.push_back(places[i]);
+    std::vector<Deposit> kept;
+    for (std::size_t i = 0; i < deposits.size(); ++i)
+        if (Rng(Stream::LightCandidate, i, kRejection | seed).next_double() < chance(importance[i], scale))
+            kept.push_back(deposits[i]);
     return kept;
 }
 

@@ -1,4 +1,4 @@
-#include "virtual_lights/photon_splitting.h"
+#include "virtual_lights/flux/photon_splitting.h"
 
 #include <algorithm>
 #include <cmath>
@@ -68,12 +68,12 @@ float brightness_by_shading(const SurfacePoint& point, const dvec3& toward_sourc
     return static_cast<float>(std::min(shading / std::max(geometric, 1e-9), kMostBrighter));
 }
 
-void share_out(const DirectLight& scene, const RaySegment& segment, const Rgb& power, const PartitionOfUnity& cover,
+void share_out(const DirectLight& scene, const RaySegment& segment, const Rgb& power, const PartitionOfUnity& partition,
                LightAccounts& accounts, PhotonReport& report) {
     const SurfacePoint& point = *segment.point;
     if (!holds_light(point.material))
         return;
-    const LightShares shares = cover.shares(point.position, lit_normal(point), material_of(scene, segment));
+    const LightShares shares = partition.shares(point.position, lit_normal(point), material_of(scene, segment));
     (shares.count > 0 ? report.shared : report.unshared) += luminance(power);
     const dvec3 toward_source = -segment.ray.direction;
     const float brighter = brightness_by_shading(point, toward_source);
@@ -126,8 +126,8 @@ PhotonArrivals photon_arrivals(const DirectLight& scene, std::size_t paths, Stre
                               return;
                           const dvec3 toward_source = -segment.ray.direction;
                           report.shared += luminance(power);
-                          arrivals.push_back({{*segment.hit, vec3(segment.point->position), vec3(toward_source),
-                                               material_of(scene, segment)},
+                          arrivals.push_back({*segment.hit, vec3(segment.point->position), vec3(toward_source),
+                                              material_of(scene, segment),
                                               power * brightness_by_shading(*segment.point, toward_source)});
                       });
     });
@@ -139,7 +139,7 @@ PhotonArrivals photon_arrivals(const DirectLight& scene, std::size_t paths, Stre
     return out;
 }
 
-PhotonReport trace_photons(const DirectLight& scene, const BoundingBall& ball, const PartitionOfUnity& cover,
+PhotonReport trace_photons(const DirectLight& scene, const BoundingBall& ball, const PartitionOfUnity& partition,
                            const VirtualLightSettings& settings, LightAccounts& accounts) {
     const auto total = static_cast<std::size_t>(settings.photons);
     const PhotonPaths paths(scene, ball, total, Stream::Photon, settings.seed);
@@ -148,7 +148,7 @@ PhotonReport trace_photons(const DirectLight& scene, const BoundingBall& ball, c
         PhotonReport& report = parts[begin / kBlock];
         for (std::size_t i = begin; i < end; ++i)
             paths.trace(i, report, [&](const RaySegment& segment, const Rgb& power) {
-                share_out(scene, segment, power, cover, accounts, report);
+                share_out(scene, segment, power, partition, accounts, report);
             });
     });
     PhotonReport report;

@@ -1,0 +1,43 @@
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "virtual_lights/choices.h"
+
+namespace brisance {
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& what) {
+    throw Error(ExitCode::Usage, "virtual lights: " + what);
+}
+
+template <class T>
+void require_in(const SettingRange<T>& range, T value, const char* name) {
+    if (!range.contains(value))
+        refuse(fmt::format("{} must lie in {}{}, {}], not {}", name, range.without_low ? '(' : '[', range.low,
+                           range.high, value));
+}
+
+}  // namespace
+
+void check(const VirtualLightSettings& s) {
+    using R = VirtualLightRanges;
+    require_in(R::count, s.count, "count");
+    require_in(R::point_bound, s.point_bound, "point_bound");
+    require_in(R::sphere_neighbours, s.sphere_neighbours, "sphere_neighbours");
+    require_in(R::sphere_samples, s.sphere_samples, "sphere_samples");
+    require_in(R::candidates_per_pixel, s.candidates_per_pixel, "candidates_per_pixel");
+    require_in(R::neighbours, s.neighbours, "neighbours");
+    require_in(R::radius_factor, s.radius_factor, "radius_factor");
+    require_in(R::photons, s.photons, "photons");
+    require_in(R::profile_resolution, s.profile_resolution, "profile_resolution");
+    require_in(R::resampling_candidates, s.resampling_candidates, "resampling_candidates");
+    require_in(R::n_min, s.n_min, "n_min");
+    require_in(R::n_max, s.n_max, "n_max");
+    if (!(s.n_max >= s.n_min))
+        refuse("n_max must not be below n_min");
+    if (const std::string reason = why_not_together(s); !reason.empty())
+        refuse(reason);
+}
+
+}  // namespace brisance

@@ -1,0 +1,109 @@
+#include "virtual_lights/flux/gathered_flux.h"
+
+#include <numbers>
+
+#include "core/stopwatch.h"
+#include "virtual_lights/flux/covered_area.h"
+
+namespace brisance {
+
+namespace {
+
+// Seconds since the last call.
+class Lap {
+public:
+    double take() {
+        const double now = watch_.seconds(), passed = now - before_;
+        before_ = now;
+        return passed;
+    }
+
+private:
+    Stopwatch watch_;
+    double before_ = 0.0;
+};
+
+std::vector<VirtualLight> place_lights(const LightSet& set, const Placement& placement,
+                                       const std::vector<Deposit>& deposits) {
+    if (deposits.empty())
+        return {};
+    std::vector<vec3> positions;
+    positions.reserve(deposits.size());
+    for (const Deposit& deposit : deposits)
+        positions.push_back(deposit.position);
+    return lights_of_deposits(set.scene().surroundings()->scene(), deposits, placement.thin(positions, set.settings()),
+                              set.settings().radius_factor);
+}
+
+// Lights whose area cannot be measured leave their surface to others, or to extended paths.
+void measure_lights(LightSet& set) {
+    const Intersector& surfaces = set.scene().surroundings()->intersector();
+    set.partition = PartitionOfUnity(surfaces, set.lights);
+    const std::vector<std::uint8_t> known = measure_areas(surfaces, set.partition, set.lights, set.settings().seed);
+    std::vector<VirtualLight> kept;
+    for (std::size_t i = 0; i < set.lights.size(); ++i)
+        if (known[i])
+            kept.push_back(set.lights[i]);
+    if (kept.size() == set.lights.size())
+        return;
+    set.lights = std::move(kept);
+    set.partition = PartitionOfUnity(surfaces, set.lights);
+    measure_areas(surfaces, set.partition, set.lights, set.settings().seed);
+}
+
+void finish_lights(LightSet& set, const LightAccounts& accounts) {
+    const int resolution = set.settings().profile_resolution;
+    set.profiles = Profiles(set.lights, accounts, resolution);
+    for (std::size_t i = 0; i < set.lights.size(); ++i) {
+        VirtualLight& light = set.lights[i];
+        if (light.profile >= 0) {
+            light.flux = set.profiles.exitance(light) * float(light.area);
+            light.base_flux = base_flux(light, i, accounts, resolution);
+            light.intensity = set.profiles.brightest(light) * light.area;
+        } else {
+            light.irradiance = accounts.whole(i) / float(light.area);
+            light.flux = light.base_flux = light.irradiance * light.material.base_colour * float(light.area);
+            light.intensity = luminance(light.flux) / std::numbers::pi;
+        }
+        light.power = luminance(light.flux);
+        set.report.flux += light.flux;
+    }
+}
+
+}  // namespace
+
+void GatheredFlux::build(LightSet& set, const Placement& placement, const PixelCamera& camera) {
+    VirtualLightReport& report = set.report;
+    Lap lap;
+    const std::vector<Deposit> deposits = placement.deposits({set.scene(), camera, set.settings()});
+    report.candidates = deposits.size();
+    report.candidate_seconds = lap.take();
+    set.lights = place_lights(set, placement, deposits);
+    report.elimination_seconds = lap.take();
+
+    measure_lights(set);
+    for (VirtualLight& light : set.lights)
+        if (needs_energy_tables(light.material))
+            light.profile = static_cast<std::int32_t>(report.profiles++);
+    report.area_seconds = lap.take();
+
+    const BoundingBall ball = ball_around(set.scene());
+    LightAccounts accounts(set.lights, set.settings().profile_resolution, emitted_power(set.scene(), ball));
+    report.photons = trace_photons(set.scene(), ball, set.partition, set.settings(), accounts);
+    report.photon_bytes = accounts.bytes();
+    report.photon_seconds = lap.take();
+
+    finish_lights(set, accounts);
+    report.profile_seconds = lap.take();
+}
+
+Rgb GatheredFlux::intensity(const VirtualLight& light, const dvec3& toward) const {
+    const double cosine = glm::dot(light.frame.normal, toward);
+    return cosine > 0.0 ? set_.radiance(light, toward) * float(cosine * light.area) : Rgb(0.0f);
+}
+
+Rgb GatheredFlux::surface_light(const VirtualLight& light, const dvec3& toward) const {
+    return light.profile >= 0 ? set_.profiles.radiance(light, toward) : light.irradiance;
+}
+
+}  // namespace brisance

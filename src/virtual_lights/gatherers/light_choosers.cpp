@@ -1,0 +1,47 @@
+#include "virtual_lights/gatherers/light_choosers.h"
+
+#include <algorithm>
+#include <numbers>
+
+namespace brisance {
+
+namespace {
+
+std::vector<LightBounds> bounds_of(const std::vector<VirtualLight>& lights) {
+    std::vector<LightBounds> out;
+    out.reserve(lights.size());
+    for (const VirtualLight& l : lights)
+        out.push_back({l.position - l.radius, l.position + l.radius, l.frame.normal, l.spread, std::numbers::pi / 2.0,
+                       l.intensity, false});
+    return out;
+}
+
+}  // namespace
+
+PowerChooser::PowerChooser(const std::vector<VirtualLight>& lights, LightImportance importance) {
+    double sum = 0.0;
+    for (const VirtualLight& light : lights)
+        cumulative_.push_back(sum += importance(light));
+    if (!(sum > 0.0))
+        cumulative_.clear();
+    for (double& c : cumulative_)
+        c /= sum;
+}
+
+std::optional<LightTree::Choice> PowerChooser::choose(const LitPoint& point, double u) const {
+    if (cumulative_.empty())
+        return std::nullopt;
+    const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end() - 1, u);
+    const auto light = static_cast<std::size_t>(found - cumulative_.begin());
+    return LightTree::Choice{light, probability(point, light)};
+}
+
+double PowerChooser::probability(const LitPoint&, std::size_t light) const {
+    if (cumulative_.empty())
+        return 0.0;
+    return cumulative_[light] - (light > 0 ? cumulative_[light - 1] : 0.0);
+}
+
+TreeChooser::TreeChooser(const std::vector<VirtualLight>& lights, LightImportance) : tree_(bounds_of(lights)) {}
+
+}  // namespace brisance

@@ -1,0 +1,50 @@
+// Choosing one of many lights for a path vertex, with a known probability.
+#pragma once
+
+#include <concepts>
+#include <optional>
+#include <vector>
+
+#include "emitters/light_tree.h"
+#include "virtual_lights/placement/placement.h"
+#include "virtual_lights/virtual_light.h"
+
+namespace brisance {
+
+// Made of lights whose power, intensity, area and spread are known.
+template <class Chooser>
+concept LightChooser = requires(const Chooser& chooser, const std::vector<VirtualLight>& lights,
+                                LightImportance importance, const LitPoint& point, double u, std::size_t light) {
+    Chooser(lights, importance);
+    // From a number in [0, 1). None where no light can contribute.
+    { chooser.choose(point, u) } -> std::same_as<std::optional<LightTree::Choice>>;
+    // With which choose() picks that light.
+    { chooser.probability(point, light) } -> std::same_as<double>;
+    { chooser.bytes() } -> std::same_as<std::uint64_t>;
+};
+
+// In proportion to the placement's importance, the same at every vertex.
+class PowerChooser {
+public:
+    PowerChooser(const std::vector<VirtualLight>& lights, LightImportance importance);
+    std::optional<LightTree::Choice> choose(const LitPoint& point, double u) const;
+    double probability(const LitPoint& point, std::size_t light) const;
+    std::uint64_t bytes() const { return cumulative_.size() * sizeof(double); }
+
+private:
+    std::vector<double> cumulative_;  // inclusive; ends at 1
+};
+
+// By the bounds of a light tree on what each light sends to the vertex.
+class TreeChooser {
+public:
+    TreeChooser(const std::vector<VirtualLight>& lights, LightImportance);
+    std::optional<LightTree::Choice> choose(const LitPoint& point, double u) const { return tree_.choose(point, u); }
+    double probability(const LitPoint& point, std::size_t light) const { return tree_.probability(point, light); }
+    std::uint64_t bytes() const { return tree_.bytes(); }
+
+private:
+    LightTree tree_;
+};
+
+}  // namespace brisance

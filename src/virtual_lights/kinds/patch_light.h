@@ -1,0 +1,63 @@
+// Patches of surface: lights are interpolated over the surface that they cover, and a ray toward one is decided by what
+// it meets there, so that nothing is seen through walls.
+#pragma once
+
+#include "virtual_lights/kinds/kind.h"
+#include "virtual_lights/kinds/sphere_sampling.h"
+
+namespace brisance {
+
+// The part of one light in what the vertex scatters from that direction, if a ray toward the light's sphere meets
+// surface that it covers.
+Rgb incident_from_patch(const LightSet& set, const Connection& connection, const PathVertex& vertex, Rng& rng);
+
+struct PatchKind {
+    static constexpr const char* kNeeds = kSurfaceFlux;
+
+    template <SurfaceFlux Flux>
+    class Of {
+    public:
+        static void fit(LightSet&) {}
+
+        explicit Of(const LightSet& set) : set_(set), flux_(set) {}
+
+        dvec3 sample(std::size_t light, const PathVertex& vertex, Rng& rng) const {
+            return sample_toward(set_.lights[light], vertex.lit(), rng);
+        }
+
+        double pdf(std::size_t light, const PathVertex& vertex, const dvec3& direction) const {
+            return pdf_toward(set_.lights[light], vertex.lit(), direction);
+        }
+
+        Rgb radiance(std::size_t light, const PathVertex&, const dvec3& direction) const {
+            return flux_.surface_light(set_.lights[light], -direction);
+        }
+
+        Rgb radiance_at(const CoveredHit& hit, int share) const { return set_.reflected(hit, share); }
+
+        Rgb incident(const Connection& connection, const PathVertex& vertex, Rng& rng) const {
+            return incident_from_patch(set_, connection, vertex, rng);
+        }
+
+        Rgb connect(const Connection& connection, const PathVertex& vertex, float factor, Rng& rng) const {
+            return factor * incident(connection, vertex, rng);
+        }
+
+        Rgb estimate(std::size_t light, double probability, const PathVertex& vertex, Rng& rng) const {
+            Connection connection{light, sample(light, vertex, rng), {}, {}};
+            connection.scattered = vertex.at(connection.direction);
+            if (connection.scattered.value == Rgb(0.0f))
+                return Rgb(0.0f);
+            const double density = probability * pdf(light, vertex, connection.direction);
+            if (!(density > 0.0))
+                return Rgb(0.0f);
+            return incident(connection, vertex, rng) / float(density);
+        }
+
+    private:
+        const LightSet& set_;
+        Flux flux_;
+    };
+};
+
+}  // namespace brisance

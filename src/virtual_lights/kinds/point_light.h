@@ -1,0 +1,68 @@
+// Virtual point lights: the power of a light at its centre, with a bound on the geometry term.
+#pragma once
+
+#include <algorithm>
+
+#include "virtual_lights/kinds/kind.h"
+#include "virtual_lights/kinds/shadow_ray.h"
+
+namespace brisance {
+
+struct PointKind {
+    static constexpr const char* kNeeds = "any flux";
+
+    template <LightFlux Flux>
+    class Of {
+    public:
+        static void fit(LightSet& set) {
+            for (VirtualLight& light : set.lights)
+                light.radius = 0.0;
+        }
+
+        explicit Of(const LightSet& set) : set_(set), flux_(set) {}
+
+        dvec3 sample(std::size_t light, const PathVertex& vertex, Rng&) const {
+            return glm::normalize(set_.lights[light].position - vertex.position());
+        }
+
+        double pdf(std::size_t, const PathVertex&, const dvec3&) const { return 1.0; }
+
+        // The bound holds for the light's cosine over squared distance; the vertex's cosine belongs to its BSDF.
+        Rgb radiance(std::size_t index, const PathVertex& vertex, const dvec3& direction) const {
+            const VirtualLight& light = set_.lights[index];
+            const dvec3 way = light.position - vertex.position();
+            const double square = glm::dot(way, way), cosine = -glm::dot(light.frame.normal, direction);
+            if (!(cosine > 0.0) || !(square > 0.0))
+                return Rgb(0.0f);
+            const double kept = std::min(1.0, set_.settings().point_bound * square / cosine);
+            return flux_.intensity(light, -direction) * float(kept / square);
+        }
+
+        Rgb connect(const Connection& c, const PathVertex& vertex, float factor, Rng& rng) const {
+            const ShadowRay shadow = shadow_ray(set_.scene(), vertex, set_.lights[c.light]);
+            if (!shadow.clear)
+                return Rgb(0.0f);
+            const double transmittance = set_.scene().lines().transmittance(shadow.ray, shadow.distance, rng);
+            return c.scattered.value * c.radiance * (factor * float(transmittance));
+        }
+
+        Rgb estimate(std::size_t index, double probability, const PathVertex& vertex, Rng& rng) const {
+            const dvec3 direction = sample(index, vertex, rng);
+            const Rgb reflected = radiance(index, vertex, direction);
+            const Rgb scattered = reflected == Rgb(0.0f) ? Rgb(0.0f) : reflected * vertex.at(direction).value;
+            if (scattered == Rgb(0.0f))
+                return scattered;
+            const ShadowRay shadow = shadow_ray(set_.scene(), vertex, set_.lights[index]);
+            if (!shadow.clear)
+                return Rgb(0.0f);
+            return scattered *
+                   float(set_.scene().lines().transmittance(shadow.ray, shadow.distance, rng) / probability);
+        }
+
+    private:
+        const LightSet& set_;
+        Flux flux_;
+    };
+};
+
+}  // namespace brisance

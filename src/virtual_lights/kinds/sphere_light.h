@@ -1,0 +1,113 @@
+// Virtual spherical lights: the power of a light leaves a sphere around it, uniformly over its cross-section, and is
+// visible where its centre is.
+//
+// M. Hasan, J. Krivanek, B. Walter, K. Bala, Virtual Spherical Lights for Many-Light Rendering of Glossy Scenes, ACM
+// Transactions on Graphics 28(5), 2009.
+#pragma once
+
+#include <numbers>
+
+#include "virtual_lights/kinds/kind.h"
+#include "virtual_lights/kinds/shadow_ray.h"
+#include "virtual_lights/kinds/sphere_sampling.h"
+
+namespace brisance {
+
+// How many of the directions toward one sphere each technique samples: the sphere's cone, the BSDF of the vertex and
+// that of the light. They are combined by the balance heuristic.
+struct SphereTechniques {
+    int cone, vertex, light;
+
+    SphereTechniques(int samples, bool lobed_light)
+        : cone(samples), vertex(samples / 4), light(lobed_light ? samples / 4 : 0) {
+        cone -= vertex + light;
+    }
+};
+
+// The radius of each light is its distance to the neighbour of number settings.sphere_neighbours.
+void widen_to_neighbours(LightSet& set);
+
+struct SphereKind {
+    static constexpr const char* kNeeds = "any flux";
+
+    template <LightFlux Flux>
+    class Of {
+    public:
+        static void fit(LightSet& set) { widen_to_neighbours(set); }
+
+        explicit Of(const LightSet& set) : set_(set), flux_(set) {}
+
+        dvec3 sample(std::size_t light, const PathVertex& vertex, Rng& rng) const {
+            return sample_toward(set_.lights[light], vertex.lit(), rng);
+        }
+
+        double pdf(std::size_t light, const PathVertex& vertex, const dvec3& direction) const {
+            return pdf_toward(set_.lights[light], vertex.lit(), direction);
+        }
+
+        Rgb radiance(std::size_t index, const PathVertex&, const dvec3& direction) const {
+            const VirtualLight& light = set_.lights[index];
+            return flux_.intensity(light, -direction) / float(std::numbers::pi * light.radius * light.radius);
+        }
+
+        Rgb connect(const Connection& c, const PathVertex& vertex, float factor, Rng& rng) const {
+            const ShadowRay shadow = shadow_ray(set_.scene(), vertex, set_.lights[c.light]);
+            if (!shadow.clear)
+                return Rgb(0.0f);
+            const double transmittance = set_.scene().lines().transmittance(shadow.ray, shadow.distance, rng);
+            return c.scattered.value * c.radiance * (factor * float(transmittance));
+        }
+
+        Rgb estimate(std::size_t index, double probability, const PathVertex& vertex, Rng& rng) const {
+            const VirtualLight& light = set_.lights[index];
+            const ShadowRay shadow = shadow_ray(set_.scene(), vertex, light);
+            if (!shadow.clear)
+                return Rgb(0.0f);
+            const Rgb sum = sum_of_directions(light, vertex, rng);
+            const double transmittance = set_.scene().lines().transmittance(shadow.ray, shadow.distance, rng);
+            return sum * float(transmittance / (std::numbers::pi * light.radius * light.radius * probability));
+        }
+
+    private:
+        std::optional<Bsdf> lobes_of(const VirtualLight& light) const {
+            if constexpr (LobedFlux<Flux>)
+                return flux_.lobes(light);
+            return std::nullopt;
+        }
+
+        // Scattered intensity of the light over the density of the directions [W/m^2 times area, per sr].
+        Rgb sum_of_directions(const VirtualLight& light, const PathVertex& vertex, Rng& rng) const {
+            const std::optional<Bsdf> lobes = lobes_of(light);
+            const SphereTechniques draws(set_.settings().sphere_samples, lobes.has_value());
+            Rgb sum(0.0f);
+            const auto add = [&](const dvec3& direction) {
+                const PathVertex::Value scattered = vertex.at(direction);
+                const Rgb through = scattered.value * flux_.intensity(light, -direction);
+                if (through == Rgb(0.0f))
+                    return;
+                double density = draws.cone * pdf_toward(light, vertex.lit(), direction) + draws.vertex * scattered.pdf;
+                if (draws.light > 0)
+                    density += draws.light * lobes->pdf(light.toward_source, -direction);
+                sum += through / float(density);
+            };
+            for (int i = 0; i < draws.cone; ++i)
+                add(sample_toward(light, vertex.lit(), rng));
+            for (int i = 0; i < draws.vertex; ++i)
+                if (const std::optional<PathVertex::Sample> s = vertex.sample(rng);
+                    s && !s->delta && leads_into(light, vertex.lit(), s->wi))
+                    add(s->wi);
+            for (int i = 0; i < draws.light; ++i) {
+                const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
+                if (const std::optional<BsdfSample> s = lobes->sample(light.toward_source, {x, y, z});
+                    s && !s->delta && leads_into(light, vertex.lit(), -s->wi))
+                    add(-s->wi);
+            }
+            return sum;
+        }
+
+        const LightSet& set_;
+        Flux flux_;
+    };
+};
+
+}  // namespace brisance

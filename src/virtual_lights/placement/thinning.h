@@ -1,0 +1,23 @@
+// From many deposits to few virtual lights.
+#pragma once
+
+#include "elimination/eliminate.h"
+#include "virtual_lights/placement/deposit.h"
+#include "virtual_lights/settings.h"
+#include "virtual_lights/virtual_light.h"
+
+namespace brisance {
+
+// At most settings.count positions, with the distance that each keeps from others. By weighted sample elimination:
+Survivors thin_to_blue_noise(const std::vector<vec3>& positions, const VirtualLightSettings& settings);
+// ... and by chance alone:
+Survivors thin_at_random(const std::vector<vec3>& positions, const VirtualLightSettings& settings);
+
+// Lights with a radius that hold no light yet. Deposits without another one elsewhere become no light.
+std::vector<VirtualLight> lights_of_deposits(const Scene& scene, const std::vector<Deposit>& deposits,
+                                             const Survivors& chosen, double radius_factor);
+
+// A light that has a position but no radius.
+VirtualLight light_at(const Scene& scene, const Deposit& deposit);
+
+}  // namespace brisance

@@ -1,0 +1,180 @@
+// The table of techniques, and the keys and presets that are read from it.
+#include "virtual_lights/choices.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "core/error.h"
+#include "room.h"
+#include "shot/keys.h"
+
+namespace brisance {
+namespace {
+
+using namespace testing;
+
+const Key& key_of(const std::string& name) {
+    for (const Key& key : shot_keys())
+        if (key.path == "virtual_lights." + name)
+            return key;
+    throw std::runtime_error("no key " + name);
+}
+
+std::vector<std::string> names_of(const std::vector<TechniqueChoice>& choices) {
+    std::vector<std::string> names;
+    for (const TechniqueChoice& c : choices)
+        names.push_back(c.name);
+    return names;
+}
+
+bool accepted(const VirtualLightSettings& settings) {
+    try {
+        check(settings);
+        return true;
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::Usage) << error.what();
+        return false;
+    }
+}
+
+TEST(Choices, AreTheSchemasNames) {
+    const std::pair<const char*, const std::vector<TechniqueChoice>&> tables[] = {{"placement", light_placements()},
+                                                                                  {"flux", light_fluxes()},
+                                                                                  {"kind", light_kinds()},
+                                                                                  {"sampling", light_gatherers()}};
+    for (const auto& [name, choices] : tables) {
+        EXPECT_EQ(key_of(name).schema.at("enum").get<std::vector<std::string>>(), names_of(choices)) << name;
+        EXPECT_EQ(key_of(name).get(Shot()).value(), choices.front().name) << name << ": the first is the default";
+        for (const TechniqueChoice& choice : choices)
+            EXPECT_NE(key_of(name).help.find(choice.name + ": " + choice.help), std::string::npos) << choice.name;
+    }
+}
+
+TEST(Choices, ByDefaultGoTogether) {
+    EXPECT_EQ(why_not_together({}), "");
+}
+
+// Every product is either built or refused with a reason; 4 x (1 x 7 + 2 x 4) of gathered flux, 2 x 4 of photons' own.
+TEST(Choices, AreAllBuiltOrRefused) {
+    const Room room(coloured_room());
+    int built = 0, refused = 0;
+    for (const TechniqueChoice& placement : light_placements())
+        for (const TechniqueChoice& flux : light_fluxes())
+            for (const TechniqueChoice& kind : light_kinds())
+                for (const TechniqueChoice& gatherer : light_gatherers()) {
+                    VirtualLightSettings s;
+                    s.count = 20;
+                    s.photons = 1000;
+                    s.path_extension = false;
+                    s.placement = placement.name;
+                    s.flux = flux.name;
+                    s.kind = kind.name;
+                    s.sampling = gatherer.name;
+                    const std::string what = placement.name + " " + flux.name + " " + kind.name + " " + gatherer.name;
+                    if (!why_not_together(s).empty()) {
+                        EXPECT_FALSE(accepted(s)) << what;
+                        ++refused;
+                        continue;
+                    }
+                    const VirtualLights lights = room.lights(s);
+                    EXPECT_FALSE(lights.lights().empty()) << what;
+                    Rng rng(Stream::Path, 0);
+                    EXPECT_TRUE(std::isfinite(room.by_lights(lights, 0.4, 0.6, rng).x)) << what;
+                    ++built;
+                }
+    EXPECT_EQ(built, 4 * (7 + 2 * 4) + 2 * 4);
+    EXPECT_EQ(built + refused, 4 * 2 * 3 * 7);
+}
+
+TEST(Presets, AreSettingsOfAShotThatGoTogether) {
+    for (const TechniquePreset& preset : light_presets()) {
+        Shot shot;
+        for (const auto& [name, value] : preset.settings) {
+            const Json json = value == "false" ? Json(false) : Json(value);
+            EXPECT_TRUE(key_of(name).set(shot, json)) << preset.name << ": " << name << "=" << value;
+        }
+        EXPECT_EQ(why_not_together(shot.virtual_lights), "") << preset.name;
+    }
+}
+
+// Ranges that the schema states, against the renderer's own check.
+class Ranges : public ::testing::TestWithParam<const char*> {};
+
+// With other settings as they must be for this one to have any value.
+VirtualLightSettings with(const std::string& name, const Json& value) {
+    Shot shot;
+    shot.virtual_lights.n_min = 0.0;
+    shot.virtual_lights.n_max = name == "n_min" ? std::numeric_limits<double>::max() : 80.0;
+    EXPECT_TRUE(key_of(name).set(shot, value)) << name << "=" << value;
+    return shot.virtual_lights;
+}
+
+TEST_P(Ranges, OfTheSchemaAreTheRenderers) {
+    const std::string name = GetParam();
+    const Json& schema = key_of(name).schema;
+    const bool whole = schema.at("type") == "integer";
+    Shot unused;
+    if (schema.contains("exclusiveMinimum")) {
+        const double low = schema["exclusiveMinimum"];
+        EXPECT_TRUE(accepted(with(name, low + 1e-9))) << name;
+        EXPECT_FALSE(key_of(name).set(unused, low)) << name;
+    } else {
+        EXPECT_TRUE(accepted(with(name, schema.at("minimum")))) << name;
+        EXPECT_FALSE(key_of(name).set(unused, schema["minimum"].get<double>() - 1.0)) << name;
+    }
+    if (schema.contains("maximum")) {
+        EXPECT_TRUE(accepted(with(name, schema["maximum"]))) << name;
+        EXPECT_FALSE(key_of(name).set(unused, schema["maximum"].get<double>() + 1.0)) << name;
+    } else {
+        EXPECT_FALSE(whole) << name;
+        EXPECT_TRUE(accepted(with(name, 1e300))) << name;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(OfVirtualLights, Ranges,
+                         ::testing::Values("count", "point_bound", "sphere_neighbours", "sphere_samples",
+                                           "candidates_per_pixel", "neighbours", "radius_factor", "photons",
+                                           "profile_resolution", "resampling_candidates", "n_min", "n_max"));
+
+// Every key with numbers is in the list above, but for the seed, of which the renderer takes any.
+TEST(AllRanges, AreTested) {
+    int numbers = 0;
+    for (const Key& key : shot_keys())
+        if (key.path.starts_with("virtual_lights.") && key.path != "virtual_lights.seed" &&
+            (key.schema.value("type", "") == "integer" || key.schema.value("type", "") == "number"))
+            ++numbers;
+    EXPECT_EQ(numbers, 12);
+}
+
+// What the check takes the renderer can build, where it does not take long.
+TEST(Settings, AtTheEndsOfTheirRangesAreBuilt) {
+    SceneSettings scene = coloured_room();
+    scene.quads[2].material = rough_metal(Rgb(0.9f, 0.7f, 0.4f), 0.4f);
+    const Room room(scene);
+    const auto finite = [&](const std::function<void(VirtualLightSettings&)>& change) {
+        VirtualLightSettings s;
+        s.count = 40;
+        s.photons = 2000;
+        change(s);
+        const VirtualLights lights(room.direct, {4, 4, room.camera().ray}, s);
+        Rng rng(Stream::Path, 0);
+        return std::isfinite(room.by_lights(lights, 0.4, 0.9, rng).x);
+    };
+    using S = VirtualLightSettings;
+    using R = VirtualLightRanges;
+    EXPECT_TRUE(finite([](S& s) { s.profile_resolution = R::profile_resolution.low; }));
+    EXPECT_TRUE(finite([](S& s) { s.count = 4, s.profile_resolution = R::profile_resolution.high; }));
+    EXPECT_TRUE(finite([](S& s) { s.radius_factor = R::radius_factor.high; }));
+    EXPECT_TRUE(finite([](S& s) { s.radius_factor = 1e-9; }));
+    EXPECT_TRUE(finite([](S& s) { s.candidates_per_pixel = R::candidates_per_pixel.low; }));
+    EXPECT_TRUE(finite([](S& s) { s.candidates_per_pixel = R::candidates_per_pixel.high; }));
+    EXPECT_TRUE(finite([](S& s) { s.neighbours = R::neighbours.low; }));
+    EXPECT_TRUE(finite([](S& s) { s.neighbours = R::neighbours.high; }));
+    EXPECT_TRUE(finite([](S& s) { s.n_min = s.n_max = 0.0; }));
+}
+
+}  // namespace
+}  // namespace brisance
