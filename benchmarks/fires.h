@@ -5,7 +5,7 @@
 
 #include "gathering/gather.h"
 #include "lighting_grid/lighting_grid.h"
-#include "medium/extinction_pyramid.h"
+#include "medium/lattice/extinction_pyramid.h"
 #include "medium/medium.h"
 
 namespace brisance::benchmarks {

@@ -60,6 +60,17 @@ class CheckIncludes(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("not of a row above it", output)
 
+    def test_finds_what_has_grown_too_large(self):
+        code, output = self.check({"film/a.cpp": "//\n" * 401})
+        self.assertEqual(code, 1)
+        self.assertIn("film/a.cpp: 401 lines", output)
+        code, output = self.check({f"film/a{i}.h": "" for i in range(26)})
+        self.assertEqual(code, 1)
+        self.assertIn("film: 27 files", output)
+        code, output = self.check({f"film/a{i}.h": "//\n" * 400 for i in range(7)})
+        self.assertEqual(code, 1)
+        self.assertIn("2800 lines", output)
+
     def test_finds_a_folder_without_row(self):
         code, output = self.check({"extra/a.h": ""})
         self.assertEqual(code, 1)

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Fails when a file of src/ includes a module or a library that its row in src/README.md leaves out.
+"""Fails when a file of src/ includes a module or a library that its row in src/README.md leaves out, or when a folder
+or a file of src/ has grown too large to be read.
 
 usage: check_includes.py SRC_FOLDER
 """
@@ -13,6 +14,7 @@ INCLUDE = re.compile(r"^\s*#\s*include\s*([<\"])([^>\"]+)[>\"]", re.MULTILINE)
 # Other names under which a library's headers are found.
 ALIASES = {"oneapi": "tbb", "nanovdb": "openvdb", "tiny_gltf.h": "tinygltf"}
 SOURCES = {".h", ".hpp", ".cpp", ".cc", ".inl"}
+MOST_FILES, MOST_LINES, MOST_LINES_OF_FILE = 25, 2500, 400
 
 
 def read_rules(readme):
@@ -66,6 +68,23 @@ def check_file(path, root, rules):
             yield f"{shown}:{line}: write {header} from src/ on, with its module"
 
 
+def check_sizes(root):
+    """Folders of too many files or lines, and files of too many lines."""
+    folders = {}
+    for path in sorted(root.glob("*/**/*")):
+        if path.suffix not in SOURCES:
+            continue
+        lines = len(path.read_text(encoding="utf-8").splitlines())
+        if lines > MOST_LINES_OF_FILE:
+            yield f"{path.relative_to(root)}: {lines} lines; {MOST_LINES_OF_FILE} at most"
+        files, sum_of_lines = folders.get(path.parent, (0, 0))
+        folders[path.parent] = (files + 1, sum_of_lines + lines)
+    for folder, (files, lines) in folders.items():
+        if files > MOST_FILES or lines > MOST_LINES:
+            yield (f"{folder.relative_to(root)}: {files} files of {lines} lines; {MOST_FILES} files and "
+                   f"{MOST_LINES} lines at most")
+
+
 def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
@@ -77,6 +96,7 @@ def main():
     for path in sorted(root.glob("*/**/*")):
         if path.suffix in SOURCES and path.relative_to(root).parts[0] in rules:
             complaints += check_file(path, root, rules)
+    complaints += check_sizes(root)
     print("\n".join(complaints) if complaints else f"{len(rules)} modules keep to the table")
     sys.exit(1 if complaints else 0)
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "camera/settings.h"
-#include "medium/voxel_walk.h"
+#include "medium/lattice/voxel_walk.h"
 #include "scene/scene.h"
 
 namespace brisance {

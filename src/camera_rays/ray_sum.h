@@ -6,7 +6,7 @@
 #include "camera_rays/source_field.h"
 #include "core/cell.h"
 #include "medium/attenuation.h"
-#include "medium/voxel_walk.h"
+#include "medium/lattice/voxel_walk.h"
 
 namespace brisance {
 

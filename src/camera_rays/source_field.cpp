@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/parallel.h"
-#include "medium/voxel_walk.h"
+#include "medium/lattice/voxel_walk.h"
 
 namespace brisance {
 

@@ -1,5 +1,5 @@
 // A key of one module's settings: its name, what it accepts, and where its value lives. Modules describe their own keys
-// with it; the shot puts them under a section of its own (shot/keys.h).
+// with it; the shot puts them under a section of its own (shot/keys/keys.h).
 #pragma once
 
 #include <functional>

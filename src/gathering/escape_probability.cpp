@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "medium/local_bounds.h"
+#include "medium/lattice/local_bounds.h"
 
 namespace brisance {
 

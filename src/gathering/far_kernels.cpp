@@ -11,7 +11,7 @@
 #include <hwy/highway.h>
 
 #include "gathering/sh.h"
-#include "medium/extinction_sampler-inl.h"
+#include "medium/lattice/extinction_sampler-inl.h"
 #include "medium/phase-inl.h"
 
 #ifndef BRISANCE_GATHERING_ASKED_RANGE_

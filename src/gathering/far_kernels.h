@@ -5,7 +5,7 @@
 #include <span>
 
 #include "gathering/receivers.h"
-#include "medium/extinction_pyramid.h"
+#include "medium/lattice/extinction_pyramid.h"
 #include "shadows/shadow_maps.h"
 
 namespace brisance {

@@ -7,7 +7,7 @@
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "gathering/far_kernels.h"
-#include "medium/local_bounds.h"
+#include "medium/lattice/local_bounds.h"
 #include "medium/phase.h"
 #include "shadows/shadow_maps.h"
 

@@ -14,7 +14,7 @@
 #include "gathering/receivers.h"
 #include "gathering/settings.h"
 #include "lighting_grid/lighting_grid.h"
-#include "medium/extinction_pyramid.h"
+#include "medium/lattice/extinction_pyramid.h"
 
 namespace brisance {
 

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "gathering/receivers.h"
-#include "medium/brick_lattice.h"
+#include "medium/lattice/brick_lattice.h"
 
 namespace brisance {
 

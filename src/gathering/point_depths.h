@@ -1,7 +1,7 @@
 // Optical depths from one point to sixteen others, together.
 #pragma once
 
-#include "medium/extinction_pyramid.h"
+#include "medium/lattice/extinction_pyramid.h"
 
 namespace brisance {
 

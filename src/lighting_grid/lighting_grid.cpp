@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "core/parallel.h"
-#include "medium/extinction_pyramid.h"
+#include "medium/lattice/extinction_pyramid.h"
 
 namespace brisance {
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <tuple>
 
-#include "medium/local_bounds.h"
+#include "medium/lattice/local_bounds.h"
 
 namespace brisance {
 

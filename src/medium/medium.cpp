@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "medium/node_fields.h"
+#include "medium/lattice/node_fields.h"
 
 namespace brisance {
 

@@ -20,7 +20,7 @@
 
 #include "core/progress.h"
 #include "core/vec.h"
-#include "medium/brick_lattice.h"
+#include "medium/lattice/brick_lattice.h"
 #include "medium/settings.h"
 #include "volume/vdb_file.h"
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "geometry/intersector.h"
+#include "medium/lattice/occluders.h"
 #include "medium/medium.h"
-#include "medium/occluders.h"
 
 namespace brisance {
 

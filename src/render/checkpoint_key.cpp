@@ -4,7 +4,7 @@
 #include <array>
 
 #include "render/load_medium.h"
-#include "shot/keys.h"
+#include "shot/keys/keys.h"
 
 namespace brisance {
 

@@ -64,7 +64,7 @@ bool wants_single_scattering_apart(const DrawInput& input) {
 }  // namespace
 
 MediumLightingInput medium_lighting_input(const DrawInput& input, const Plan& plan, const Medium& medium,
-                                   const ReflectedLight& reflected, bool orders_apart) {
+                                          const ReflectedLight& reflected, bool orders_apart) {
     MediumLightingInput out{
         medium,   vec3(input.camera.eye_local()), input.shot.lighting, input.shot.scattering, input.surroundings,
         reflected};
@@ -85,8 +85,8 @@ LitMedium::LitMedium(const DrawInput& input, const Plan& plan, int bounces, cons
     if (lights_medium(plan)) {
         similar_ = similar_medium(input.medium, bounces);
         lighting_ = std::make_unique<MediumLighting>(
-            medium_lighting_input(input, plan, similar_ ? *similar_ : input.medium, reflected, orders_apart), statistics,
-            progress);
+            medium_lighting_input(input, plan, similar_ ? *similar_ : input.medium, reflected, orders_apart),
+            statistics, progress);
     }
     static const NodeLighting none;
     field_.emplace(input.medium, lighting_ ? lighting_->at_nodes() : none, similar(),

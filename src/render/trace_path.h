@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "medium/voxel_walk.h"
+#include "medium/lattice/voxel_walk.h"
 #include "reference/path_tracer.h"
 #include "shot/shot.h"
 

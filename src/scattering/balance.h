@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "gathering/sh.h"
-#include "medium/extinction_pyramid.h"
+#include "medium/lattice/extinction_pyramid.h"
 
 namespace brisance {
 

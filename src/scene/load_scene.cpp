@@ -11,8 +11,8 @@
 
 #include "core/error.h"
 #include "core/up_axis.h"
-#include "scene/gltf_cameras.h"
-#include "scene/gltf_meshes.h"
+#include "scene/gltf/gltf_cameras.h"
+#include "scene/gltf/gltf_meshes.h"
 #include "scene/quick_shapes.h"
 
 namespace brisance {

@@ -9,7 +9,7 @@
 #include <map>
 
 #include "core/error.h"
-#include "scene/gltf_meshes.h"
+#include "scene/gltf/gltf_meshes.h"
 
 namespace brisance {
 namespace {

@@ -9,7 +9,7 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
-#include "medium/extinction_sampler-inl.h"
+#include "medium/lattice/extinction_sampler-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace brisance {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "medium/extinction_pyramid.h"
-#include "medium/homogeneous_bricks.h"
+#include "medium/lattice/extinction_pyramid.h"
+#include "medium/lattice/homogeneous_bricks.h"
 
 namespace brisance {
 

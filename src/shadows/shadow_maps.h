@@ -28,7 +28,7 @@
 
 #include "lighting_grid/footprint.h"
 #include "lighting_grid/lighting_grid.h"
-#include "medium/extinction_pyramid.h"
+#include "medium/lattice/extinction_pyramid.h"
 
 namespace brisance {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "medium/occluders.h"
+#include "medium/lattice/occluders.h"
 #include "shadows/shadow_maps.h"
 
 namespace brisance {

@@ -11,7 +11,7 @@
 #include "core/error.h"
 #include "shot/check_shot.h"
 #include "shot/json_text.h"
-#include "shot/keys.h"
+#include "shot/keys/keys.h"
 #include "shot/nearest_key.h"
 #include "shot/renamed_keys.h"
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "core/error.h"
-#include "shot/keys.h"
+#include "shot/keys/keys.h"
 
 namespace brisance {
 namespace {

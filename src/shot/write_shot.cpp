@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "shot/keys.h"
+#include "shot/keys/keys.h"
 
 namespace brisance {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "medium/local_bounds.h"
+#include "medium/lattice/local_bounds.h"
 #include "medium_lighting/medium_lighting.h"
 
 namespace brisance {

@@ -17,7 +17,7 @@
 
 #include "gathering/gather.h"
 #include "gathering/point_depths.h"
-#include "medium/homogeneous_bricks.h"
+#include "medium/lattice/homogeneous_bricks.h"
 
 namespace brisance {
 

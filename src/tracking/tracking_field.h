@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "medium/voxel_walk.h"
+#include "medium/lattice/voxel_walk.h"
 
 namespace brisance {
 

@@ -12,7 +12,7 @@
 
 #include "core/fixed_sums.h"
 #include "core/rng.h"
-#include "medium/track_lengths.h"
+#include "medium/lattice/track_lengths.h"
 
 namespace brisance {
 

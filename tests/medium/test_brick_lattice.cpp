@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/rng.h"
-#include "medium/brick_lattice.h"
+#include "medium/lattice/brick_lattice.h"
 
 namespace brisance {
 namespace {

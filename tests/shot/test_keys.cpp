@@ -1,6 +1,6 @@
 // The table of keys: ranges and types hold for every key, in the code as in the schema.
 
-#include "shot/keys.h"
+#include "shot/keys/keys.h"
 #include "shot/renamed_keys.h"
 
 #include <gtest/gtest.h>

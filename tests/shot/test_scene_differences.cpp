@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "shot/keys.h"
+#include "shot/keys/keys.h"
 #include "shot/write_shot.h"
 #include "shot_errors.h"
 

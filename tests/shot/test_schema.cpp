@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "shot/keys.h"
+#include "shot/keys/keys.h"
 #include "shot/write_shot.h"
 #include "shot_errors.h"
 

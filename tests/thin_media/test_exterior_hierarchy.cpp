@@ -12,7 +12,7 @@
 #include "fixtures/media.h"
 #include "gathering/escape_probability.h"
 #include "lighting_grid/voxel_lights.h"
-#include "medium/local_bounds.h"
+#include "medium/lattice/local_bounds.h"
 #include "render/many_lights.h"
 #include "scattering/balance.h"
 

@@ -8,7 +8,7 @@
 
 #include "fixtures/media.h"
 #include "gathering/escape_probability.h"
-#include "medium/extinction_pyramid.h"
+#include "medium/lattice/extinction_pyramid.h"
 #include "render/render_frame.h"
 #include "thin_media/thin_medium.h"
 

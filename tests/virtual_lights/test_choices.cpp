@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "room.h"
-#include "shot/keys.h"
+#include "shot/keys/keys.h"
 
 namespace brisance {
 namespace {

@@ -5,7 +5,7 @@
 #include "core/stopwatch.h"
 #include "gathering/escape_probability.h"
 #include "lighting_grid/voxel_lights.h"
-#include "medium/local_bounds.h"
+#include "medium/lattice/local_bounds.h"
 #include "medium/phase.h"
 #include "medium_lighting/exterior/point_receivers.h"
 #include "medium_lighting/level_costs.h"

@@ -6,7 +6,7 @@
 #include "core/parallel.h"
 #include "gathering/point_depths.h"
 #include "gathering/sh.h"
-#include "medium/local_bounds.h"
+#include "medium/lattice/local_bounds.h"
 #include "medium/phase.h"
 
 namespace brisance {

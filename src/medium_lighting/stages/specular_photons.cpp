@@ -6,8 +6,8 @@
 #include "core/fixed_sums.h"
 #include "core/parallel.h"
 #include "gathering/sh.h"
+#include "medium/lattice/track_lengths.h"
 #include "medium/phase.h"
-#include "medium/track_lengths.h"
 #include "transport/particle_walk.h"
 #include "transport/roulette.h"
 

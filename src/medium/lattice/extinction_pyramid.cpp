@@ -1,0 +1,147 @@
+#include "medium/lattice/extinction_pyramid.h"
+
+#include <Imath/half.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+
+namespace brisance {
+
+namespace {
+
+constexpr float kStoredMaximum = 60000.0f;  // of a half float: leaves nine decades before values turn subnormal
+
+}  // namespace
+
+void coarsen(const BrickLattice& fine, std::span<const float> values, int channels, BrickLattice& coarse,
+             std::vector<float>& coarse_values) {
+    coarse = coarse_lattice(fine);
+    coarse_values.assign(coarse.node_count() * channels, 0.0f);
+    constexpr int kWide = 2 * BrickLattice::kSize + 1;  // fine nodes that one coarse brick averages
+    parallel_for(coarse.brick_count(), [&](std::size_t b) {
+        std::vector<float> box(std::size_t(kWide) * kWide * kWide * channels);
+        copy_box(fine, values, channels, coarse.first_node(b) * 2 - 1, ivec3(kWide), box);
+        constexpr float weight[3] = {0.25f, 0.5f, 0.25f};
+        for (int n = 0; n < BrickLattice::kNodes; ++n) {
+            const ivec3 p = BrickLattice::node_in_brick(n) * 2;
+            for (int c = 0; c < channels; ++c) {
+                const float* plane = &box[std::size_t(c) * kWide * kWide * kWide];
+                float sum = 0.0f;
+                for (int k = 0; k < 27; ++k) {
+                    const int x = k / 9, y = k / 3 % 3, z = k % 3;
+                    sum += weight[x] * weight[y] * weight[z] * plane[((p.x + x) * kWide + p.y + y) * kWide + p.z + z];
+                }
+                coarse_values[(b * BrickLattice::kNodes + n) * channels + c] = sum;
+            }
+        }
+    });
+}
+
+ExtinctionPyramid::Packed ExtinctionPyramid::pack(const BrickLattice& lattice, const std::vector<float>& nodes,
+                                                  const ivec3& reference_brick) {
+    Packed p;
+    p.min_brick = lattice.min_brick() - reference_brick - 2;
+    p.extent = lattice.brick_extent() + 3;
+    p.directory.assign(std::size_t(p.extent.x) * p.extent.y * p.extent.z, 0);
+    const float maximum = nodes.empty() ? 0.0f : *std::max_element(nodes.begin(), nodes.end());
+    p.scale = maximum / kStoredMaximum;
+
+    // Cells of a brick reach one node into the next brick, so every brick's lower neighbours get cells too.
+    std::vector<ivec3> voxel_bricks;
+    for (std::size_t b = 0; b < lattice.brick_count(); ++b)
+        for (int k = 0; k < 8; ++k)
+            voxel_bricks.push_back(lattice.brick(b) - ivec3(k >> 2, k >> 1 & 1, k & 1));
+    const BrickLattice cells(std::move(voxel_bricks));
+    constexpr int kSide = BrickLattice::kSize + 1;
+    std::vector<std::uint8_t> used(cells.brick_count(), 0);
+    std::vector<std::vector<std::uint32_t>> packed(cells.brick_count());
+    // Extinction too small for its inverse to be a float stops nothing over any distance a float can hold.
+    const float to_stored = maximum > 1e-30f ? kStoredMaximum / maximum : 0.0f;
+    parallel_for(cells.brick_count(), [&](std::size_t b) {
+        std::vector<float> box(kSide * kSide * kSide);
+        copy_box(lattice, nodes, 1, cells.first_node(b), ivec3(kSide), box);
+        if (std::all_of(box.begin(), box.end(), [](float v) { return v == 0.0f; }))
+            return;
+        auto& words = packed[b];
+        words.resize(PackedExtinction::kWordsPerBrick);
+        for (int row = 0; row < kSide * kSide; ++row)
+            for (int z = 0; z < BrickLattice::kSize; ++z) {
+                const Imath::half low(box[row * kSide + z] * to_stored);
+                const Imath::half high(box[row * kSide + z + 1] * to_stored);
+                words[row * BrickLattice::kSize + z] = std::uint32_t{low.bits()} | std::uint32_t{high.bits()} << 16;
+            }
+    });
+    p.words.assign(PackedExtinction::kWordsPerBrick, 0);
+    for (std::size_t b = 0; b < cells.brick_count(); ++b) {
+        if (packed[b].empty())
+            continue;
+        const ivec3 r = cells.brick(b) - reference_brick - p.min_brick;
+        p.directory[(std::size_t(r.x) * p.extent.y + r.y) * p.extent.z + r.z] =
+            static_cast<std::int32_t>(p.words.size());
+        p.words.insert(p.words.end(), packed[b].begin(), packed[b].end());
+        packed[b] = {};
+    }
+    return p;
+}
+
+ExtinctionPyramid::ExtinctionPyramid(const Medium& medium, int levels) : medium_(&medium) {
+    lattices_.push_back(medium.lattice);
+    nodes_.push_back(medium.extinction);
+    levels = std::min(levels, kMaxLevels);
+    while (static_cast<int>(lattices_.size()) < levels && !lattices_.back().empty()) {
+        const ivec3 e = lattices_.back().brick_extent();
+        if (std::max({e.x, e.y, e.z}) <= 1)
+            break;
+        BrickLattice coarse;
+        std::vector<float> values;
+        coarsen(lattices_.back(), nodes_.back(), 1, coarse, values);
+        lattices_.push_back(std::move(coarse));
+        nodes_.push_back(std::move(values));
+    }
+    for (std::size_t l = 0; l < lattices_.size(); ++l)
+        packed_.push_back(pack(lattices_[l], nodes_[l], (medium.reference_node >> int(l)) >> 3));
+}
+
+PackedExtinction ExtinctionPyramid::view(int level) const {
+    const Packed& p = packed_[level];
+    return {p.directory.data(),
+            p.words.data(),
+            {p.min_brick.x, p.min_brick.y, p.min_brick.z},
+            {p.extent.x, p.extent.y, p.extent.z},
+            p.scale};
+}
+
+std::uint64_t ExtinctionPyramid::bytes() const {
+    std::uint64_t sum = 0;
+    for (std::size_t l = 0; l < packed_.size(); ++l)
+        sum +=
+            packed_[l].directory.size() * 4 + packed_[l].words.size() * 4 + nodes_[l].size() * 4 + lattices_[l].bytes();
+    return sum;
+}
+
+float ExtinctionPyramid::extinction_at(const vec3& local) const {
+    const vec3 p = medium_->index_from_local * local;
+    const vec3 base = glm::floor(p);
+    const vec3 f = p - base;
+    float sum = 0.0f;
+    for (int k = 0; k < 8; ++k) {
+        const ivec3 d(k >> 2, k >> 1 & 1, k & 1);
+        const std::int64_t i = lattices_[0].find_node(ivec3(base) + d + medium_->reference_node);
+        if (i >= 0)
+            sum += (d.x ? f.x : 1 - f.x) * (d.y ? f.y : 1 - f.y) * (d.z ? f.z : 1 - f.z) * nodes_[0][i];
+    }
+    return sum;
+}
+
+float ExtinctionPyramid::optical_depth(const vec3& from, const vec3& to) const {
+    const float nodes = glm::length(medium_->index_from_local * (to - from));
+    const int steps = std::max(1, static_cast<int>(std::ceil(2.0f * nodes)));
+    double sum = 0.0;
+    for (int s = 0; s < steps; ++s)
+        sum += extinction_at(glm::mix(from, to, (s + 0.5f) / steps));
+    return static_cast<float>(sum * glm::length(to - from) / steps);
+}
+
+}  // namespace brisance

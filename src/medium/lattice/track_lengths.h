@@ -1,0 +1,61 @@
+// Ways of light through a medium, counted at its nodes: the track-length estimator (Spanier, Two Pairs of Families of
+// Estimators for Transport Problems, SIAM J. Appl. Math. 14(4), 1966). The length of ways times power, transmitted,
+// over the volume around a node is the fluence there.
+#pragma once
+
+#include "medium/attenuation.h"
+#include "medium/lattice/voxel_walk.h"
+
+namespace brisance {
+
+class TrackLengths {
+public:
+    // Keeps a reference.
+    explicit TrackLengths(const Medium& medium)
+        : medium_(medium),
+          cells_(voxel_lattice(medium)),
+          index_from_local_(glm::inverse(dmat3(medium.local_from_index))) {}
+
+    // Cuts the way up to `end` [m] in parts, each of which counts for the node nearest to it: calls visit(node, length)
+    // with the node's index and the part's length times what smoke has left of the light [m], until next to nothing is
+    // left.
+    template <class Visit>
+    void along(const Ray& ray, double end, const Visit& visit) const;
+
+    // What lies around a node and in cells whose ways count, over the whole of a voxel: 0 to 1.
+    float part_in_voxels(const ivec3& node) const {
+        int cells = 0;
+        for (int k = 0; k < 8; ++k)
+            cells += cells_.find_node(node - ivec3(k >> 2, k >> 1 & 1, k & 1)) >= 0;
+        return float(cells) / 8.0f;
+    }
+
+private:
+    static constexpr int kParts = 2;  // of a way through a cell
+
+    const Medium& medium_;
+    BrickLattice cells_;
+    dmat3 index_from_local_;
+};
+
+template <class Visit>
+void TrackLengths::along(const Ray& ray, double end, const Visit& visit) const {
+    float depth = 0.0f;
+    const auto in_voxel = [&](const VoxelSegment& s) {
+        const double length = (s.end - s.begin) / kParts;
+        for (int part = 0; part < kParts; ++part) {
+            const dvec3 place = s.origin + s.direction * (s.begin + (part + 0.5) * length);
+            const std::int64_t node = medium_.lattice.find_node(cells_.first_node(s.brick) + ivec3(glm::round(place)));
+            if (node < 0)
+                continue;
+            const float tau = medium_.extinction[node] * float(length);
+            visit(node, std::exp(-depth) * float(length) * phi1(tau));
+            depth += tau;
+        }
+        return depth < kOpaqueDepth;
+    };
+    walk_bricks(cells_, lattice_ray(cells_, index_from_local_, medium_.reference_node, ray, end),
+                [&](const VoxelSegment& brick) { return walk_cubes<1>(brick, in_voxel); });
+}
+
+}  // namespace brisance

@@ -1,0 +1,30 @@
+// Triangles of a glTF file.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "scene/gltf/gltf_materials.h"
+#include "scene/gltf/gltf_nodes.h"
+
+namespace brisance {
+
+// What was left out of a file or a quick shape, and why.
+struct LeftOut {
+    std::size_t without_area = 0, not_finite = 0;
+    void tell(const std::string& where, Progress& progress) const;
+};
+
+// Takes triangles without area or with positions that are not finite out of a mesh, and vertices that are not finite.
+// Without area: too small for the square of twice the area in single precision, some 5e-20 m^2.
+void leave_out_unusable(SceneMesh& mesh, LeftOut& left_out);
+
+// What `triangles` and their vertices take, with an estimate of the tree by which rays find them.
+double bytes_with_tree(double triangles, double vertices);
+
+// Adds the triangles of all nodes to a scene, a mesh for each primitive of each node. Claims what they take before
+// anything is allocated. Skins and morph targets stay in their base shape, with a warning.
+void read_meshes(const GltfFile& file, const std::vector<PlacedNode>& nodes, Scene& scene, MemoryBudget& budget,
+                 Progress& progress);
+
+}  // namespace brisance

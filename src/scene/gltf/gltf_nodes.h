@@ -1,0 +1,22 @@
+// Where the nodes of a glTF file are at a moment.
+#pragma once
+
+#include <vector>
+
+#include "core/vec.h"
+#include "scene/gltf/gltf_file.h"
+
+namespace brisance {
+
+struct PlacedNode {
+    int node = 0;
+    dmat4 world_from_node{1.0};
+};
+
+// Every node of the default scene, else of the first, else of the file; parents before children. All animations of the
+// file play together, since some exporters write one for each object; a channel holds its first and last values before
+// and after its keys, and where two move the same the later one counts.
+std::vector<PlacedNode> place_nodes(const GltfFile& file, const dmat4& world_from_file, double seconds,
+                                    Progress& progress);
+
+}  // namespace brisance

@@ -1,0 +1,18 @@
+#include "shot/keys/keys.h"
+
+namespace brisance {
+
+void add_certify_keys(std::vector<Key>& keys) {
+    keys.push_back(make_key(
+        "certify.enabled", "estimates each finished frame's error against the truth, as --certify does", flag(),
+        [](Shot & s) -> auto& { return s.certify.enabled; }));
+    keys.push_back(make_key(
+        "certify.samples",
+        "unbiased samples, each a ray of the camera with its paths, that a certificate may cost in all",
+        whole(1024, 1 << 30), [](Shot & s) -> auto& { return s.certify.samples; }));
+    keys.push_back(make_key(
+        "certify.seed", "other seeds give certificates from other samples", whole(0, 1 << 30),
+        [](Shot & s) -> auto& { return s.certify.seed; }));
+}
+
+}  // namespace brisance

@@ -1,0 +1,45 @@
+#include "shot/keys/keys.h"
+
+namespace brisance {
+
+void add_lighting_keys(std::vector<Key>& keys) {
+    keys.push_back(make_key(
+        "lighting.alpha", "a light of level l serves up to about alpha spacings of its level: larger is more exact",
+        real_float({1.0, 64.0}), [](Shot & s) -> auto& { return s.lighting.alpha; }));
+    keys.push_back(make_key(
+        "lighting.levels", "of the hierarchy above the voxels; auto: from the volume's extent",
+        or_word(whole(1, 24), "auto", 0), [](Shot & s) -> auto& { return s.lighting.levels; }));
+    keys.push_back(make_key(
+        "lighting.shadows", "maps: precomputed; exact: per light and point, slow; none: for study",
+        choice<ShadowMethod>(
+            {{"maps", ShadowMethod::Maps}, {"exact", ShadowMethod::Exact}, {"none", ShadowMethod::None}}),
+        [](Shot & s) -> auto& { return s.lighting.shadows; }));
+    keys.push_back(make_key(
+        "lighting.shadow_resolution", "texels along one side of a light's octahedral map", whole(2, 256),
+        [](Shot & s) -> auto& { return s.lighting.shadow_resolution; }));
+    keys.push_back(make_key(
+        "lighting.shadow_distances", "transmittance samples along a texel's ray", whole(2, 256),
+        [](Shot & s) -> auto& { return s.lighting.shadow_distances; }));
+    keys.push_back(make_key(
+        "lighting.memory_limit_mebibytes",
+        "for shadow maps [MiB]; their resolution is lowered to respect it, with a notice", mebibytes(1.0, 16777216.0),
+        [](Shot & s) -> auto& { return s.lighting.memory_limit_bytes; }));
+    keys.push_back(make_key(
+        "lighting.energy_balance", "scale each bounce so that emitted = collided + escaped", flag(),
+        [](Shot & s) -> auto& { return s.lighting.energy_balance; }));
+    keys.push_back(make_key(
+        "scattering.bounces", "0: emission only, 1: single scattering, all: until the remainder",
+        or_word(whole(0, 10000), "all", -1), [](Shot & s) -> auto& { return s.scattering.bounces; }));
+    keys.push_back(make_key(
+        "scattering.remainder", "with all bounces: the share of the light that may be left over",
+        real_float({0.0, 1.0, true, true}), [](Shot & s) -> auto& { return s.scattering.remainder; }));
+    keys.push_back(make_key(
+        "scattering.lattice_level", "bounces above one are solved on voxels 2^n wide",
+        or_word(whole(0, 16), "auto", -1), [](Shot & s) -> auto& { return s.scattering.lattice_level; }));
+    keys.push_back(make_key(
+        "scattering.alpha", "as lighting.alpha, for scattered light", real_float({1.0, 64.0}),
+        [](Shot & s) -> auto& { return s.scattering.alpha; }));
+    add_scattering_method_keys(keys);
+}
+
+}  // namespace brisance

@@ -1,0 +1,106 @@
+#include "shot/keys/keys.h"
+#include "virtual_lights/choices.h"
+
+namespace brisance {
+
+namespace {
+
+// One of the names in the table of techniques.
+Codec<std::string> name_in(const std::vector<TechniqueChoice>& choices) {
+    std::vector<std::pair<std::string, std::string>> words;
+    for (const TechniqueChoice& c : choices)
+        words.emplace_back(c.name, c.name);
+    return choice(words);
+}
+
+Codec<int> whole_in(const SettingRange<int>& range) {
+    return whole(range.low, range.high);
+}
+
+Codec<double> real_in(const SettingRange<double>& range) {
+    return real(Range{range.low, range.high, range.without_low});
+}
+
+using Ranges = VirtualLightRanges;
+
+void add_choice_keys(std::vector<Key>& keys) {
+    keys.push_back(make_key(
+        "virtual_lights.placement", help_of(light_placements()), name_in(light_placements()),
+        [](Shot & s) -> auto& { return s.virtual_lights.placement; }));
+    keys.push_back(make_key(
+        "virtual_lights.flux", help_of(light_fluxes()), name_in(light_fluxes()),
+        [](Shot & s) -> auto& { return s.virtual_lights.flux; }));
+    keys.push_back(make_key(
+        "virtual_lights.kind", help_of(light_kinds()), name_in(light_kinds()),
+        [](Shot & s) -> auto& { return s.virtual_lights.kind; }));
+}
+
+void add_placement_keys(std::vector<Key>& keys) {
+    keys.push_back(make_key(
+        "virtual_lights.point_bound",
+        "for kind point: upper bound on cosine over squared distance; the rest is lost [1/m^2]",
+        real_in(Ranges::point_bound), [](Shot & s) -> auto& { return s.virtual_lights.point_bound; }));
+    keys.push_back(make_key(
+        "virtual_lights.sphere_neighbours",
+        "for kind sphere: its radius is the distance to the neighbour of this number",
+        whole_in(Ranges::sphere_neighbours), [](Shot & s) -> auto& { return s.virtual_lights.sphere_neighbours; }));
+    keys.push_back(make_key(
+        "virtual_lights.sphere_samples", "for kind sphere: directions sampled for each light",
+        whole_in(Ranges::sphere_samples), [](Shot & s) -> auto& { return s.virtual_lights.sphere_samples; }));
+    keys.push_back(make_key(
+        "virtual_lights.candidates_per_pixel",
+        "camera paths that place lights, per pixel; at least eight for each light",
+        real_in(Ranges::candidates_per_pixel),
+        [](Shot & s) -> auto& { return s.virtual_lights.candidates_per_pixel; }));
+    keys.push_back(make_key(
+        "virtual_lights.radius", "adaptive: small where the camera looks; uniform: for comparison",
+        choice<LightRadius>({{"adaptive", LightRadius::Adaptive}, {"uniform", LightRadius::Uniform}}),
+        [](Shot & s) -> auto& { return s.virtual_lights.radius; }));
+    keys.push_back(make_key(
+        "virtual_lights.neighbours", "candidates from whose distance their density is estimated",
+        whole_in(Ranges::neighbours), [](Shot & s) -> auto& { return s.virtual_lights.neighbours; }));
+    keys.push_back(make_key(
+        "virtual_lights.radius_factor", "a light's radius over the distance that it keeps from others",
+        real_in(Ranges::radius_factor), [](Shot & s) -> auto& { return s.virtual_lights.radius_factor; }));
+    keys.push_back(make_key(
+        "virtual_lights.photons", "particles from fire and lamps, for flux gathered; 0: no virtual lights",
+        whole_in(Ranges::photons), [](Shot & s) -> auto& { return s.virtual_lights.photons; }));
+    keys.push_back(make_key(
+        "virtual_lights.profile_resolution", "of directions, where surfaces are glossy: texels along a side",
+        whole_in(Ranges::profile_resolution), [](Shot & s) -> auto& { return s.virtual_lights.profile_resolution; }));
+}
+
+void add_gathering_keys(std::vector<Key>& keys) {
+    keys.push_back(make_key(
+        "virtual_lights.sampling", help_of(light_gatherers()), name_in(light_gatherers()),
+        [](Shot & s) -> auto& { return s.virtual_lights.sampling; }));
+    keys.push_back(make_key(
+        "virtual_lights.resampling_candidates", "for sampling resampled: lights of which one is chosen",
+        whole_in(Ranges::resampling_candidates),
+        [](Shot & s) -> auto& { return s.virtual_lights.resampling_candidates; }));
+    keys.push_back(make_key(
+        "virtual_lights.path_extension", "camera paths continue where a ray's footprint covers few lights", flag(),
+        [](Shot & s) -> auto& { return s.virtual_lights.path_extension; }));
+    keys.push_back(make_key(
+        "virtual_lights.n_min", "lights in the footprint: with fewer the path continues", real_in(Ranges::n_min),
+        [](Shot & s) -> auto& { return s.virtual_lights.n_min; }));
+    keys.push_back(make_key(
+        "virtual_lights.n_max", "with more it ends; between them it does either by chance", real_in(Ranges::n_max),
+        [](Shot & s) -> auto& { return s.virtual_lights.n_max; }));
+    keys.push_back(make_key(
+        "virtual_lights.seed", "other seeds draw other random numbers", whole(0, 2147483647),
+        [](Shot & s) -> auto& { return s.virtual_lights.seed; }));
+}
+
+}  // namespace
+
+void add_virtual_light_keys(std::vector<Key>& keys) {
+    keys.push_back(make_key(
+        "virtual_lights.count", "about how many; 0: none, all light from surfaces is found by paths",
+        whole_in(Ranges::count), [](Shot & s) -> auto& { return s.virtual_lights.count; }));
+    add_choice_keys(keys);
+    add_placement_keys(keys);
+    add_gathering_keys(keys);
+}
+
+}  // namespace brisance
