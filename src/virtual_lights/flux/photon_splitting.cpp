@@ -12,8 +12,10 @@ namespace brisance {
 namespace {
 
 constexpr std::size_t kBlock = 1024;
-// Where a shading normal leans far from a surface seen at a grazing angle, one photon would outshine all others.
-constexpr double kMostBrighter = 4.0;
+// The greatest ratio of shading to geometric cosine that a photon's power is multiplied by (Veach 1997, section 5.3):
+// without a bound one photon at a grazing angle may outshine all others. It is biased, and loses light wherever the
+// ratio is greater: 53 % where the shading normal leans by 45 degrees toward a sun 5 degrees above the surface.
+constexpr double kMostCosineRatio = 4.0;
 
 bool finite(const Rgb& c) {
     return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);
@@ -61,11 +63,11 @@ int material_of(const DirectLight& scene, const RaySegment& segment) {
     return scene.surroundings()->scene().meshes[segment.hit->mesh].material;
 }
 
-// By how much a surface's shading normal takes more light than the surface itself.
+// Photons arrive in proportion to the geometric cosine; surfaces scatter in proportion to the shading cosine.
 float brightness_by_shading(const SurfacePoint& point, const dvec3& toward_source) {
     const double shading = std::abs(glm::dot(point.frame.normal, toward_source));
     const double geometric = std::abs(glm::dot(point.geometric_normal, toward_source));
-    return static_cast<float>(std::min(shading / std::max(geometric, 1e-9), kMostBrighter));
+    return static_cast<float>(std::min(shading / std::max(geometric, 1e-9), kMostCosineRatio));
 }
 
 void share_out(const DirectLight& scene, const RaySegment& segment, const Rgb& power, const PartitionOfUnity& partition,
