@@ -13,11 +13,11 @@ Codec<std::string> name_in(const std::vector<TechniqueChoice>& choices) {
     return choice(words);
 }
 
-Codec<int> whole(const SettingRange<int>& range) {
+Codec<int> whole_in(const SettingRange<int>& range) {
     return whole(range.low, range.high);
 }
 
-Codec<double> real(const SettingRange<double>& range) {
+Codec<double> real_in(const SettingRange<double>& range) {
     return real(Range{range.low, range.high, range.without_low});
 }
 
@@ -39,17 +39,18 @@ void add_placement_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "virtual_lights.point_bound",
         "for kind point: upper bound on cosine over squared distance; the rest is lost [1/m^2]",
-        real(Ranges::point_bound), [](Shot & s) -> auto& { return s.virtual_lights.point_bound; }));
+        real_in(Ranges::point_bound), [](Shot & s) -> auto& { return s.virtual_lights.point_bound; }));
     keys.push_back(make_key(
         "virtual_lights.sphere_neighbours",
-        "for kind sphere: its radius is the distance to the neighbour of this number", whole(Ranges::sphere_neighbours),
-        [](Shot & s) -> auto& { return s.virtual_lights.sphere_neighbours; }));
+        "for kind sphere: its radius is the distance to the neighbour of this number",
+        whole_in(Ranges::sphere_neighbours), [](Shot & s) -> auto& { return s.virtual_lights.sphere_neighbours; }));
     keys.push_back(make_key(
         "virtual_lights.sphere_samples", "for kind sphere: directions sampled for each light",
-        whole(Ranges::sphere_samples), [](Shot & s) -> auto& { return s.virtual_lights.sphere_samples; }));
+        whole_in(Ranges::sphere_samples), [](Shot & s) -> auto& { return s.virtual_lights.sphere_samples; }));
     keys.push_back(make_key(
         "virtual_lights.candidates_per_pixel",
-        "camera paths that place lights, per pixel; at least eight for each light", real(Ranges::candidates_per_pixel),
+        "camera paths that place lights, per pixel; at least eight for each light",
+        real_in(Ranges::candidates_per_pixel),
         [](Shot & s) -> auto& { return s.virtual_lights.candidates_per_pixel; }));
     keys.push_back(make_key(
         "virtual_lights.radius", "adaptive: small where the camera looks; uniform: for comparison",
@@ -57,16 +58,16 @@ void add_placement_keys(std::vector<Key>& keys) {
         [](Shot & s) -> auto& { return s.virtual_lights.radius; }));
     keys.push_back(make_key(
         "virtual_lights.neighbours", "candidates from whose distance their density is estimated",
-        whole(Ranges::neighbours), [](Shot & s) -> auto& { return s.virtual_lights.neighbours; }));
+        whole_in(Ranges::neighbours), [](Shot & s) -> auto& { return s.virtual_lights.neighbours; }));
     keys.push_back(make_key(
         "virtual_lights.radius_factor", "a light's radius over the distance that it keeps from others",
-        real(Ranges::radius_factor), [](Shot & s) -> auto& { return s.virtual_lights.radius_factor; }));
+        real_in(Ranges::radius_factor), [](Shot & s) -> auto& { return s.virtual_lights.radius_factor; }));
     keys.push_back(make_key(
         "virtual_lights.photons", "particles from fire and lamps, for flux gathered; 0: no virtual lights",
-        whole(Ranges::photons), [](Shot & s) -> auto& { return s.virtual_lights.photons; }));
+        whole_in(Ranges::photons), [](Shot & s) -> auto& { return s.virtual_lights.photons; }));
     keys.push_back(make_key(
         "virtual_lights.profile_resolution", "of directions, where surfaces are glossy: texels along a side",
-        whole(Ranges::profile_resolution), [](Shot & s) -> auto& { return s.virtual_lights.profile_resolution; }));
+        whole_in(Ranges::profile_resolution), [](Shot & s) -> auto& { return s.virtual_lights.profile_resolution; }));
 }
 
 void add_gathering_keys(std::vector<Key>& keys) {
@@ -75,16 +76,16 @@ void add_gathering_keys(std::vector<Key>& keys) {
         [](Shot & s) -> auto& { return s.virtual_lights.sampling; }));
     keys.push_back(make_key(
         "virtual_lights.resampling_candidates", "for sampling resampled: lights of which one is chosen",
-        whole(Ranges::resampling_candidates),
+        whole_in(Ranges::resampling_candidates),
         [](Shot & s) -> auto& { return s.virtual_lights.resampling_candidates; }));
     keys.push_back(make_key(
         "virtual_lights.path_extension", "camera paths continue where a ray's footprint covers few lights", flag(),
         [](Shot & s) -> auto& { return s.virtual_lights.path_extension; }));
     keys.push_back(make_key(
-        "virtual_lights.n_min", "lights in the footprint: with fewer the path continues", real(Ranges::n_min),
+        "virtual_lights.n_min", "lights in the footprint: with fewer the path continues", real_in(Ranges::n_min),
         [](Shot & s) -> auto& { return s.virtual_lights.n_min; }));
     keys.push_back(make_key(
-        "virtual_lights.n_max", "with more it ends; between them it does either by chance", real(Ranges::n_max),
+        "virtual_lights.n_max", "with more it ends; between them it does either by chance", real_in(Ranges::n_max),
         [](Shot & s) -> auto& { return s.virtual_lights.n_max; }));
     keys.push_back(make_key(
         "virtual_lights.seed", "other seeds draw other random numbers", whole(0, 2147483647),
@@ -96,7 +97,7 @@ void add_gathering_keys(std::vector<Key>& keys) {
 void add_virtual_light_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "virtual_lights.count", "about how many; 0: none, all light from surfaces is found by paths",
-        whole(Ranges::count), [](Shot & s) -> auto& { return s.virtual_lights.count; }));
+        whole_in(Ranges::count), [](Shot & s) -> auto& { return s.virtual_lights.count; }));
     add_choice_keys(keys);
     add_placement_keys(keys);
     add_gathering_keys(keys);
