@@ -58,7 +58,7 @@ class CheckIncludes(unittest.TestCase):
     def test_finds_a_table_that_turns_round(self):
         code, output = self.check({}, TABLE.replace("| `core` | basics | - |", "| `core` | basics | film |"))
         self.assertEqual(code, 1)
-        self.assertIn("not a row above it", output)
+        self.assertIn("not of a row above it", output)
 
     def test_finds_a_folder_without_row(self):
         code, output = self.check({"extra/a.h": ""})

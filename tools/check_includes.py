@@ -37,8 +37,8 @@ def check_table(root, rules):
     above = set()
     for name, (modules, _) in rules.items():
         for module in modules:
-            if "/" not in module and module not in above:
-                yield f"{name}: its row names {module}, which is not a row above it"
+            if module.split("/")[0] not in above:
+                yield f"{name}: its row names {module}, which is not of a row above it"
         above.add(name)
 
 

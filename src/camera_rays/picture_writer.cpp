@@ -1,5 +1,7 @@
 #include "camera_rays/picture_writer.h"
 
+#include <algorithm>
+
 namespace brisance {
 
 PictureWriter::PictureWriter(const Camera& camera, const PictureSettings& settings) : camera_(camera) {
@@ -19,6 +21,10 @@ PictureWriter::PictureWriter(const Camera& camera, const PictureSettings& settin
             cells_[cell] = add(kCellNames[cell], {"R", "G", "B"}, false);
     z_ = add("Z", {"Z"}, true);
     albedo_ = add("albedo", {"R", "G", "B"}, false);
+    if (settings.once) {
+        from_fire_.resize(pixels, Rgb(0.0f));
+        from_emitters_.resize(pixels, Rgb(0.0f));
+    }
 }
 
 void PictureWriter::pixel(int x, int y, const RaySum& seen) {
@@ -39,11 +45,37 @@ void PictureWriter::add(int x, int y, const RaySum& more) {
     for (int cell = 0; cell < kCells; ++cell)
         put(cells_[cell], i, more.cells[cell]);
     put(albedo_, i, more.albedo_sum);
+    if (!from_fire_.empty()) {
+        from_fire_[i] += more.once_from_fire;
+        from_emitters_[i] += more.once_from_emitters;
+    }
 }
 
 float PictureWriter::luminance_at(int x, int y) const {
     const float* b = &image_.layers[beauty_].pixels[4 * (std::size_t(y) * image_.width + x)];
     return luminance(Rgb(b[0], b[1], b[2]));
+}
+
+Image PictureWriter::take() {
+    if (!from_fire_.empty()) {
+        file_single_scattering(Cell::MV, from_fire_);
+        file_single_scattering(Cell::MA, from_emitters_);
+    }
+    return std::move(image_);
+}
+
+// Leaves the cell what scattered once, and gives the rest to MM, so that every path stands in its own layer.
+void PictureWriter::file_single_scattering(Cell cell, const std::vector<Rgb>& once) {
+    const int layer = cells_[static_cast<int>(cell)], multiple = cells_[static_cast<int>(Cell::MM)];
+    if (layer < 0 || multiple < 0)
+        return;
+    std::vector<float>& single = image_.layers[layer].pixels;
+    std::vector<float>& rest = image_.layers[multiple].pixels;
+    for (std::size_t i = 0; i < single.size(); ++i) {
+        const float both = single[i] + rest[i];
+        single[i] = std::clamp(once[i / 3][static_cast<int>(i % 3)], 0.0f, std::max(both, 0.0f));
+        rest[i] = both - single[i];
+    }
 }
 
 void PictureWriter::put(int layer, std::size_t pixel, const Rgb& c) {

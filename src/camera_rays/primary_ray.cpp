@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "camera_rays/integrate.h"
+
 namespace brisance {
 
 PrimaryRay trace_primary_ray(const SourceField& field, const PixelRay& pixel_ray, const PictureSettings& settings) {
@@ -12,6 +14,12 @@ PrimaryRay trace_primary_ray(const SourceField& field, const PixelRay& pixel_ray
             const LightOnRay more = settings.light_rays(pixel_ray, end);
             sum.cells.at(Cell::MM) += more.scattered;
             sum.cells.at(Cell::MA) += more.emitters;
+            sum.once_from_emitters = more.emitters;
+        }
+        if (settings.once) {
+            const CellSum once = integrate(*settings.once, ray, settings.parts, end).cells;
+            sum.once_from_fire = once.at(Cell::MV);
+            sum.once_from_emitters += once.at(Cell::MA);
         }
         return sum;
     };
@@ -41,6 +49,8 @@ void add_weighted(RaySum& sum, const RaySum& s, float weight) {
     sum.distance_weight += weight * s.distance_weight;
     sum.distance_sum += weight * s.distance_sum;
     sum.albedo_sum += weight * s.albedo_sum;
+    sum.once_from_fire += weight * s.once_from_fire;
+    sum.once_from_emitters += weight * s.once_from_emitters;
 }
 
 }  // namespace brisance

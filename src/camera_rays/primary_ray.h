@@ -1,9 +1,9 @@
-// What a ray of the camera sees up to the first surface.
+// A primary ray: what the camera sees up to the first surface.
 #pragma once
 
 #include <optional>
 
-#include "camera_rays/integrate.h"
+#include "camera_rays/picture.h"
 
 namespace brisance {
 

@@ -1,4 +1,4 @@
-// Walking a ray through the cells of a medium and integrating what it sees, segment by segment, exactly.
+// What one ray sees, and the walk through the voxels that it crosses.
 #pragma once
 
 #include <limits>
@@ -10,7 +10,7 @@
 
 namespace brisance {
 
-// Calls visit(segment) for every cell with extinction or emission that the ray crosses in front of its origin, in
+// Calls visit(segment) for every voxel with extinction or emission that the ray crosses in front of its origin, in
 // order, up to `end` metres, until visit returns false.
 template <class Visit>
 void walk_voxels(const SourceField& field, const Ray& ray, const Visit& visit,
@@ -29,6 +29,8 @@ struct RaySum {
     float distance_weight = 0.0f;  // opacity gathered, ...
     float distance_sum = 0.0f;     // ... times the distance along the ray [m]
     Rgb albedo_sum{0.0f};          // ... times albedo (the medium's as luminance)
+    // MV and MA of light that scattered once, where those of `cells` hold more (PictureSettings::once).
+    Rgb once_from_fire{0.0f}, once_from_emitters{0.0f};
 };
 
 }  // namespace brisance

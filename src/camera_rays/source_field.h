@@ -1,6 +1,6 @@
 // The medium as the camera samples it: extinction and the source functions of each ledger cell, together.
 //
-// Cells lie in bricks of 8^3 with 9^3 node records, so that a trilinear sample touches one brick; bricks without
+// Voxels lie in bricks of 8^3 with 9^3 node records, so that a trilinear sample touches one brick; bricks without
 // extinction or emission are absent, and a ray steps over them without a sample.
 #pragma once
 
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "medium/medium.h"
+#include "medium_lighting/node_sources.h"
 
 namespace brisance {
 
@@ -31,14 +32,6 @@ struct SurroundingsRecord {
     float value[Size];
 };
 
-// Source functions per node of the medium's lattice [W/(m^2 sr)]; an empty one is left out.
-struct NodeSources {
-    std::vector<Rgb> single;         // MV
-    std::vector<Rgb> multiple;       // MM
-    std::vector<Rgb> from_surfaces;  // MS
-    std::vector<Rgb> from_emitters;  // MA
-};
-
 class SourceField {
 public:
     // `similar`: what the sources belong to, if it is not the medium itself; `forward`: share of all scattering in the
@@ -47,9 +40,9 @@ public:
                          float forward = 0.0f);
 
     const Medium& medium() const { return *medium_; }
-    const BrickLattice& bricks() const { return bricks_; }  // of cells
+    const BrickLattice& bricks() const { return bricks_; }  // of voxels
     bool direct_emission() const { return direct_; }
-    float minimum(std::size_t brick) const { return minimum_[brick]; }  // of extinction over the brick's cells
+    float minimum(std::size_t brick) const { return minimum_[brick]; }  // of extinction over the brick's voxels
     float majorant(std::size_t brick) const { return majorant_[brick]; }
     bool has_similar() const { return !similar_.empty(); }
     bool has_outside() const { return !outside_.empty(); }

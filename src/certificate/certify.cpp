@@ -280,10 +280,10 @@ void warn(const Certificate& c, Progress& progress) {
 
 }  // namespace
 
-Certificate certify(const Image& image, const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera,
-                    const CertifySettings& settings, Progress& progress, const Surroundings* surroundings) {
+Certificate certify(const Image& image, const CertifiedScene& scene, const CertifySettings& settings,
+                    Progress& progress) {
     progress.stage("certificate");
-    const std::vector<Target> targets = targets_of(image, surroundings);
+    const std::vector<Target> targets = targets_of(image, scene.surroundings);
     const Population population(image, targets);
     const PixelSurvey survey(population.sizes(), image.width, draws_of(settings.samples), settings.seed);
     const auto& draws = survey.draws();
@@ -293,8 +293,8 @@ Certificate certify(const Image& image, const Shot& shot, const Plan& plan, cons
     out.pixels = draws.size();
     out.samples_per_pixel = draws.empty() ? 0 : std::max<std::uint64_t>(2, settings.samples / out.pixels);
     out.samples = out.pixels * out.samples_per_pixel;
-    const PathTracer tracer(medium, shot.tracing, shot.scattering.bounces, surroundings);
-    Sampler sampler(targets, tracer, camera, settings.seed, static_cast<int>(out.samples_per_pixel));
+    const PathTracer tracer(scene.medium, scene.tracing, scene.bounces, scene.surroundings);
+    Sampler sampler(targets, tracer, scene.camera, settings.seed, static_cast<int>(out.samples_per_pixel));
     std::vector<ToldOfAll> told(draws.size());
     std::atomic<std::size_t> done = 0;
     parallel_for(draws.size(), [&](std::size_t i) {
@@ -304,8 +304,8 @@ Certificate certify(const Image& image, const Shot& shot, const Plan& plan, cons
     out.not_finite_samples = sampler.not_finite();
     for (std::size_t t = 0; t < targets.size(); ++t) {
         const bool black = population.total([&](std::size_t p) { return sum_of(targets[t].pixel(p)); }) == 0.0;
-        out.errors.push_back(black && !plan.emission && !plan.emitters ? nothing_missing(targets[t])
-                                                                       : conclude(population, targets[t], told, t));
+        out.errors.push_back(black && !scene.shines ? nothing_missing(targets[t])
+                                                    : conclude(population, targets[t], told, t));
     }
     warn(out, progress);
     return out;

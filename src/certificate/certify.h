@@ -15,19 +15,29 @@
 #include "certificate/certificate.h"
 #include "certificate/settings.h"
 #include "core/progress.h"
+#include "emitters/surroundings.h"
 #include "film/image.h"
-#include "render/plan.h"
-#include "shot/shot.h"
+#include "tracking/settings.h"
 
 namespace brisance {
 
+// What the picture shows, by reference.
+struct CertifiedScene {
+    const Medium& medium;
+    const Camera& camera;
+    const Surroundings* surroundings = nullptr;  // null: none
+    TracingSettings tracing;
+    int bounces = -1;    // the most scatterings of a path; -1: all
+    bool shines = true;  // there is fire, or there are emitters
+};
+
 // Of a picture by any method: its beauty, and the ledger cells it has layers of. The estimators are those of
-// shot.tracing. The same bits for any number of threads. Warns of pixels and samples that are not finite, and when few
+// scene.tracing. The same bits for any number of threads. Warns of pixels and samples that are not finite, and when few
 // pixels decide.
 //
 // What it cannot see: light that none of its samples met, and errors that hide in few pixels. A share s of the pixels
 // that is wrongly dark goes unnoticed with probability (1 - s)^(draws / 5); one that is wrongly bright hardly ever.
-Certificate certify(const Image& image, const Shot& shot, const Plan& plan, const Medium& medium, const Camera& camera,
-                    const CertifySettings& settings, Progress& progress, const Surroundings* surroundings = nullptr);
+Certificate certify(const Image& image, const CertifiedScene& scene, const CertifySettings& settings,
+                    Progress& progress);
 
 }  // namespace brisance

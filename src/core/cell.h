@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <initializer_list>
 
 #include "core/vec.h"
 
@@ -17,6 +19,17 @@ constexpr int kCells = static_cast<int>(kCellNames.size());
 constexpr const char* name_of(Cell cell) {
     return kCellNames[static_cast<int>(cell)];
 }
+
+// Some of the cells.
+struct CellSet : std::array<bool, kCells> {
+    constexpr CellSet() : array{} {}
+    constexpr CellSet(std::initializer_list<Cell> cells) : array{} {
+        for (const Cell cell : cells)
+            set(cell, true);
+    }
+    constexpr bool contains(Cell cell) const { return (*this)[static_cast<std::size_t>(cell)]; }
+    constexpr void set(Cell cell, bool in) { (*this)[static_cast<std::size_t>(cell)] = in; }
+};
 
 // Radiance by cell [W/(m^2 sr)].
 struct CellSum : std::array<Rgb, kCells> {

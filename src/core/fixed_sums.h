@@ -11,7 +11,8 @@
 
 namespace brisance {
 
-// Each holds up to 2^16 times `whole`, in steps of 2^-46 of it.
+// Each holds up to 2^16 times `whole`, of either sign, in steps of 2^-46 of it. Sums beyond 2^17 times `whole` and
+// values that are not finite are not noticed: they wrap around or become any number.
 class FixedSums {
 public:
     FixedSums(std::size_t count, double whole) : unit_(std::max(whole, 1e-300) / 0x1p46), sums_(3 * count) {}

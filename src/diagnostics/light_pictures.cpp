@@ -154,20 +154,4 @@ LightPictures make_light_pictures(const VirtualLights& lights, const Surrounding
     return out;
 }
 
-std::optional<std::string> why_no_virtual_lights(const Shot& shot, const Plan& plan) {
-    if (shot.method != RenderMethod::LightingGrid)
-        return "method path uses none";
-    if (!plan.surfaces)
-        return "there are no surfaces";
-    if (shot.virtual_lights.count == 0)
-        return "virtual_lights.count is 0";
-    if (shot.virtual_lights.photons == 0)
-        return "virtual_lights.photons is 0";
-    if (!plan.emission && !plan.emitters)
-        return "nothing shines";
-    if (!plan.needs(Cell::SS))
-        return "with this scattering.bounces no light goes from surface to surface";
-    return std::nullopt;
-}
-
 }  // namespace brisance

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "camera/camera.h"
+#include "emitters/surroundings.h"
 #include "film/image.h"
-#include "render/plan.h"
 #include "virtual_lights/virtual_lights.h"
 
 namespace brisance {
@@ -43,8 +43,5 @@ struct LightPictures {
 // `picture`: the frame's beauty. `lengths`: as of PathLengths. Surfaces hide lights, smoke does not.
 LightPictures make_light_pictures(const VirtualLights& lights, const Surroundings& surroundings, const Camera& camera,
                                   const Layer& picture, std::vector<float> lengths);
-
-// Why a shot has no virtual lights to make pictures of, as half a sentence; nothing where it has some.
-std::optional<std::string> why_no_virtual_lights(const Shot& shot, const Plan& plan);
 
 }  // namespace brisance

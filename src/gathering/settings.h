@@ -11,11 +11,6 @@ enum class ShadowMethod {
     None    // no extinction between light and point: for studying the hierarchy alone
 };
 
-enum class GatherMethod {
-    Cache,    // in-scattered field on the medium's lattice, interpolated by the camera
-    RayMarch  // at every sample of the camera's march, as in the paper
-};
-
 struct LightingSettings {
     float alpha = 2.0f;  // blending radius of level l is alpha * spacing of level l; at least 1
     int levels = 0;      // hierarchy levels above the voxels; 0: from the volume's extent
@@ -23,7 +18,6 @@ struct LightingSettings {
     int shadow_resolution = 20;  // texels along one side of a light's octahedral map
     int shadow_distances = 12;   // transmittance samples along a texel's ray, levels below the top
     std::uint64_t memory_limit_bytes = std::uint64_t{2} << 30;  // for shadow maps; resolution is lowered to respect it
-    GatherMethod gather = GatherMethod::Cache;
     bool energy_balance = true;  // scale each bounce so that emitted = collided + escaped
 };
 

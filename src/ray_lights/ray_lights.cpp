@@ -39,7 +39,7 @@ AskedLobes asked_of(const RayLight& light, const AskedLobes& lobes) {
 RayLightSettings settings_of_pass(RayLightSettings settings, int pass, double first) {
     if (pass == 0)
         return settings;
-    settings.radius = first * radius_shrunk(pass, settings.shrink);
+    settings.radius = first * radius_shrunk(pass, settings.radius_reduction);
     Rng rng(Stream::RayLightPass, settings.seed, static_cast<std::uint64_t>(pass));
     settings.seed = static_cast<std::uint32_t>(rng.next_double() * 0x1p32);
     return settings;

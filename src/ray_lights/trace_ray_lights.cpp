@@ -20,8 +20,8 @@ public:
     }
     // The light of a flight, where there is smoke.
     void leave_light(const ParticleFlight& flight, std::vector<RayLight>& lights) const {
-        const Ray& ray = flight.ray;
-        const double end = flight.collision && !long_ ? flight.collision->distance : flight.end;
+        const Ray& ray = flight.ray();
+        const double end = flight.collision && !long_ ? flight.collision->distance : flight.segment.end;
         double depth = 0.0, from = 0.0, to = -1.0;
         const auto leave = [&] {
             const int pieces = std::max(1, static_cast<int>(std::ceil((to - from) / longest_)));
@@ -45,12 +45,12 @@ public:
 private:
     void leave_piece(const ParticleFlight& flight, double from, double to, double& depth,
                      std::vector<RayLight>& lights) const {
-        const Ray& ray = flight.ray;
+        const Ray& ray = flight.ray();
         RayLight light;
         light.segment = {ray.origin + from * ray.direction, ray.direction, to - from};
         const double own = optical_depth(scene_.field(), {light.segment.start, ray.direction}, light.segment.length);
         light.power = long_ ? flight.power * float(std::exp(-depth)) : flight.power;
-        light.from_smoke = flight.from_smoke;
+        light.from_smoke = flight.from_medium;
         light.dimmed = long_;
         light.extinction = own / light.segment.length;
         light.scattered = luminance(light.power) * (long_ ? -std::expm1(-own) : own);

@@ -48,6 +48,8 @@ public:
     };
     Work work;
 
+    std::uint64_t bytes() const { return (values_.size() + squares_.size()) * sizeof(double); }
+
 private:
     int width_, height_, orders_, sums_;
     std::vector<double> values_, squares_;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "transport/roulette.h"
+#include "transport/path_step.h"
 
 namespace brisance {
 
@@ -14,28 +14,64 @@ namespace {
 // First scatterings drawn on one ray of the camera: the ray itself, integrated cell by cell, costs as much as several.
 constexpr int kFirstCollisions = 16;
 
-double exponential(Rng& rng) {
-    return -std::log1p(-rng.next_double());
-}
-
-void note(PathStatistics& statistics, const TracedVertex& vertex) {
-    if (statistics.vertices) [[unlikely]]
-        statistics.vertices->push_back(vertex);
-}
-
-// Surface paths that begin at the end of one ray of the camera that comes through smoke: what the ray itself costs is
-// shared by them. Where there is none a ray costs little.
+// Surface paths that begin at the end of one ray of the camera that comes through smoke: they share the cost of the ray
+// itself. Without smoke a ray costs little.
 constexpr int kFirstReflections = 4;
 
 }  // namespace
 
-struct PathTracer::Vertex {
-    PathVertex place;
-    Rgb throughput;     // with the albedo of this scattering in smoke
-    float light_lines;  // how many are drawn toward the fire: a probability
-    int order;          // scatterings with this one
-    bool row_surface;   // the first vertex of the path lies on a surface, ...
-    Sender column;      // ... and the second there, or in smoke: the cell of what it brings
+// Files what a path gathers by the number of its scatterings and by the ledger's cell.
+class PathTracer::Filing : public PlainPath {
+public:
+    Filing(const PathTracer& tracer, bool row_surface, PathSum& sum, PathStatistics& statistics)
+        : PlainPath(tracer.direct_),
+          bounces_(tracer.bounces_),
+          row_surface_(row_surface),
+          sum_(sum),
+          statistics_(statistics) {}
+
+    // Where no path goes on and no surface ends the segment, the whole line is integrated instead.
+    SegmentMedium medium_along(const PathState& state, const PathStep& step, Rng& rng) const {
+        if (continues(state) || scene_.surroundings())
+            return PlainPath::medium_along(state, step, rng);
+        return {scene_.lines().follow_line(step.segment.ray, rng), Rgb(0.0f), std::nullopt, 1.0f};
+    }
+
+    bool continues(const PathState& state) const { return bounces_ < 0 || state.order < bounces_; }
+
+    void gather(const PathState& state, const PathStep& step) {
+        ++statistics_.scatterings;
+        const Rgb from_fire = state.throughput * step.from_fire;
+        const Rgb from_emitters = state.throughput * step.from_emitters;
+        const Rgb emission = step.emission_weight * step.leaving * step.medium.emission;
+        const Rgb at_end = step.leaving * step.at_end;
+        add(state.order, Sender::V, from_fire);
+        add(state.order, Sender::A, from_emitters);
+        add(state.order, Sender::V, emission);
+        add(state.order, Sender::A, at_end);
+        statistics_.note({state.order, state.vertex.position(), state.throughput, emission + at_end, from_fire,
+                          from_emitters, state.vertex.on_surface()});
+    }
+
+    bool arrive(const PathState&, const PathStep&, const PathState& next) {
+        if (next.order == 2)
+            column_ = next.vertex.on_surface() ? Sender::S : Sender::M;
+        return true;
+    }
+
+private:
+    // `source`: of the light, which names the column of what has scattered once.
+    void add(int order, Sender source, const Rgb& radiance) {
+        sum_[std::min(order, kPathOrders - 1)] += radiance;
+        if (scene_.surroundings())
+            sum_.cells.at(cell_of(row_surface_, order == 1 ? source : column_)) += radiance;
+    }
+
+    int bounces_;
+    bool row_surface_;           // the path's first vertex lies on a surface
+    Sender column_ = Sender::M;  // and its second vertex there or in the medium
+    PathSum& sum_;
+    PathStatistics& statistics_;
 };
 
 PathTracer::PathTracer(const Medium& medium, const TracingSettings& settings, int bounces,
@@ -47,177 +83,61 @@ PathTracer::PathTracer(const Medium& medium, const TracingSettings& settings, in
                     "use \"line\", or a shot without a scene");
 }
 
-void PathTracer::trace(const Ray& ray, double place, Rng& rng, PathSum& sum, PathStatistics& statistics) const {
+void PathTracer::trace(const Ray& ray, double position, Rng& rng, PathSum& sum, PathStatistics& statistics) const {
     if (direct_.fire().empty() && !direct_.surroundings())
         return;
     if (settings().emission == EmissionEstimator::Collision)
         trace_plain(ray, rng, sum, statistics);
     else
-        trace_lines(ray, place, rng, sum, statistics);
+        trace_lines(ray, position, rng, sum, statistics);
 }
 
-// `vertex`: where the light arrives; none: at the camera.
-void PathTracer::add(PathSum& sum, const Vertex* vertex, Sender source, const Rgb& radiance) const {
-    const int order = vertex ? vertex->order : 0;
-    sum[std::min(order, kPathOrders - 1)] += radiance;
-    if (!direct_.surroundings())
-        return;
-    Cell cell = source == Sender::V ? Cell::V : Cell::A;
-    if (order == 1)
-        cell = cell_of(vertex->row_surface, source);
-    else if (order > 1)
-        cell = cell_of(vertex->row_surface, vertex->column);
-    sum.cells.at(cell) += radiance;
+void PathTracer::add_seen(Cell cell, const Rgb& radiance, PathSum& sum) const {
+    sum[0] += radiance;
+    if (direct_.surroundings())
+        sum.cells.at(cell) += radiance;
 }
 
-void PathTracer::trace_lines(const Ray& camera_ray, double place, Rng& rng, PathSum& sum,
+void PathTracer::trace_lines(const Ray& camera_ray, double position, Rng& rng, PathSum& sum,
                              PathStatistics& statistics) const {
     thread_local CameraLine seen;
     const RaySegment segment = direct_.segment_along(camera_ray);
     direct_.lines().follow_camera(camera_ray, rng, seen, segment.end);
-    add(sum, nullptr, Sender::V, seen.radiance);
+    add_seen(Cell::V, seen.radiance, sum);
     const auto through = static_cast<float>(seen.transmittance());
     Rgb at_end(0.0f);
     if (direct_.surroundings()) {
         at_end = through * direct_.at_end(segment, 0.0, true, nullptr);
-        add(sum, nullptr, Sender::A, at_end);
+        add_seen(Cell::A, at_end, sum);
     }
-    note(statistics, {0, camera_ray.origin, Rgb(1.0f), seen.radiance + at_end, Rgb(0.0f)});
+    statistics.note({0, camera_ray.origin, Rgb(1.0f), seen.radiance + at_end, Rgb(0.0f)});
     if (bounces_ == 0)
         return;
     const double opacity = seen.opacity();
-    const Rgb arriving(static_cast<float>(opacity / kFirstCollisions));
+    const Rgb throughput(static_cast<float>(opacity / kFirstCollisions));
     for (int i = 0; i < kFirstCollisions && opacity > 0.0; ++i) {
-        ++statistics.paths;
-        const Collision first = direct_.lines().choose(seen, (i + place) / kFirstCollisions);
-        trace_from(in_smoke(camera_ray, first, arriving, nullptr), rng, sum, statistics);
+        const Collision first = direct_.lines().choose(seen, (i + position) / kFirstCollisions);
+        trace_from(state_in_medium(direct_, camera_ray, first, throughput, 1), rng, sum, statistics);
     }
     if (!segment.point || !(through > 0.0f))
         return;
     const int reflections = opacity > 0.0 ? static_cast<int>(std::ceil(through * kFirstReflections)) : 1;
-    for (int i = 0; i < reflections; ++i) {
-        ++statistics.paths;
-        trace_from(on_surface(*segment.point, camera_ray.direction, Rgb(through / float(reflections)), nullptr), rng,
-                   sum, statistics);
-    }
+    for (int i = 0; i < reflections; ++i)
+        trace_from(
+            state_on_surface(direct_, *segment.point, camera_ray.direction, Rgb(through / float(reflections)), 1), rng,
+            sum, statistics);
 }
 
 void PathTracer::trace_from_surface(const SurfacePoint& point, const dvec3& arriving, Rng& rng, PathSum& sum) const {
     PathStatistics ignored;
     if (bounces_ != 0)
-        trace_from(on_surface(point, arriving, Rgb(1.0f), nullptr), rng, sum, ignored);
+        trace_from(state_on_surface(direct_, point, arriving, Rgb(1.0f), 1), rng, sum, ignored);
 }
 
-void PathTracer::trace_from(Vertex vertex, Rng& rng, PathSum& sum, PathStatistics& statistics) const {
-    const float begin = largest(vertex.throughput);
-    const auto endless = [&] { return vertex.place.on_surface() && vertex.order > kManyScatterings; };
-    while (survives(vertex.throughput, begin, endless(), rng)) {
-        ++statistics.scatterings;
-        const PathVertex& place = vertex.place;
-        TracedVertex seen{vertex.order, place.position(), vertex.throughput, Rgb(0.0f),
-                          Rgb(0.0f),    Rgb(0.0f),        place.on_surface()};
-        if (vertex.light_lines > 0.0f && (vertex.light_lines == 1.0f || rng.next() < vertex.light_lines)) {
-            seen.from_fire = vertex.throughput * direct_.from_fire(place, vertex.light_lines, rng);
-            add(sum, &vertex, Sender::V, seen.from_fire);
-        }
-        if (direct_.has_emitters() && !place.only_delta()) {
-            seen.from_emitters = vertex.throughput * direct_.from_emitters(place, rng);
-            add(sum, &vertex, Sender::A, seen.from_emitters);
-        }
-        const std::optional<PathVertex::Sample> turn = place.sample(rng);
-        if (!turn) {
-            note(statistics, seen);
-            return;
-        }
-        const RaySegment segment = direct_.segment_along(place.leaving(turn->wi));
-        const Rgb leaving = vertex.throughput * turn->weight;
-        const bool goes_on = bounces_ < 0 || vertex.order < bounces_;
-        LineResult line;
-        if (goes_on || direct_.surroundings())
-            line = direct_.lines().follow_path(segment.ray, rng, segment.end);
-        else
-            line.radiance = direct_.lines().follow_line(segment.ray, rng);
-        if (line.radiance != Rgb(0.0f)) {
-            const float share =
-                turn->delta ? 1.0f : direct_.share_of_sample(vertex.light_lines, segment.ray, turn->pdf);
-            seen.along_segment = share * leaving * line.radiance;
-            add(sum, &vertex, Sender::V, seen.along_segment);
-        }
-        if (direct_.surroundings() && !line.collision) {
-            const Rgb at_end = leaving * direct_.at_end(segment, turn->pdf, turn->delta, &place);
-            add(sum, &vertex, Sender::A, at_end);
-            seen.along_segment += at_end;
-        }
-        note(statistics, seen);
-        if (!goes_on || !(line.collision || segment.hit))
-            return;
-        vertex = line.collision ? in_smoke(segment.ray, *line.collision, leaving, &vertex)
-                                : on_surface(*segment.point, segment.ray.direction, leaving, &vertex);
-    }
-}
-
-PathTracer::Vertex PathTracer::in_smoke(const Ray& ray, const Collision& c, const Rgb& arriving,
-                                        const Vertex* from) const {
-    const int order = from ? from->order + 1 : 1;
-    return {direct_.in_smoke(ray, c),         arriving * field().albedo(c.brick, c.position),
-            direct_.lines_in_smoke(c),        order,
-            from ? from->row_surface : false, order > 2 ? from->column : Sender::M};
-}
-
-PathTracer::Vertex PathTracer::on_surface(const SurfacePoint& point, const dvec3& direction, const Rgb& arriving,
-                                          const Vertex* from) const {
-    const int order = from ? from->order + 1 : 1;
-    Vertex v{PathVertex(point, direction),        arriving, 0.0f, order, from ? from->row_surface : true,
-             order > 2 ? from->column : Sender::S};
-    v.light_lines = direct_.lines_on_surface(v.place);
-    return v;
-}
-
-// The plain tracker: emission at every tentative collision, absorption or scattering at real ones. Where only emission
-// is, tentative collisions must be made.
-void PathTracer::trace_plain(Ray ray, Rng& rng, PathSum& sum, PathStatistics& statistics) const {
+void PathTracer::trace_from(PathState first, Rng& rng, PathSum& sum, PathStatistics& statistics) const {
     ++statistics.paths;
-    Rgb throughput(1.0f);
-    for (int order = 0;; ++order) {
-        std::optional<Collision> collision;
-        note(statistics, {order, ray.origin, throughput, Rgb(0.0f), Rgb(0.0f)});
-        walk_bricks(field().bricks(), field().enter(ray), [&](const VoxelSegment& s) {
-            const bool burns = field().burns(s.brick);
-            const double per_voxel = glm::length(s.direction) / 4.0;
-            const double majorant =
-                std::max<double>(field().majorant(s.brick), burns && field().has_emission() ? per_voxel : 0.0);
-            if (majorant <= 0.0)
-                return true;
-            for (double t = s.begin + exponential(rng) / majorant; t < s.end; t += exponential(rng) / majorant) {
-                const vec3 p = point_in_brick(s, t);
-                const float sigma = field().extinction(s.brick, p);
-                Rgb glow(0.0f);
-                if (burns && field().has_source())
-                    glow += sigma * field().source(s.brick, p);
-                if (burns && field().has_emission())
-                    glow += field().emission(s.brick, p);
-                const Rgb gathered = throughput * glow / float(majorant);
-                sum[std::min(order, kPathOrders - 1)] += gathered;
-                if (statistics.vertices) [[unlikely]]
-                    statistics.vertices->back().along_segment += gathered;
-                if (rng.next_double() * majorant < sigma) {
-                    collision = Collision{t, s.brick, p};
-                    return false;
-                }
-            }
-            return true;
-        });
-        if (!collision || order == bounces_)
-            return;
-        const Rgb albedo = field().albedo(collision->brick, collision->position);
-        const float scatter = largest(throughput * albedo) / std::max(largest(throughput), 1e-30f);
-        if (!(rng.next_double() < scatter))
-            return;
-        throughput *= albedo / scatter;
-        ++statistics.scatterings;
-        ray = {ray.origin + ray.direction * collision->distance,
-               sample_henyey_greenstein(ray.direction, field().mean_cosine(), rng)};
-    }
+    Filing filing(*this, first.vertex.on_surface(), sum, statistics);
+    walk_path(direct_, std::move(first), filing, rng);
 }
 
 }  // namespace brisance

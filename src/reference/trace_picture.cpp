@@ -8,7 +8,7 @@
 #include <mutex>
 
 #include "camera/pixel_filter.h"
-#include "camera_rays/integrate.h"
+#include "camera_rays/picture.h"
 #include "camera_rays/source_field.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -54,14 +54,14 @@ Ray ray_at(const Camera& camera, std::size_t pixel, const Place& place) {
 
 class Tracing {
 public:
-    Tracing(const Shot& shot, const Medium& medium, const Surroundings* surroundings, const Camera& camera,
-            const Checkpoint& checkpoint, Progress& progress)
-        : shot_(shot),
-          camera_(camera),
+    Tracing(const TracedScene& scene, const Checkpoint& checkpoint, Progress& progress)
+        : settings_(scene.tracing),
+          camera_(scene.camera),
           checkpoint_(checkpoint),
           progress_(progress),
-          tracer_(medium, shot.tracing, shot.scattering.bounces, surroundings),
-          film_(camera.settings().width, camera.settings().height, shot.output.bounce_layers, surroundings) {
+          tracer_(scene.medium, scene.tracing, scene.bounces, scene.surroundings),
+          film_(scene.camera.settings().width, scene.camera.settings().height, scene.output.bounce_layers,
+                scene.surroundings) {
         if (!checkpoint.file.empty() && std::filesystem::exists(checkpoint.file))
             resume();
         if (!checkpoint.file.empty())
@@ -94,7 +94,7 @@ private:
     }
 
     bool enough() {
-        const TracingSettings& t = shot_.tracing;
+        const TracingSettings& t = settings_;
         const std::uint64_t samples = 2 * film_.work.passes;
         if (film_.work.rows > 0 || samples == 0)
             return false;
@@ -111,7 +111,7 @@ private:
             film_.work.passes += film_.work.rows == 0;
             film_.work.seconds = before_ + watch_.seconds();
             tell();
-            if (!checkpoint_.file.empty() && since_save_.seconds() >= shot_.tracing.checkpoint_seconds)
+            if (!checkpoint_.file.empty() && since_save_.seconds() >= settings_.checkpoint_seconds)
                 save();
         }
     }
@@ -144,7 +144,7 @@ private:
     }
 
     void tell() {
-        const TracingSettings& t = shot_.tracing;
+        const TracingSettings& t = settings_;
         const double done = 2.0 * (film_.work.passes + double(film_.work.rows) / film_.height());
         double part = t.samples > 0 ? done / t.samples : 0.0;
         if (t.seconds > 0.0)
@@ -168,7 +168,7 @@ public:
     static double relative_standard_error(const PathFilm& film);
 
 private:
-    const Shot& shot_;
+    const TracingSettings& settings_;
     const Camera& camera_;
     const Checkpoint& checkpoint_;
     Progress& progress_;
@@ -212,8 +212,8 @@ double relative_error_of_mean(const PathFilm& film) {
 // Writes the film's sums into the layers of pictures.
 class Developer {
 public:
-    Developer(const PathFilm& film, const Image& sampled, const Plan& plan, const OutputSettings& output)
-        : film_(film), sampled_(sampled), plan_(plan), output_(output) {}
+    Developer(const PathFilm& film, const Image& sampled, const CellSet& needed, const OutputSettings& output)
+        : film_(film), sampled_(sampled), needed_(needed), output_(output) {}
 
     // half 0 or 1, or -1 for their mean.
     Image picture(int half) const {
@@ -266,20 +266,21 @@ private:
     void add_cells(Image& image, int half) const {
         if (film_.sums() > film_.order_sums()) {
             for (int cell = 0; cell < kCells; ++cell)
-                if (plan_.needed[cell])
+                if (needed_[cell])
                     fill(image, kCellNames[cell], half, film_.order_sums() + cell, film_.order_sums() + cell + 1);
             return;
         }
         fill(image, "V", half, 0, 1);
-        if (plan_.single)
+        if (needed_.contains(Cell::MV))
             fill(image, "MV", half, 1, 2);
-        if (plan_.multiple)
+        if (needed_.contains(Cell::MM))
             fill(image, "MM", half, 2, film_.order_sums());
     }
 
     void add_orders(Image& image, int half) const {
-        const bool once = plan_.single || plan_.needs(Cell::SV) || plan_.needs(Cell::SA) || plan_.needs(Cell::MA);
-        const bool twice = plan_.multiple || plan_.needs(Cell::SS);
+        const bool once = needed_.contains(Cell::MV) || needed_.contains(Cell::SV) || needed_.contains(Cell::SA) ||
+                          needed_.contains(Cell::MA);
+        const bool twice = needed_.contains(Cell::MM) || needed_.contains(Cell::SS);
         if (!output_.bounce_layers || !once)
             return;
         fill(image, "bounce1", half, 1, 2);
@@ -303,7 +304,7 @@ private:
 
     const PathFilm& film_;
     const Image& sampled_;
-    const Plan& plan_;
+    const CellSet& needed_;
     const OutputSettings& output_;
 };
 
@@ -317,7 +318,7 @@ Image sampled_layers(const Medium& medium, const Surroundings* surroundings, con
     settings.cells = false;
     settings.surroundings = surroundings;
     Progress silent;
-    return render_picture(field, camera, settings, {}, silent);
+    return render_picture(field, camera, settings, silent);
 }
 
 void weigh(PathSum& sum, PathStatistics& statistics, float weight) {
@@ -362,20 +363,21 @@ PathSum trace_sample(const PathTracer& tracer, const Camera& camera, std::size_t
     return sum;
 }
 
-TracedPicture trace_picture(const Shot& shot, const Plan& plan, const Medium& medium, const Surroundings* surroundings,
-                            const Camera& camera, const Checkpoint& checkpoint, Statistics& statistics,
+TracedPicture trace_picture(const TracedScene& scene, const Checkpoint& checkpoint, Statistics& statistics,
                             Progress& progress) {
     progress.stage("path tracing");
+    const Stopwatch setup;
+    Tracing tracing(scene, checkpoint, progress);
+    statistics.stages.push_back({"tracking field and light trees", setup.seconds(), tracing.tracer().bytes(), {}});
     const Stopwatch watch;
     const std::clock_t cpu = std::clock();
-    Tracing tracing(shot, medium, surroundings, camera, checkpoint, progress);
     tracing.run();
     const PathFilm& film = tracing.film();
     report_bad_samples(film, progress);
     statistics.stages.push_back(
         {"path tracing",
          watch.seconds(),
-         tracing.tracer().bytes(),
+         film.bytes(),
          {{"samples_per_pixel", 2 * film.work.passes},
           {"paths", film.work.paths},
           {"scatterings_per_path", double(film.work.scatterings) / double(std::max<std::uint64_t>(film.work.paths, 1))},
@@ -384,9 +386,11 @@ TracedPicture trace_picture(const Shot& shot, const Plan& plan, const Medium& me
           {"relative_standard_error", Tracing::relative_standard_error(film)},
           {"relative_standard_error_of_mean", relative_error_of_mean(film)},
           {"not_finite_paths", film.work.not_finite}}});
-    const Image sampled = sampled_layers(medium, surroundings, camera);
-    const Developer developer(film, sampled, plan, shot.output);
+    const Stopwatch layers;
+    const Image sampled = sampled_layers(scene.medium, scene.surroundings, scene.camera);
+    const Developer developer(film, sampled, scene.needed, scene.output);
     TracedPicture out{developer.picture(-1), {developer.picture(0), developer.picture(1)}, 2.0 * film.work.passes};
+    statistics.stages.push_back({"alpha, depth and albedo", layers.seconds(), 0, {}});
     return out;
 }
 

@@ -7,10 +7,10 @@
 
 #include "camera/camera.h"
 #include "core/progress.h"
+#include "emitters/surroundings.h"
 #include "film/image.h"
+#include "film/settings.h"
 #include "reference/path_film.h"
-#include "render/plan.h"
-#include "shot/shot.h"
 #include "statistics/statistics.h"
 
 namespace brisance {
@@ -19,6 +19,17 @@ namespace brisance {
 struct Checkpoint {
     std::filesystem::path file;  // empty: none is kept
     std::string key;             // everything that decides the bits
+};
+
+// What is traced, by reference, and which layers are written.
+struct TracedScene {
+    const Medium& medium;
+    const Camera& camera;
+    const Surroundings* surroundings = nullptr;  // null: none
+    TracingSettings tracing;
+    int bounces = -1;  // the most scatterings of a path; -1: all
+    CellSet needed;    // ledger cells that can be other than zero
+    OutputSettings output;
 };
 
 struct TracedPicture {
@@ -39,8 +50,7 @@ PathSum trace_sample(const PathTracer& tracer, const Camera& camera, std::size_t
 // Goes on from the checkpoint where there is one. Layers as render_picture's, all 32 bit, and "variance": of each
 // pixel's mean, by the spread of its paths; stratification makes the true one smaller.
 // Throws Error BadData when the checkpoint does not belong to this render.
-TracedPicture trace_picture(const Shot& shot, const Plan& plan, const Medium& medium, const Surroundings* surroundings,
-                            const Camera& camera, const Checkpoint& checkpoint, Statistics& statistics,
+TracedPicture trace_picture(const TracedScene& scene, const Checkpoint& checkpoint, Statistics& statistics,
                             Progress& progress);
 
 }  // namespace brisance

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace brisance {
 
@@ -28,7 +29,7 @@ std::string why_no_emission(const Shot& shot, const Medium& medium) {
 // Which cells can be other than zero.
 void decide(Plan& plan, bool scatters, bool visible, int bounces) {
     const bool once = bounces != 0, twice = bounces < 0 || bounces > 1, lit = plan.emission || plan.emitters;
-    const auto set = [&](Cell cell, bool needed) { plan.needed[static_cast<int>(cell)] = needed; };
+    const auto set = [&](Cell cell, bool needed) { plan.needed.set(cell, needed); };
     set(Cell::V, plan.emission);
     set(Cell::A, plan.emitters && visible);
     set(Cell::MV, plan.emission && scatters && once);
@@ -56,61 +57,87 @@ bool scatters_sharply(const Medium& medium) {
 }
 
 struct Choice {
-    ScatteringMethod method;
+    std::string method;
     std::string reason;
 };
 
 Choice choose_scattering(const Shot& shot, const Medium& medium) {
-    const ScatteringMethod asked = shot.ray_lights.method;
-    if (asked != ScatteringMethod::Automatic)
-        return {asked, std::string("scattering.method is ") + name_of(asked)};
-    if (shot.lighting.gather == GatherMethod::RayMarch)
-        return {ScatteringMethod::LightingGrid, "scattering.method is auto, and lighting.gather is ray_march"};
+    const std::string& wanted = shot.scattering_methods.method;
+    if (wanted != kAutomaticMethod)
+        return {wanted, "scattering.method is " + wanted};
     if (!haze_alone(shot))
-        return {ScatteringMethod::LightingGrid, "scattering.method is auto: smoke from files is the grid's"};
+        return {kLightingGridMethod, "scattering.method is auto: smoke from files is the grid's"};
     if (!scatters_sharply(medium))
-        return {ScatteringMethod::LightingGrid,
-                "scattering.method is auto: haze with a mean cosine of at most 0.5 is the grid's"};
-    return {ScatteringMethod::Particles, "scattering.method is auto, and haze alone has a mean cosine above 0.5"};
+        return {kLightingGridMethod, "scattering.method is auto: haze with a mean cosine of at most 0.5 is the grid's"};
+    return {VolumetricPhotonsMethod::kName, "scattering.method is auto, and haze alone has a mean cosine above 0.5"};
+}
+
+// Names of all methods but the grid, for what is left out.
+std::string other_methods() {
+    std::string names;
+    for (const ScatteringMethod& method : scattering_methods())
+        names += (names.empty() ? "" : ", ") + method.product;
+    return names;
+}
+
+using Skip = std::function<void(const std::string& part, const std::string& reason)>;
+
+// Who owns MM and SM, and how MA and MS are found beside them.
+std::string choose_owners(Plan& plan, const Shot& shot, const Medium& medium, const Skip& skip) {
+    const Choice choice = choose_scattering(shot, medium);
+    plan.scattering_choice = choice.method;
+    const bool many_lights = shot.method == RenderMethod::LightingGrid;
+    const ScatteringMethod* const method = many_lights ? find_scattering_method(choice.method) : nullptr;
+    const bool twice = plan.multiple || plan.needs(Cell::SM);
+    plan.scattering_method = twice ? method : nullptr;
+    plan.emitters_by_rays = many_lights && plan.needs(Cell::MA) && (plan.scattering_method || haze_alone(shot));
+    plan.reflected_by_particles = many_lights && plan.needs(Cell::MS) && scatters_sharply(medium);
+    if (method && !plan.scattering_method)
+        skip(method->product, "no light is scattered twice");
+    if (many_lights && twice && !method)
+        skip(other_methods(), choice.reason);
+    return choice.reason + ", which owns MM and SM";
+}
+
+void skip_without_emission(const Plan& plan, const Shot& shot, const Medium& medium, const std::string& owner,
+                           const Skip& skip) {
+    skip("V", why_no_emission(shot, medium));
+    for (const Cell cell : {Cell::MV, Cell::MM, Cell::SV})
+        if (!plan.needs(cell) && (cell != Cell::SV || plan.surfaces))
+            skip(name_of(cell), "nothing emits");
+    skip("lights, hierarchy, shadow maps", "nothing emits");
+    if (plan.scattering_method)
+        skip("scattered hierarchies", owner);
+}
+
+void skip_with_emission(const Plan& plan, const Shot& shot, const Medium& medium, const std::string& owner,
+                        const Skip& skip) {
+    const bool many_lights = shot.method == RenderMethod::LightingGrid, scatters = medium.scatters();
+    const std::string dark = medium.max_extinction <= 0.0f ? "there is no smoke to scatter" : "the albedo is zero";
+    if (!plan.single)
+        skip("MV", scatters ? "scattering.bounces is 0" : dark);
+    if (!plan.multiple)
+        skip("MM", scatters ? "scattering.bounces is " + std::to_string(shot.scattering.bounces) : dark);
+    if (!plan.single || !many_lights)
+        skip("lights, hierarchy, shadow maps", many_lights ? "no cell needs them" : "method is path");
+    else if (plan.scattering_method)
+        skip("scattered hierarchies", owner);
+    else if (!plan.multiple)
+        skip("scattered hierarchies", "one scattering only");
 }
 
 }  // namespace
 
-const char* things_of(ScatteringMethod method) {
-    switch (method) {
-        case ScatteringMethod::LightingGrid:
-            return "scattered hierarchies";
-        case ScatteringMethod::PointLights:
-            return "point lights";
-        case ScatteringMethod::Particles:
-            return "particles";
-        default:
-            return "ray lights";
-    }
-}
-
 Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surroundings) {
     Plan plan;
-    const auto skip = [&](const char* part, const std::string& reason) { plan.skipped.push_back({part, reason}); };
+    const Skip skip = [&](const std::string& part, const std::string& reason) {
+        plan.skipped.push_back({part, reason});
+    };
     plan.surfaces = surroundings && surroundings->has_surfaces();
     plan.emitters = surroundings && !surroundings->emitters().empty();
     plan.emission = medium.emits();
-    const int bounces = shot.scattering.bounces;
-    const bool scatters = medium.scatters();
-    decide(plan, scatters, plan.emitters && surroundings->emitters().visible(), bounces);
-    const Choice choice = choose_scattering(shot, medium);
-    plan.scattering = choice.method;
-    const bool lit_by_grid = shot.method == RenderMethod::LightingGrid;
-    const bool by_lights = lit_by_grid && plan.scattering != ScatteringMethod::LightingGrid;
-    const bool twice = plan.multiple || plan.needs(Cell::SM);
-    plan.scattered_lights = by_lights && twice;
-    plan.emitters_by_rays = lit_by_grid && plan.needs(Cell::MA) && (plan.scattered_lights || haze_alone(shot));
-    plan.reflected_by_particles = lit_by_grid && plan.needs(Cell::MS) && scatters_sharply(medium);
-    if (by_lights && !plan.scattered_lights)
-        skip(things_of(plan.scattering), "no light is scattered twice");
-    if (lit_by_grid && twice && !by_lights)
-        skip("ray lights, point lights, particles", choice.reason);
-    const std::string owners = choice.reason + ": MM and SM are theirs";
+    decide(plan, medium.scatters(), plan.emitters && surroundings->emitters().visible(), shot.scattering.bounces);
+    const std::string owner = choose_owners(plan, shot, medium, skip);
     if (!plan.surfaces)
         skip("row S, column S", "no surfaces in the shot");
     if (!plan.emitters)
@@ -119,31 +146,12 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
         skip("column V, row M, column M", "no volume in the shot");
         return plan;
     }
+    const bool many_lights = shot.method == RenderMethod::LightingGrid;
     const bool lights_smoke = plan.single || plan.needs(Cell::MA) || plan.needs(Cell::MS);
-    plan.directional = lit_by_grid && lights_smoke && medium.mean_cosine != 0.0f;
-    if (lit_by_grid && lights_smoke && !plan.directional)
+    plan.directional = many_lights && lights_smoke && medium.mean_cosine != 0.0f;
+    if (many_lights && lights_smoke && !plan.directional)
         skip("directional storage", "the phase function is isotropic");
-    if (!plan.emission) {
-        skip("V", why_no_emission(shot, medium));
-        for (const Cell cell : {Cell::MV, Cell::MM, Cell::SV})
-            if (!plan.needs(cell) && (cell != Cell::SV || plan.surfaces))
-                skip(name_of(cell), "nothing emits");
-        skip("lights, hierarchy, shadow maps", "nothing emits");
-        if (plan.scattered_lights)
-            skip("scattered hierarchies", owners);
-        return plan;
-    }
-    const std::string dark = medium.max_extinction <= 0.0f ? "there is no smoke to scatter" : "the albedo is zero";
-    if (!plan.single)
-        skip("MV", scatters ? "scattering.bounces is 0" : dark);
-    if (!plan.multiple)
-        skip("MM", scatters ? "scattering.bounces is " + std::to_string(bounces) : dark);
-    if (!plan.single || !lit_by_grid)
-        skip("lights, hierarchy, shadow maps", lit_by_grid ? "no cell asks for them" : "method is path");
-    else if (plan.scattered_lights)
-        skip("scattered hierarchies", owners);
-    else if (!plan.multiple)
-        skip("scattered hierarchies", "one scattering only");
+    (plan.emission ? skip_with_emission : skip_without_emission)(plan, shot, medium, owner, skip);
     return plan;
 }
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "shot/codec.h"
+#include "codec/codec.h"
 
 namespace brisance {
 

@@ -1,5 +1,7 @@
 #include "shot/keys.h"
 
+#include "shot/renamed_keys.h"
+
 namespace brisance {
 namespace {
 
@@ -31,16 +33,44 @@ std::vector<Key> all_keys() {
     return keys;
 }
 
+using Sections = std::vector<std::pair<std::string, std::string>>;
+
+Sections all_sections() {
+    Sections sections = {
+        {"volume", "the OpenVDB file, its grids and its place"},
+        {"volume.grids", "which grid plays which role: \"name\" or \"name[index]\", null for automatic, \"\" for none"},
+        {"smoke", "from density to optical coefficients"},
+        {"fire", "what glows"},
+        {"scene", "surfaces and lights around the volume"},
+        {"camera", "the pinhole camera; without eye and target, or world_from_camera, it is framed on the volume"},
+        {"lighting", "how the fire's light reaches the smoke"},
+        {"scattering", "light scattered more than once"}};
+    for (const ScatteringMethod& method : scattering_methods())
+        sections.emplace_back(method.name, method.product + ", of scattering.method " + method.name);
+    const Sections rest = {{"virtual_lights", "light that surfaces reflect onto surfaces and smoke"},
+                           {"tracing", "the reference path tracer (method path)"},
+                           {"certify", "how far the finished frame is from the truth"},
+                           {"output", "what is written"},
+                           {"output.layers", "layers of the EXR besides the beauty"}};
+    sections.insert(sections.end(), rest.begin(), rest.end());
+    return sections;
+}
+
 }  // namespace
 
 Affects affected_by(const std::string& path) {
     // Leaving out orders of scattering changes what is true.
     if (path == "scattering.bounces")
         return Affects::Picture;
-    for (const char* section : {"lighting.", "scattering.", "ray_lights.", "point_lights.", "particles.",
-                                "virtual_lights.", "tracing.", "certify.", "output."})
+    for (const char* section : {"lighting.", "scattering.", "virtual_lights.", "tracing.", "certify.", "output."})
         if (path.starts_with(section))
             return Affects::Method;
+    for (const ScatteringMethod& method : scattering_methods())
+        if (path.starts_with(method.name + "."))
+            return Affects::Method;
+    // Shots stored in older pictures: all keys that were renamed so far are of the method.
+    if (renamed_key(path))
+        return Affects::Method;
     for (const char* key : {"$schema", "name", "method", "camera.samples_per_axis", "camera.edge_refinement"})
         if (path == key)
             return Affects::Method;
@@ -53,24 +83,7 @@ const std::vector<Key>& shot_keys() {
 }
 
 const std::vector<std::pair<std::string, std::string>>& shot_sections() {
-    static const std::vector<std::pair<std::string, std::string>> sections = {
-        {"volume", "the OpenVDB file, its grids and its place"},
-        {"volume.grids", "which grid plays which role: \"name\" or \"name[index]\", null for automatic, \"\" for none"},
-        {"smoke", "from density to optical coefficients"},
-        {"fire", "what glows"},
-        {"scene", "surfaces and lights around the volume"},
-        {"camera", "the pinhole camera; without eye and target, or world_from_camera, it is framed on the volume"},
-        {"lighting", "how the fire's light reaches the smoke"},
-        {"scattering", "light scattered more than once"},
-        {"ray_lights", "virtual ray lights, of scattering.method ray_lights"},
-        {"point_lights", "volumetric virtual point lights, of scattering.method point_lights"},
-        {"particles", "tracks of particles, of scattering.method particles"},
-        {"virtual_lights", "light that surfaces reflect onto surfaces and smoke"},
-        {"tracing", "the reference path tracer (method path)"},
-        {"certify", "how far the finished frame is from the truth"},
-        {"output", "what is written"},
-        {"output.layers", "layers of the EXR besides the beauty"},
-    };
+    static const std::vector<std::pair<std::string, std::string>> sections = all_sections();
     return sections;
 }
 

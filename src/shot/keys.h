@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "shot/codec.h"
+#include "codec/codec.h"
 #include "shot/shot.h"
 
 namespace brisance {
@@ -70,6 +70,7 @@ void add_medium_keys(std::vector<Key>& keys);
 void add_scene_keys(std::vector<Key>& keys);
 void add_camera_keys(std::vector<Key>& keys);
 void add_lighting_keys(std::vector<Key>& keys);
+void add_scattering_method_keys(std::vector<Key>& keys);
 void add_virtual_light_keys(std::vector<Key>& keys);
 void add_tracing_keys(std::vector<Key>& keys);
 void add_certify_keys(std::vector<Key>& keys);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "shot/codec.h"
+#include "codec/codec.h"
 #include "shot/nearest_key.h"
 
 namespace brisance {

@@ -13,6 +13,7 @@
 #include "shot/json_text.h"
 #include "shot/keys.h"
 #include "shot/nearest_key.h"
+#include "shot/renamed_keys.h"
 
 namespace brisance {
 namespace {
@@ -58,6 +59,8 @@ std::string shortened(const Json& value) {
 
 // Names the part that is to blame where a value has parts.
 [[noreturn]] void reject_value_of(const Key& key, const std::string& where, const Json& value) {
+    if (const std::optional<std::string> renamed = renamed_value(key.path, value.dump()))
+        throw Error(ExitCode::Usage, fmt::format("{}: {}: {}", where, key.path, *renamed));
     if (key.complain)
         if (const std::optional<Complaint> part = key.complain(value))
             reject_value(where, key.path + part->path, part->expected, part->value);
@@ -79,6 +82,8 @@ bool is_section(const std::string& path) {
 }
 
 [[noreturn]] void reject_key(const std::string& where, const std::string& path) {
+    if (const std::optional<std::string> renamed = renamed_key(path))
+        throw Error(ExitCode::Usage, fmt::format("{}: {}", where, *renamed));
     std::vector<std::string> known;
     for (const Key& key : shot_keys())
         known.push_back(key.path);

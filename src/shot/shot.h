@@ -10,13 +10,11 @@
 #include "film/settings.h"
 #include "gathering/settings.h"
 #include "medium/settings.h"
-#include "ray_lights/settings.h"
+#include "scattering_methods/methods.h"
 #include "scene/settings.h"
 #include "tracking/settings.h"
 #include "virtual_lights/settings.h"
 #include "volume/settings.h"
-#include "volumetric_photons/settings.h"
-#include "volumetric_vpls/settings.h"
 
 namespace brisance {
 
@@ -44,9 +42,7 @@ struct Shot {
     RenderMethod method = RenderMethod::LightingGrid;
     LightingSettings lighting;
     ScatteringSettings scattering;
-    RayLightSettings ray_lights;
-    VolumetricVplSettings point_lights;
-    VolumetricPhotonSettings particles;
+    ScatteringMethodSettings scattering_methods;
     VirtualLightSettings virtual_lights;
     TracingSettings tracing;
     CertifySettings certify;

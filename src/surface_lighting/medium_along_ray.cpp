@@ -7,20 +7,20 @@ namespace brisance {
 
 namespace {
 
-// On such a ray, where it asks emitters.
+// Points on such a ray at which emitters are sampled.
 constexpr int kEmitterPlaces = 4;
 
 }  // namespace
 
 RaySum MediumAlongRay::look(const Ray& ray, double end, Rng& rng) const {
     RaySum sum = integrate(field_, ray, parts_, end);
-    if (!scattered_lights_ && !plan_.emitters_by_rays)
+    if (!in_scattering_ && !emitters_by_rays_)
         return sum;
     thread_local RayMedium medium;
     medium.look(scene_.field(), ray, end);
-    if (scattered_lights_)
-        sum.cells.at(Cell::MM) += scattered_lights_->along_ray(medium, rng);
-    if (plan_.emitters_by_rays)
+    if (in_scattering_)
+        sum.cells.at(Cell::MM) += in_scattering_->along_ray(medium, rng);
+    if (emitters_by_rays_)
         sum.cells.at(Cell::MA) += emitters_along_ray(scene_, medium, ray, kEmitterPlaces, rng);
     return sum;
 }

@@ -4,27 +4,31 @@
 #include "camera_rays/ray_sum.h"
 #include "camera_rays/source_field.h"
 #include "light_selection/in_scattering.h"
-#include "render/plan.h"
 #include "transport/direct_light.h"
 
 namespace brisance {
 
 class MediumAlongRay {
 public:
-    // Keeps references. `parts`: as of PictureSettings. `scattered_lights`: null where they do not own MM.
-    MediumAlongRay(const Plan& plan, const SourceField& field, const DirectLight& scene, int parts,
-                   const InScattering* scattered_lights)
-        : plan_(plan), field_(field), scene_(scene), parts_(parts), scattered_lights_(scattered_lights) {}
+    // Keeps references. `parts`: as of PictureSettings. `in_scattering`: null where it does not own MM.
+    // `emitters_by_rays`: MA is estimated along the ray, as the field holds none.
+    MediumAlongRay(const SourceField& field, const DirectLight& scene, int parts, const InScattering* in_scattering,
+                   bool emitters_by_rays)
+        : field_(field),
+          scene_(scene),
+          parts_(parts),
+          in_scattering_(in_scattering),
+          emitters_by_rays_(emitters_by_rays) {}
 
     // Up to `end` metres: V and the row M, as a ray of the camera has them.
     RaySum look(const Ray& ray, double end, Rng& rng) const;
 
 private:
-    const Plan& plan_;
     const SourceField& field_;
     const DirectLight& scene_;
     int parts_;
-    const InScattering* scattered_lights_;
+    const InScattering* in_scattering_;
+    bool emitters_by_rays_;
 };
 
 // The light of the row M.

@@ -4,7 +4,7 @@
 // a path that goes on from a mirror would draw one line toward the fire for all of that.
 #pragma once
 
-#include "camera_rays/integrate.h"
+#include "camera_rays/picture.h"
 #include "surface_lighting/medium_along_ray.h"
 
 namespace brisance {

@@ -28,19 +28,12 @@ bool has_wide_lobes(const SurfaceMaterial& m) {
 
 }  // namespace
 
-SurfaceShader::SurfaceShader(const Plan& plan, const SourceField& field, MediumLighting* lighting,
-                             const VirtualLights* lights, const PathTracer& paths, int parts,
-                             const InScattering* scattered_lights, PathLengths* lengths)
-    : plan_(plan),
-      lighting_(lighting),
-      lights_(lights),
-      paths_(paths),
-      surroundings_(*paths.direct().surroundings()),
-      scattered_lights_(scattered_lights),
-      lengths_(lengths),
-      medium_(plan, field, paths.direct(), parts, scattered_lights),
+SurfaceShader::SurfaceShader(const SurfaceLightingInput& input)
+    : input_(input),
+      surroundings_(*input.paths.direct().surroundings()),
+      medium_(input.field, input.paths.direct(), input.parts, input.in_scattering, input.emitters_by_rays),
       panes_(surroundings_),
-      mirrors_(paths.direct(), medium_, plan.needs(Cell::SS)) {}
+      mirrors_(input.paths.direct(), medium_, input.needed.contains(Cell::SS)) {}
 
 // Who is lit, and what draws its random numbers.
 struct SurfaceShader::Place {
@@ -50,7 +43,7 @@ struct SurfaceShader::Place {
 };
 
 Rgb SurfaceShader::from_emitters(const PathVertex& place, Rng& rng) const {
-    const DirectLight& direct = paths_.direct();
+    const DirectLight& direct = input_.paths.direct();
     Rgb sum(0.0f);
     if (!place.only_delta())
         sum += direct.from_emitters(place, rng);
@@ -72,8 +65,8 @@ std::vector<SurfaceShader::Place> SurfaceShader::places(const std::vector<Surfac
         [&](std::size_t i) {
             const SurfaceSample& s = samples[i];
             Place& place = places[i];
-            place.ray_rng = scattered_lights_ ? scattered_lights_->rng(Stream::RayLightSurface, s.pixel, s.number)
-                                              : Rng(Stream::RayLightSurface, s.pixel, s.number);
+            place.ray_rng = input_.in_scattering ? input_.in_scattering->rng(Stream::RayLightSurface, s.pixel, s.number)
+                                                 : Rng(Stream::RayLightSurface, s.pixel, s.number);
             const SurfacePoint point = surface_point(surroundings_.scene(), s.hit, -s.ray.direction);
             place.seen = mirrors_.follow(s, point, place.ray_rng, light[i]);
             place.vertices = place.seen.mirrors;
@@ -135,7 +128,7 @@ void SurfaceShader::reflect_medium(const SurfacePoint& point, const dvec3& towar
         return;
     const float of_rays = drawn->delta ? 1.0f : float(lobes.split.of_rays(drawn->wi));
     Rgb weight = drawn->weight;
-    RaySegment segment = paths_.direct().segment_along(point.leaving(drawn->wi));
+    RaySegment segment = input_.paths.direct().segment_along(point.leaving(drawn->wi));
     for (int panes = 0;; ++panes) {
         RaySum seen = medium_.look(segment.ray, segment.end, ray_rng);
         seen.cells.at(Cell::MM) *= of_rays;
@@ -146,22 +139,23 @@ void SurfaceShader::reflect_medium(const SurfacePoint& point, const dvec3& towar
         weight *= std::exp(-seen.depth) * Panes::straight_on(*segment.point, segment.ray.direction);
         if (weight == Rgb(0.0f))
             return;
-        segment = paths_.direct().segment_along(segment.point->leaving(segment.ray.direction));
+        segment = input_.paths.direct().segment_along(segment.point->leaving(segment.ray.direction));
     }
 }
 
 // What neither fire's grids nor those of smoke show of the medium: lights in the smoke, and glossy lobes.
 void SurfaceShader::reflect_scattered(const SurfacePoint& point, const dvec3& toward_viewer, Rng& rng, Rng& ray_rng,
                                       CellSum& light) const {
-    const int places = scattered_lights_ && has_wide_lobes(point.material) ? scattered_lights_->gloss_places() : 0;
+    const int places =
+        input_.in_scattering && has_wide_lobes(point.material) ? input_.in_scattering->gloss_places() : 0;
     std::optional<GlossyLobes> gloss;
-    if (lighting_ && has_specular(point.material))
+    if (input_.medium_lighting && has_specular(point.material))
         gloss.emplace(point, toward_viewer, places);
-    if (scattered_lights_) {
+    if (input_.in_scattering) {
         const bool shared = gloss && places > 0;
         const Bsdf base(point.material, point.frame, Lobes::Base);
         if (shared || has_base(point.material))
-            light.at(Cell::SM) += scattered_lights_->at_surface(
+            light.at(Cell::SM) += input_.in_scattering->at_surface(
                 point, AskedLobes(base, shared ? &gloss->split : nullptr), toward_viewer, ray_rng);
     }
     if (gloss)
@@ -173,42 +167,42 @@ void SurfaceShader::shade_place(const SurfaceSample& sample, const SurfaceReceiv
     const SurfacePoint& point = at.seen.point;
     const dvec3 toward_viewer = -at.seen.arriving;
     Rng rng(Stream::Surface, sample.pixel, sample.number);
-    if (lighting_ && has_base(point.material)) {
-        const auto add = [&](Cell cell, const std::array<Rgb, 2>& arriving, const ToAimAt& aims) {
+    if (input_.medium_lighting && has_base(point.material)) {
+        const auto add = [&](Cell cell, const std::array<Rgb, 2>& arriving, const VisibilityRatios& ratios) {
             for (int part = 0; part < 2; ++part) {
-                const SeenPart seen = seen_part(aims[part], point, toward_viewer, rng);
+                const SeenPart seen = seen_part(ratios[part], point, toward_viewer, rng);
                 out.at(cell) += arriving[part] * seen.clear;
                 if (asks_through_panes())
                     out.at(Cell::SS) += arriving[part] * seen.through_panes;
             }
         };
-        add(Cell::SV, receiver.fire, lighting_->fire_to_aim_at());
-        add(Cell::SM, receiver.smoke, lighting_->smoke_to_aim_at());
+        add(Cell::SV, receiver.fire, input_.medium_lighting->fire_visibility());
+        add(Cell::SM, receiver.smoke, input_.medium_lighting->smoke_visibility());
     }
     reflect_scattered(point, toward_viewer, rng, at.ray_rng, out);
     const PathVertex place(point, at.seen.arriving);
-    if (plan_.needs(Cell::SA))
+    if (input_.needed.contains(Cell::SA))
         out.at(Cell::SA) += from_emitters(place, rng);
-    if (!plan_.needs(Cell::SS))
+    if (!input_.needed.contains(Cell::SS))
         return;
-    if (lights_) {
-        out.at(Cell::SS) +=
-            lights_->shade(place, rng, &at.vertices,
-                           asks_through_panes() ? VirtualLights::Panes::Asked : VirtualLights::Panes::Followed);
+    if (input_.virtual_lights) {
+        out.at(Cell::SS) += input_.virtual_lights->shade(
+            place, rng, &at.vertices,
+            asks_through_panes() ? VirtualLights::Panes::Asked : VirtualLights::Panes::Followed);
         return;
     }
     PathSum path{};
-    paths_.trace_from_surface(point, at.seen.arriving, rng, path);
+    input_.paths.trace_from_surface(point, at.seen.arriving, rng, path);
     out.at(Cell::SS) += path.cells.at(Cell::SS);
 }
 
 void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) const {
     std::vector<Place> places = this->places(samples, light);
-    SharedReceivers receivers(paths_.direct().field().medium());
+    SharedReceivers receivers(input_.paths.direct().field().medium());
     for (std::size_t i = 0; i < samples.size(); ++i)
         receivers.add(samples[i].pixel, vec3(places[i].seen.point.position), vec3(places[i].seen.point.frame.normal));
-    if (lighting_)
-        lighting_->at_surfaces(receivers.receivers());
+    if (input_.medium_lighting)
+        input_.medium_lighting->at_surfaces(receivers.receivers());
     parallel_for(
         samples.size(),
         [&](std::size_t i) {
@@ -225,8 +219,8 @@ void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector
                 light[i].at(Cell::SS) += seen.throughput * cell;
         },
         kSamplesAtOnce);
-    for (std::size_t i = 0; lengths_ && i < samples.size(); ++i)
-        lengths_->add(samples[i].pixel, places[i].vertices);
+    for (std::size_t i = 0; input_.lengths && i < samples.size(); ++i)
+        input_.lengths->add(samples[i].pixel, places[i].vertices);
 }
 
 }  // namespace brisance

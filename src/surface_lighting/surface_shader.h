@@ -12,13 +12,12 @@
 
 #include <span>
 
-#include "camera_rays/integrate.h"
+#include "camera_rays/picture.h"
 #include "camera_rays/source_field.h"
 #include "emitters/surroundings.h"
 #include "light_selection/in_scattering.h"
 #include "medium_lighting/medium_lighting.h"
 #include "reference/path_tracer.h"
-#include "render/plan.h"
 #include "surface_lighting/mirrors.h"
 #include "surface_lighting/panes.h"
 #include "surface_lighting/path_lengths.h"
@@ -26,14 +25,22 @@
 
 namespace brisance {
 
+// Everything by reference or pointer must outlive the shader.
+struct SurfaceLightingInput {
+    CellSet needed;  // SS and SA are left out where they are not among them
+    const SourceField& field;
+    const PathTracer& paths;
+    const MediumLighting* medium_lighting = nullptr;  // null: neither fire nor smoke shines
+    const VirtualLights* virtual_lights = nullptr;    // null: the shot wants none
+    const InScattering* in_scattering = nullptr;      // null: it does not own SM
+    bool emitters_by_rays = false;                    // MA is estimated along rays (medium_along_ray.h)
+    int parts = 2;                                    // as of PictureSettings
+    PathLengths* lengths = nullptr;                   // counts the paths of virtual lights, where it is wanted
+};
+
 class SurfaceShader {
 public:
-    // Keeps references. `lighting`: null where neither fire nor smoke shines; `lights`: null where the shot wants none.
-    // `parts`: as of PictureSettings. `scattered_lights`: null where they do not own SM. `lengths`: counts the paths of
-    // the virtual lights; null: nobody wants to know.
-    SurfaceShader(const Plan& plan, const SourceField& field, MediumLighting* lighting, const VirtualLights* lights,
-                  const PathTracer& paths, int parts, const InScattering* scattered_lights = nullptr,
-                  PathLengths* lengths = nullptr);
+    explicit SurfaceShader(const SurfaceLightingInput& input);
 
     void shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) const;
 
@@ -54,15 +61,12 @@ private:
                         Rng& ray_rng, CellSum& light) const;
 
     // Virtual lights in the smoke know no panes, nor do paths without virtual lights.
-    bool asks_through_panes() const { return panes_.any() && lighting_ && lights_ && !scattered_lights_; }
+    bool asks_through_panes() const {
+        return panes_.any() && input_.medium_lighting && input_.virtual_lights && !input_.in_scattering;
+    }
 
-    const Plan& plan_;
-    MediumLighting* lighting_;
-    const VirtualLights* lights_;
-    const PathTracer& paths_;
+    SurfaceLightingInput input_;
     const Surroundings& surroundings_;
-    const InScattering* scattered_lights_;
-    PathLengths* lengths_;
     MediumAlongRay medium_;
     Panes panes_;
     Mirrors mirrors_;

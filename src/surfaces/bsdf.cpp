@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numbers>
 
+#include "surfaces/diffuse_lobes.h"
 #include "surfaces/fresnel.h"
 
 namespace brisance {
 
 namespace {
 
-constexpr double kPi64 = std::numbers::pi;
 constexpr double kBelowOne = 1.0 - 0x1p-53;
 
 float most(const Rgb& c) {
@@ -37,31 +36,6 @@ float mean(const Rgb& c) {
 Rgb after_many_facets(const Rgb& fresnel, double lost) {
     const float stays = static_cast<float>(lost), leaves = 1.0f - stays;
     return fresnel * fresnel * leaves / (Rgb(1.0f) - fresnel * stays);
-}
-
-// Lambert's lobe: its value times the cosine, and the density that draws it [1/sr].
-double cosine_density(double cosine) {
-    return cosine / kPi64;
-}
-
-dvec3 sample_cosine(double u, double v) {
-    const double radius = std::sqrt(u), azimuth = 2.0 * kPi64 * v;
-    return {radius * std::cos(azimuth), radius * std::sin(azimuth), std::sqrt(1.0 - u)};
-}
-
-// Light that met more than one facet leaves in proportion to cos (1 - E), and 1 - E about as alpha^2 / (cos^2 +
-// alpha^2) (masking loses alpha^2 tan^2 / 4 far from grazing angles): for low roughness almost along the surface, where
-// a cosine lobe would seldom look.
-double grazing_density(double cosine, double alpha) {
-    const double square = alpha * alpha;
-    return cosine / (kPi64 * (cosine * cosine + square) * std::log1p(1.0 / square));
-}
-
-dvec3 sample_grazing(double alpha, double u, double v) {
-    const double square = alpha * alpha;
-    const double cosine = std::min(1.0, alpha * std::sqrt(std::expm1(u * std::log1p(1.0 / square))));
-    const double sine = std::sqrt((1.0 - cosine) * (1.0 + cosine)), azimuth = 2.0 * kPi64 * v;
-    return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
 }
 
 // Normal of the facet that refracts wo (above) to wi (below), turned up. Walter et al., equation 16.

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "tracking/medium_trackers.h"
 #include "tracking/segment.h"
-#include "tracking/trackers.h"
 
 namespace brisance {
 

@@ -6,10 +6,10 @@ namespace brisance {
 
 namespace {
 
-// Lines toward the fire at a place in smoke, where what is around lets them get there: its optical depth across the
-// fire's radius is less than this. Deeper in the smoke they cost more than they bring (measured), and what they would
-// find is found along the path's own segments.
-constexpr float kLightLines = 0.25f;
+// The probability of a line toward the fire at a vertex in smoke whose optical depth across the fire's radius is less
+// than kThickToFire. Deeper in the smoke such lines cost more than they bring (measured), and the path's own segments
+// find the same light.
+constexpr float kFireLines = 0.25f;
 constexpr float kThickToFire = 1.0f;
 
 }  // namespace
@@ -33,20 +33,20 @@ PathVertex DirectLight::in_smoke(const Ray& ray, const Collision& collision) con
     return {ray.origin + ray.direction * collision.distance, ray.direction, field_.mean_cosine()};
 }
 
-float DirectLight::lines_in_smoke(const Collision& c) const {
+float DirectLight::fire_lines_in_medium(const Collision& c) const {
     const bool thin = settings_.light_sampling && !fire_.empty() &&
                       field_.extinction(c.brick, c.position) * fire_.radius() < kThickToFire;
-    return thin ? kLightLines : 0.0f;
+    return thin ? kFireLines : 0.0f;
 }
 
-float DirectLight::lines_on_surface(const PathVertex& place) const {
-    return settings_.light_sampling && !fire_.empty() && !place.only_delta() ? 1.0f : 0.0f;
+float DirectLight::fire_lines_on_surface(const PathVertex& vertex) const {
+    return settings_.light_sampling && !fire_.empty() && !vertex.only_delta() ? 1.0f : 0.0f;
 }
 
-// With the balance heuristic the line's weight cancels all but both densities in the denominator.
-Rgb DirectLight::from_fire(const PathVertex& place, float light_lines, Rng& rng) const {
-    const Ray line = place.leaving(fire_.sample(place.position(), rng));
-    const PathVertex::Value scattered = place.at(line.direction);
+// value / (lines pdf) times the balance heuristic's weight, lines pdf / (lines pdf + pdf of the BSDF): one quotient.
+Rgb DirectLight::from_fire(const PathVertex& vertex, float fire_lines, Rng& rng) const {
+    const Ray line = vertex.leaving(fire_.sample(vertex.position(), rng));
+    const PathVertex::Value scattered = vertex.at(line.direction);
     if (scattered.value == Rgb(0.0f))
         return Rgb(0.0f);
     double end = kNoEnd;
@@ -56,30 +56,30 @@ Rgb DirectLight::from_fire(const PathVertex& place, float light_lines, Rng& rng)
     const Rgb seen = lines_.follow_line(line, rng, end);
     if (seen == Rgb(0.0f))
         return seen;
-    return scattered.value / float(light_lines * fire_.pdf(line) + scattered.pdf) * seen;
+    return scattered.value / float(fire_lines * fire_.pdf(line) + scattered.pdf) * seen;
 }
 
-float DirectLight::share_of_sample(float light_lines, const Ray& ray, double pdf) const {
-    if (light_lines == 0.0f)
+float DirectLight::weight_of_sample(float fire_lines, const Ray& ray, double pdf) const {
+    if (fire_lines == 0.0f)
         return 1.0f;
-    return static_cast<float>(pdf / (light_lines * fire_.pdf(ray) + pdf));
+    return static_cast<float>(pdf / (fire_lines * fire_.pdf(ray) + pdf));
 }
 
-Rgb DirectLight::from_emitters(const PathVertex& place, Rng& rng) const {
-    const std::optional<EmitterSample> light = surroundings_->emitters().sample(place.lit(), rng);
+Rgb DirectLight::from_emitters(const PathVertex& vertex, Rng& rng) const {
+    const std::optional<EmitterSample> light = surroundings_->emitters().sample(vertex.lit(), rng);
     if (!light)
         return Rgb(0.0f);
-    const PathVertex::Value scattered = place.at(light->direction);
+    const PathVertex::Value scattered = vertex.at(light->direction);
     if (scattered.value == Rgb(0.0f))
         return Rgb(0.0f);
     double end = light->distance;
     const bool near = std::isfinite(end);
-    const Ray ray = near ? place.toward(light->end, end) : place.leaving(light->direction);
+    const Ray ray = near ? vertex.toward(light->end, end) : vertex.leaving(light->direction);
     if (surroundings_->intersector().occluded(ray, end))
         return Rgb(0.0f);
     const double seen = lines_.transmittance(ray, end, rng);
-    const double share = light->pdf > 0.0 ? light->pdf / (light->pdf + scattered.pdf) : 1.0;
-    return scattered.value * light->weight * float(seen * share);
+    const double weight = light->pdf > 0.0 ? light->pdf / (light->pdf + scattered.pdf) : 1.0;
+    return scattered.value * light->weight * float(seen * weight);
 }
 
 Rgb DirectLight::at_end(const RaySegment& segment, double pdf, bool delta, const PathVertex* from) const {

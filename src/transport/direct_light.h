@@ -1,23 +1,15 @@
-// What a place receives straight from the fire and the emitters: by a line or a ray toward them, and by the ray that
-// the place itself draws. The two techniques share what both could find by the balance heuristic.
+// Direct light of the fire and the emitters at a vertex of a path, by two techniques: next-event estimation, and the
+// direction that the vertex samples itself. The balance heuristic weights what both can find (Veach, Robust Monte Carlo
+// Methods for Light Transport Simulation, 1997, section 9.2.2.1).
 #pragma once
 
-#include <optional>
-
 #include "emitters/surroundings.h"
-#include "tracking/line.h"
+#include "tracking/line_tracker.h"
 #include "transport/fire_directions.h"
 #include "transport/path_vertex.h"
+#include "transport/ray_segment.h"
 
 namespace brisance {
-
-// A ray up to the surface that it meets.
-struct RaySegment {
-    Ray ray;
-    double end = kNoEnd;  // [m]
-    std::optional<SurfaceHit> hit;
-    std::optional<SurfacePoint> point;
-};
 
 class DirectLight {
 public:
@@ -41,21 +33,21 @@ public:
     RaySegment segment_along(const Ray& ray) const;
     PathVertex in_smoke(const Ray& ray, const Collision& collision) const;
 
-    // How many lines a place draws toward the fire: a probability.
-    float lines_in_smoke(const Collision& collision) const;
-    float lines_on_surface(const PathVertex& place) const;
+    // The probability that next-event estimation samples a line toward the fire.
+    float fire_lines_in_medium(const Collision& collision) const;
+    float fire_lines_on_surface(const PathVertex& vertex) const;
 
-    // What is scattered [W/(m^2 sr)] of a line toward the fire, which is drawn with that probability. There must be a
-    // fire.
-    Rgb from_fire(const PathVertex& place, float light_lines, Rng& rng) const;
-    // The part of what glows along a ray that the place drew with density `pdf`.
-    float share_of_sample(float light_lines, const Ray& ray, double pdf) const;
+    // Radiance [W/(m^2 sr)] scattered from one line toward the fire, sampled with probability `fire_lines` and weighted
+    // against the direction that the vertex samples. There must be a fire.
+    Rgb from_fire(const PathVertex& vertex, float fire_lines, Rng& rng) const;
+    // The weight of the fire's emission along a ray that the vertex sampled with density `pdf` [1/sr].
+    float weight_of_sample(float fire_lines, const Ray& ray, double pdf) const;
 
-    // What is scattered [W/(m^2 sr)] of a ray toward a place on one of the emitters, seen through the smoke. There must
-    // be surroundings.
-    Rgb from_emitters(const PathVertex& place, Rng& rng) const;
-    // What the surface at the end of the segment, or the background, emits [W/(m^2 sr)]: its share, if a ray toward the
-    // emitters could have found it as well. `pdf`: of the segment's direction; `from`: who drew it, none: the camera.
+    // Radiance [W/(m^2 sr)] scattered from a point on one of the emitters, seen through the medium and weighted against
+    // the direction that the vertex samples. There must be surroundings.
+    Rgb from_emitters(const PathVertex& vertex, Rng& rng) const;
+    // Radiance [W/(m^2 sr)] that the surface at the segment's end, or the background, emits, weighted against
+    // from_emitters(). `pdf` and `delta`: of the direction; `from`: the vertex that sampled it, null: the camera.
     Rgb at_end(const RaySegment& segment, double pdf, bool delta, const PathVertex* from) const;
 
 private:

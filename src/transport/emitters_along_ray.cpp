@@ -10,19 +10,19 @@ namespace brisance {
 
 namespace {
 
-// What the phase function finds, by a ray of its own.
-Rgb by_phase(const DirectLight& scene, const PathVertex& place, Rng& rng) {
-    const std::optional<PathVertex::Sample> turn = place.sample(rng);
-    if (!turn)
+// Emitters on a ray that samples the phase function.
+Rgb by_phase(const DirectLight& scene, const PathVertex& vertex, Rng& rng) {
+    const std::optional<PathVertex::Sample> sample = vertex.sample(rng);
+    if (!sample)
         return Rgb(0.0f);
-    const RaySegment segment = scene.segment_along(place.leaving(turn->wi));
-    const Rgb shining = scene.at_end(segment, turn->pdf, turn->delta, &place);
-    if (shining == Rgb(0.0f))
-        return shining;
-    return turn->weight * shining * float(scene.lines().transmittance(segment.ray, segment.end, rng));
+    const RaySegment segment = scene.segment_along(vertex.leaving(sample->wi));
+    const Rgb emitted = scene.at_end(segment, sample->pdf, sample->delta, &vertex);
+    if (emitted == Rgb(0.0f))
+        return emitted;
+    return sample->weight * emitted * float(scene.lines().transmittance(segment.ray, segment.end, rng));
 }
 
-// More lamps than this are left to flights.
+// With more lamps, free flights alone sample the points.
 constexpr std::size_t kMostLamps = 8;
 
 // The part of the segment in the lamp's cone, from `begin` to `end`; empty where there is none.
@@ -55,10 +55,10 @@ Lit lit_part(const PointEmitter& lamp, const Segment& ray) {
     return part;
 }
 
-// Places on a ray by how near they are to lamps.
-class LampPlaces {
+// Samples points on a ray by their inverse squared distance to lamps.
+class LampSampling {
 public:
-    LampPlaces(const std::vector<PointEmitter>& lamps, const Segment& ray, double mean_cosine) {
+    LampSampling(const std::vector<PointEmitter>& lamps, const Segment& ray, double mean_cosine) {
         if (lamps.size() > kMostLamps)
             return;
         for (const PointEmitter& lamp : lamps) {
@@ -111,14 +111,14 @@ bool aims_at_lamps(const DirectLight& scene) {
     return lamps > 0 && lamps <= kMostLamps;
 }
 
-Rgb emitters_along_ray(const DirectLight& scene, const RayMedium& seen, const Ray& ray, int places, Rng& rng) {
+Rgb emitters_along_ray(const DirectLight& scene, const RayMedium& seen, const Ray& ray, int points, Rng& rng) {
     Rgb sum(0.0f);
     if (seen.empty())
         return sum;
-    const LampPlaces lamps(scene.surroundings()->emitters().points(), seen.segment(), scene.field().mean_cosine());
+    const LampSampling lamps(scene.surroundings()->emitters().points(), seen.segment(), scene.field().mean_cosine());
     const double by_flights = lamps.empty() ? 1.0 : 0.5, shift = rng.next_double();
-    for (int i = 0; i < places; ++i) {
-        const double xi = (i + shift) / places;
+    for (int i = 0; i < points; ++i) {
+        const double xi = (i + shift) / points;
         const double t = xi < by_flights ? seen.sample_flight(xi / by_flights)
                                          : lamps.sample((xi - by_flights) / (1.0 - by_flights), rng);
         const std::optional<Collision> c = seen.place(t);
@@ -131,11 +131,11 @@ Rgb emitters_along_ray(const DirectLight& scene, const RayMedium& seen, const Ra
         }
         if (!(weight > 0.0))
             continue;
-        const PathVertex place = scene.in_smoke(ray, *c);
+        const PathVertex vertex = scene.in_smoke(ray, *c);
         sum += scene.field().albedo(c->brick, c->position) * float(weight) *
-               (scene.from_emitters(place, rng) + by_phase(scene, place, rng));
+               (scene.from_emitters(vertex, rng) + by_phase(scene, vertex, rng));
     }
-    return sum / float(places);
+    return sum / float(points);
 }
 
 }  // namespace brisance

@@ -1,10 +1,12 @@
-// MA along a ray of the camera: light of lamps, shining surfaces and environments that scatters once on it.
+// The ledger's cell MA along a ray of the camera: light of lamps, emissive surfaces and environments that scatters once
+// on it.
 //
-// Next-event estimation from places of the ray, shared with rays by the phase function as in the path tracer (balance
-// heuristic). Places are where flights along the ray would collide, a stratum of opacity each; where there are a few
-// lamps without extent, half of them are drawn by 1 / distance^2 to one of these instead, within its cone, with the
-// phase function (joint_sampling.h), and both densities share what they find. Unbiased, and sharp where a beam is
-// narrower than a voxel; the medium's nodes, which hold MA otherwise, are free of noise and as blunt as they are apart.
+// Points on the ray gather direct light as a path's vertices do (direct_light.h): next-event estimation, and rays that
+// sample the phase function, by the balance heuristic. The points are stratified ends of free flights; with a few lamps
+// without extent, half of them are sampled by 1 / distance^2 to one of these within its cone and by the phase function
+// (light_selection/joint_sampling.h), and the balance heuristic weights both densities. Unbiased, and sharp where a
+// beam is narrower than a voxel. The medium's nodes, which hold MA otherwise, have no noise, but blur over their
+// spacing.
 #pragma once
 
 #include "tracking/ray_medium.h"
@@ -12,10 +14,10 @@
 
 namespace brisance {
 
-// Whether there are lamps that places are drawn toward.
+// Whether there are lamps by which points are sampled.
 bool aims_at_lamps(const DirectLight& scene);
 
 // [W/(m^2 sr)]. The scene must have emitters; `seen`: the medium on `ray`.
-Rgb emitters_along_ray(const DirectLight& scene, const RayMedium& seen, const Ray& ray, int places, Rng& rng);
+Rgb emitters_along_ray(const DirectLight& scene, const RayMedium& seen, const Ray& ray, int points, Rng& rng);
 
 }  // namespace brisance

@@ -1,26 +1,75 @@
-// Particles of fire and emitters on their way through medium and surfaces, and the lights that their flights leave.
+// Particles on a random walk through medium and surfaces: from the fire and the emitters, which carry power, or from
+// the camera, which carry importance.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <vector>
 
 #include "core/parallel.h"
 #include "transport/particles.h"
+#include "transport/roulette.h"
 
 namespace brisance {
 
+// A particle's free flight, up to a collision or a surface.
 struct ParticleFlight {
-    Ray ray;
-    double end;                          // where a surface is [m]
-    std::optional<Collision> collision;  // before it
-    Rgb power;                           // that sets out [W]
+    const RaySegment& segment;           // up to the surface
+    std::optional<Collision> collision;  // before the surface
+    Rgb power;                           // of the particle as it sets out [W]
     std::uint64_t particle;              // its number
     int before;                          // scatterings before this flight
-    bool from_smoke;                     // the last of them was in the medium
-    const RaySegment* segment;           // to that surface
+    bool from_medium;                    // the last of them was in the medium
+    bool scattered;                      // any of them was by a lobe without a delta
+
+    const Ray& ray() const { return segment.ray; }
+    // The surface at the end of the flight; none after a collision, or where the particle leaves the scene.
+    const SurfacePoint* landing() const { return !collision && segment.point ? &*segment.point : nullptr; }
+    bool escapes() const { return !collision && !segment.point; }
 };
+
+struct WalkRules {
+    // Importance: particles of light (bsdf.h); Radiance: particles from the camera.
+    Transport transport = Transport::Importance;
+    // Scatterings before the last flight; -1: no limit.
+    int most_before = -1;
+    // False: the particle's power is 1 throughout, and only the density of its flights tells what they are worth:
+    // each scattering survives with the probability of its greatest weight.
+    bool carries_colour = true;
+};
+
+// Calls visit(const ParticleFlight&) for the particle's flights in turn, until it returns false. Absorption ends the
+// walk by Russian roulette, so that the power stays about the same (Jensen, Realistic Image Synthesis Using Photon
+// Mapping, 2001, chapter 5).
+template <class Visit>
+void walk_particle(const DirectLight& scene, const EmittedParticle& particle, std::uint64_t number,
+                   const WalkRules& rules, Rng& rng, const Visit& visit) {
+    Ray ray = particle.ray;
+    Rgb power = particle.power;
+    bool from_medium = false, scattered = false;
+    for (int before = 0; rules.most_before < 0 || before <= rules.most_before; ++before) {
+        const RaySegment segment = scene.segment_along(ray);
+        const std::optional<Collision> collision = null_collision_flight(scene.field(), ray, segment.end, rng);
+        const ParticleFlight flight{segment, collision, power, number, before, from_medium, scattered};
+        if (!visit(flight) || flight.escapes())
+            return;
+        const PathVertex vertex =
+            collision ? scene.in_smoke(ray, *collision) : PathVertex(*segment.point, ray.direction);
+        const std::optional<PathVertex::Sample> next = vertex.sample(rng, rules.transport);
+        if (!next)
+            return;
+        const Rgb left =
+            power * (collision ? scene.field().albedo(collision->brick, collision->position) : next->weight);
+        const float survival = std::min(largest(left) / largest(power), before >= kManyScatterings ? kGoesOn : 1.0f);
+        if (!(rng.next() < survival))  // also if it is not a number
+            return;
+        power = rules.carries_colour ? left / survival : particle.power;
+        ray = vertex.leaving(next->wi);
+        from_medium = collision.has_value();
+        scattered = scattered || !next->delta;
+    }
+}
 
 struct FlightReport {
     std::uint64_t paths = 0, flights = 0;  // particles, and their flights
@@ -28,11 +77,6 @@ struct FlightReport {
     double emitted = 0.0;                  // by the particles that were drawn, luminance [W]
     void add(const FlightReport& r);
 };
-
-// The flights of one particle, of that number, up to the one with `most_before` scatterings before it; -1: all. What is
-// absorbed ends the path by roulette: powers stay about equal.
-void follow_particle(const DirectLight& scene, const EmittedParticle& particle, std::uint64_t number, int most_before,
-                     Rng& rng, const std::function<void(const ParticleFlight&)>& visit);
 
 // Whether the particle carries any light; counts it.
 bool counts(const std::optional<EmittedParticle>& particle, FlightReport& report);
@@ -44,8 +88,8 @@ struct ParticleSource {
     std::uint32_t seed;
 };
 
-// What leave(flight, left) leaves of all flights: lights, or whatever else, in the order of the particles whatever the
-// number of threads.
+// What leave(flight, lights) appends for all flights: lights, or whatever else, in the order of the particles whatever
+// the number of threads. `most_before` as in WalkRules.
 template <class Light, class Leave>
 std::vector<Light> lights_of_flights(const DirectLight& scene, const ParticleSource& source, int most_before,
                                      const Leave& leave, FlightReport& report) {
@@ -64,9 +108,10 @@ std::vector<Light> lights_of_flights(const DirectLight& scene, const ParticleSou
             const std::optional<EmittedParticle> particle = particles.emit(i, rng);
             if (!counts(particle, part.report))
                 continue;
-            follow_particle(scene, *particle, i, most_before, rng, [&](const ParticleFlight& flight) {
+            walk_particle(scene, *particle, i, {.most_before = most_before}, rng, [&](const ParticleFlight& flight) {
                 ++part.report.flights;
                 leave(flight, part.lights);
+                return true;
             });
         }
     });

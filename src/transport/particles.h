@@ -8,7 +8,7 @@
 
 namespace brisance {
 
-// Where particles from infinity are aimed at.
+// The target of particles from infinity.
 struct BoundingBall {
     dvec3 centre{0.0};
     double radius = 0.0;
@@ -18,14 +18,14 @@ BoundingBall ball_around(const DirectLight& scene);
 // Power that particles carry, luminance [W].
 double emitted_power(const DirectLight& scene, const BoundingBall& ball);
 
-// A number of particles that share all power of fire and emitters. Those of the fire come first.
+// A number of particles that share the power of fire and emitters. Those of the fire come first.
 class Particles {
 public:
     // Keeps a reference.
     Particles(const DirectLight& scene, const BoundingBall& ball, std::uint64_t total);
 
     bool from_fire(std::uint64_t index) const { return index < from_fire_; }
-    // Its power is divided by the number of its kind. None where the light it was drawn from sends none.
+    // Its power is divided by the number of particles of its kind. None where the sampled light emits nothing.
     std::optional<EmittedParticle> emit(std::uint64_t index, Rng& rng) const;
 
 private:

@@ -53,9 +53,9 @@ Ray PathVertex::leaving(const dvec3& direction) const {
     return on_surface() ? surface_->point.leaving(direction) : Ray{lit_.position, direction};
 }
 
-Ray PathVertex::toward(const dvec3& place, double& distance) const {
-    const dvec3 from = on_surface() ? surface_->point.start_toward(place) : lit_.position;
-    const dvec3 way = place - from;
+Ray PathVertex::toward(const dvec3& target, double& distance) const {
+    const dvec3 from = on_surface() ? surface_->point.start_toward(target) : lit_.position;
+    const dvec3 way = target - from;
     distance = glm::length(way);
     return {from, distance > 0.0 ? way / distance : dvec3(0.0, 0.0, 1.0)};
 }
@@ -71,7 +71,18 @@ PathVertex::Value PathVertex::at(const dvec3& wi) const {
     return out;
 }
 
-std::optional<PathVertex::Sample> PathVertex::sample(Rng& rng) const {
+// The factor by which shading normals change the adjoint BSDF; none where a side is seen edge-on.
+std::optional<float> PathVertex::shading_normal_factor(const dvec3& wi) const {
+    const auto cosine = [](const dvec3& n, const dvec3& v) { return std::abs(glm::dot(n, v)); };
+    const dvec3 &shading = surface_->point.frame.normal, &geometric = surface_->point.geometric_normal;
+    const double below = cosine(shading, wi) * cosine(geometric, arriving_);
+    const double above = cosine(geometric, wi) * cosine(shading, arriving_);
+    if (!(below > 0.0))
+        return std::nullopt;
+    return float(above / below);
+}
+
+std::optional<PathVertex::Sample> PathVertex::sample(Rng& rng, Transport transport) const {
     if (!on_surface()) {
         Sample s;
         s.wi = sample_henyey_greenstein(arriving_, mean_cosine_, rng);
@@ -79,26 +90,17 @@ std::optional<PathVertex::Sample> PathVertex::sample(Rng& rng) const {
         return s;
     }
     const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
-    const std::optional<BsdfSample> drawn = surface_->bsdf.sample(-arriving_, {x, y, z});
+    const std::optional<BsdfSample> drawn = surface_->bsdf.sample(-arriving_, {x, y, z}, transport);
     if (!drawn || surface_->point.leaks(-arriving_, drawn->wi))
         return std::nullopt;
-    return Sample{drawn->wi, drawn->weight, drawn->pdf, drawn->delta};
-}
-
-std::optional<PathVertex::Sample> PathVertex::sample_particle(Rng& rng) const {
-    if (!on_surface())
-        return sample(rng);
-    const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
-    const std::optional<BsdfSample> drawn = surface_->bsdf.sample(-arriving_, {x, y, z}, Transport::Importance);
-    if (!drawn || surface_->point.leaks(-arriving_, drawn->wi))
+    Sample s{drawn->wi, drawn->weight, drawn->pdf, drawn->delta};
+    if (transport == Transport::Radiance)
+        return s;
+    const std::optional<float> factor = shading_normal_factor(drawn->wi);
+    if (!factor)
         return std::nullopt;
-    const auto cosine = [&](const dvec3& n, const dvec3& v) { return std::abs(glm::dot(n, v)); };
-    const dvec3 &shading = surface_->point.frame.normal, &geometric = surface_->point.geometric_normal;
-    const double below = cosine(shading, drawn->wi) * cosine(geometric, arriving_);
-    const double above = cosine(geometric, drawn->wi) * cosine(shading, arriving_);
-    if (!(below > 0.0))
-        return std::nullopt;
-    return Sample{drawn->wi, drawn->weight * float(above / below), drawn->pdf, drawn->delta};
+    s.weight = s.weight * *factor;
+    return s;
 }
 
 }  // namespace brisance

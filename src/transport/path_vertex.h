@@ -1,4 +1,4 @@
-// A place where a path turns: in the smoke, by the phase function, or on a surface, by its BSDF.
+// A vertex of a path: in the medium, where the phase function scatters, or on a surface, where the BSDF does.
 #pragma once
 
 #include <optional>
@@ -11,25 +11,25 @@ namespace brisance {
 
 class PathVertex {
 public:
-    // Of smoke. `arriving`: unit, the direction of the path's travel toward here.
+    // In the medium. `arriving`: unit, the direction in which the path reaches the vertex.
     PathVertex(const dvec3& position, const dvec3& arriving, float mean_cosine);
     PathVertex(const SurfacePoint& point, const dvec3& arriving);
-    // Of these of its lobes.
+    // With a BSDF that may hold some of the material's lobes only.
     PathVertex(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& arriving);
 
     bool on_surface() const { return surface_.has_value(); }
     const dvec3& position() const { return lit_.position; }
     const LitPoint& lit() const { return lit_; }
     const dvec3& arriving() const { return arriving_; }
-    // Nothing can be asked of it but sample().
+    // All lobes are deltas: only sample() finds directions.
     bool only_delta() const { return only_delta_; }
 
     // A ray that starts here, clear of the surface.
     Ray leaving(const dvec3& direction) const;
-    // The same toward a place, and the distance to it.
-    Ray toward(const dvec3& place, double& distance) const;
+    // The same toward a point, and the distance to it.
+    Ray toward(const dvec3& target, double& distance) const;
 
-    // Phase function, or BSDF times cosine, and the density that sample() draws by [1/sr]; without delta lobes.
+    // Phase function, or BSDF times cosine, and the pdf of sample() [1/sr]; without delta lobes.
     struct Value {
         Rgb value{0.0f};
         double pdf = 0.0;
@@ -42,17 +42,18 @@ public:
         double pdf = 0.0;
         bool delta = false;
     };
-    std::optional<Sample> sample(Rng& rng) const;
-    // The same for a particle, which carries power along `arriving` and on: the adjoint, with the factor that shading
-    // normals ask for (Veach, Robust Monte Carlo Methods, 1997, section 5.3).
-    std::optional<Sample> sample_particle(Rng& rng) const;
+    // None: the path is absorbed. Importance is for particles of light, which carry power along `arriving` and on: the
+    // adjoint BSDF, with the factor for shading normals (Veach, Robust Monte Carlo Methods, 1997, sections 5.2, 5.3).
+    std::optional<Sample> sample(Rng& rng, Transport transport = Transport::Radiance) const;
 
 private:
+    std::optional<float> shading_normal_factor(const dvec3& wi) const;
+
     LitPoint lit_;
     dvec3 arriving_;
     float mean_cosine_ = 0.0f;
     bool only_delta_ = false;
-    // Together, so that smoke, which asks for neither, does not pay for them.
+    // One optional for both, so that vertices in the medium construct neither.
     struct OnSurface {
         SurfacePoint point;
         Bsdf bsdf;
@@ -60,7 +61,7 @@ private:
     std::optional<OnSurface> surface_;
 };
 
-// A direction drawn in proportion to the Henyey-Greenstein phase function about `forward`.
+// A direction sampled from the Henyey-Greenstein phase function about `forward`.
 dvec3 sample_henyey_greenstein(const dvec3& forward, float mean_cosine, Rng& rng);
 
 }  // namespace brisance

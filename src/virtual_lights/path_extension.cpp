@@ -4,86 +4,114 @@
 #include <numbers>
 
 #include "transport/emitters_along_ray.h"
-#include "transport/roulette.h"
+#include "transport/path_step.h"
 #include "virtual_lights/virtual_lights.h"
 
 namespace brisance {
 
 namespace {
 
-bool goes_straight_on(const PathVertex& place, const PathVertex::Sample& turn) {
-    return turn.delta && glm::dot(turn.wi, place.arriving()) > 1.0 - 1e-12;
+bool goes_straight_on(const PathVertex& vertex, const PathVertex::Sample& sample) {
+    return sample.delta && glm::dot(sample.wi, vertex.arriving()) > 1.0 - 1e-12;
 }
 
 // Points on every segment through smoke at which lamps are sampled.
-constexpr int kLampPlaces = 2;
+constexpr int kLampPoints = 2;
 
 }  // namespace
 
 Rgb VirtualLights::lamps_on(const RaySegment& segment, Rng& rng) const {
     thread_local RayMedium seen;
     seen.look(scene_.field(), segment.ray, segment.end);
-    return emitters_along_ray(scene_, seen, segment.ray, kLampPlaces, rng);
+    return emitters_along_ray(scene_, seen, segment.ray, kLampPoints, rng);
 }
 
-// The place itself asks for what surfaces reflect toward it; places along an extended path for everything.
-Rgb VirtualLights::shade(const PathVertex& asking, Rng& rng, int* vertices, Panes panes) const {
-    Rgb sum(0.0f), throughput(1.0f);
-    if (!shines_)
-        return sum;
-    PathVertex place = asking;
-    float light_lines = 0.0f;
-    bool lit_before = true;  // the asking place, by the medium along this segment
-    // Smoke is lit all along segments: where they collide hardly ever is in the beam of a lamp that is near.
-    const bool lamps_along = scene_.has_emitters() && aims_at_lamps(scene_) && !scene_.field().bricks().empty();
-    for (int order = 0; survives(throughput, 1.0f, order > kManyScatterings, rng); ++order) {
-        if (vertices)
-            ++*vertices;
-        if (asks_lights() && !place.only_delta())
-            sum += throughput * from_lights(place, rng);
-        if (light_lines > 0.0f && (light_lines == 1.0f || rng.next() < light_lines))
-            sum += throughput * scene_.from_fire(place, light_lines, rng);
-        if (order > 0 && scene_.has_emitters() && !place.only_delta() && !(lamps_along && !place.on_surface()))
-            sum += throughput * scene_.from_emitters(place, rng);
-        const std::optional<PathVertex::Sample> turn = place.sample(rng);
-        if (!turn)
-            break;
-        const RaySegment segment = scene_.segment_along(place.leaving(turn->wi));
-        throughput *= turn->weight;
-        lit_before = order == 0 || (lit_before && panes == Panes::Asked && goes_straight_on(place, *turn));
-        std::optional<Collision> collision;
-        if (!lit_before) {
-            if (lamps_along)
-                sum += throughput * lamps_on(segment, rng);
-            const LineResult line = scene_.lines().follow_path(segment.ray, rng, segment.end);
-            collision = line.collision;
-            if (line.radiance != Rgb(0.0f))
-                sum += throughput * line.radiance *
-                       (turn->delta ? 1.0f : scene_.share_of_sample(light_lines, segment.ray, turn->pdf));
-        } else if (segment.hit || order > 0) {
-            throughput *= float(scene_.lines().transmittance(segment.ray, segment.end, rng));
-        }
-        if (order > 0 && !collision && !(lamps_along && !place.on_surface()))
-            sum += throughput * scene_.at_end(segment, turn->pdf, turn->delta, &place);
-        if (collision) {
-            place = scene_.in_smoke(segment.ray, *collision);
-            throughput *= scene_.field().albedo(collision->brick, collision->position);
-            light_lines = scene_.lines_in_smoke(*collision);
-            continue;
-        }
-        if (!segment.hit)
-            break;
-        if (!turn->delta) {
-            const Seen seen = seen_by(segment);
-            const auto believed = static_cast<float>(termination_probability(seen, turn->pdf));
-            if (believed > 0.0f)
-                sum += throughput * believed * at_end_of_ray(place, seen, turn->pdf);
-            throughput *= 1.0f - believed;
-        }
-        place = PathVertex(*segment.point, segment.ray.direction);
-        light_lines = scene_.lines_on_surface(place);
+// A path from a receiver over surfaces, until virtual lights hold what they reflect. The receiver itself gathers only
+// what surfaces reflect toward it; later vertices gather all light.
+class VirtualLights::ExtendedPath : public PlainPath {
+public:
+    ExtendedPath(const VirtualLights& lights, Panes panes)
+        : PlainPath(lights.scene_),
+          lights_(lights),
+          panes_(panes),
+          lamps_along_(scene_.has_emitters() && aims_at_lamps(scene_) && !scene_.field().bricks().empty()) {}
+
+    Rgb own_lights(const PathState& state, Rng& rng) const {
+        if (!lights_.asks_lights() || state.vertex.only_delta())
+            return Rgb(0.0f);
+        return lights_.from_lights(state.vertex, rng);
     }
-    return sum;
+
+    // Where lamps are estimated along segments, vertices in the medium would count their light twice. Estimates there
+    // have less noise: hardly any collision lies in the beam of a lamp nearby.
+    bool gathers_emitters(const PathState& state) const {
+        return state.order > 1 && !(lamps_along_ && !state.vertex.on_surface());
+    }
+
+    SegmentMedium medium_along(const PathState& state, const PathStep& step, Rng& rng) {
+        receiver_lit_ = state.order == 1 ||
+                        (receiver_lit_ && panes_ == Panes::Asked && goes_straight_on(state.vertex, *step.sample));
+        if (receiver_lit_)
+            return transmitted_along(state, step.segment, rng);
+        const Rgb lamps = lamps_along_ ? lights_.lamps_on(step.segment, rng) : Rgb(0.0f);
+        SegmentMedium medium = PlainPath::medium_along(state, step, rng);
+        medium.scattered = lamps;
+        return medium;
+    }
+
+    void gather(const PathState& state, const PathStep& step) {
+        ++vertices_;
+        sum_ += state.throughput * step.from_own_lights;
+        sum_ += state.throughput * step.from_fire;
+        sum_ += state.throughput * step.from_emitters;
+        sum_ += step.leaving * step.medium.scattered;
+        sum_ += step.leaving * step.medium.emission * step.emission_weight;
+        sum_ += step.leaving * step.at_end;
+    }
+
+    // On a surface the virtual lights take over what they hold; the path continues with the rest.
+    bool arrive(const PathState& state, const PathStep& step, PathState& next) {
+        if (step.medium.collision || step.sample->delta)
+            return true;
+        const Seen seen = lights_.seen_by(step.segment);
+        const auto ended = static_cast<float>(lights_.termination_probability(seen, step.sample->pdf));
+        if (ended > 0.0f)
+            sum_ += next.throughput * ended * lights_.at_end_of_ray(state.vertex, seen, step.sample->pdf);
+        next.throughput *= 1.0f - ended;
+        return true;
+    }
+
+    // Here in the medium as well: the path serves one receiver among many, and need not be long.
+    bool is_long(const PathState& state) const { return state.order - 1 > kManyScatterings; }
+
+    const Rgb& sum() const { return sum_; }
+    int vertices() const { return vertices_; }
+
+private:
+    // The receiver has been lit by the medium along this segment already.
+    SegmentMedium transmitted_along(const PathState& state, const RaySegment& segment, Rng& rng) const {
+        SegmentMedium medium;
+        if (segment.hit || state.order > 1)
+            medium.transmittance = float(scene_.lines().transmittance(segment.ray, segment.end, rng));
+        return medium;
+    }
+
+    const VirtualLights& lights_;
+    Panes panes_;
+    bool lamps_along_;          // estimate lamps along segments, not at vertices in the medium
+    bool receiver_lit_ = true;  // by the medium along the current segment
+    Rgb sum_{0.0f};
+    int vertices_ = 0;
+};
+
+Rgb VirtualLights::shade(const PathVertex& vertex, Rng& rng, int* vertices, Panes panes) const {
+    if (!shines_)
+        return Rgb(0.0f);
+    ExtendedPath path(*this, panes);
+    walk_path(scene_, {vertex, Rgb(1.0f), 0.0f, 1}, path, rng);
+    if (vertices)
+        *vertices += path.vertices();
+    return path.sum();
 }
 
 }  // namespace brisance

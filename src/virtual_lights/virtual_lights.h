@@ -51,6 +51,7 @@ public:
     const VirtualLightReport& report() const { return set_->report; }
 
 private:
+    class ExtendedPath;  // path_extension.cpp
     using Seen = CoveredHit;
 
     // What shade() reads along a path.

@@ -13,12 +13,12 @@ constexpr double kSameLine = 1e-5;
 
 // Where a flight lands after it was scattered in smoke.
 void leave_landing(const ParticleFlight& flight, std::vector<SurfacePhoton>& landings) {
-    if (flight.collision || !flight.segment->point)
+    const SurfacePoint* point = flight.landing();
+    if (!point)
         return;
-    const SurfacePoint& point = *flight.segment->point;
-    const bool above = glm::dot(point.frame.normal, flight.ray.direction) < 0.0;
-    landings.push_back({vec3(point.position), vec3(above ? point.frame.normal : -point.frame.normal),
-                        vec3(flight.ray.direction), flight.power});
+    const dvec3 &normal = point->frame.normal, &direction = flight.ray().direction;
+    const bool above = glm::dot(normal, direction) < 0.0;
+    landings.push_back({vec3(point->position), vec3(above ? normal : -normal), vec3(direction), flight.power});
 }
 
 }  // namespace
@@ -39,10 +39,10 @@ std::vector<SurfacePhoton> VolumetricPhotons::follow(int most_before) {
     return lights_of_flights<SurfacePhoton>(
         scene_, {Stream::VolumetricPhoton, settings_.paths, settings_.seed}, most_before,
         [&](const ParticleFlight& flight, std::vector<SurfacePhoton>& landings) {
-            if (!flight.from_smoke)
+            if (!flight.from_medium)
                 return;
             Rng keep_rng(Stream::StoredTrack, flight.particle, settings_.seed | std::uint64_t(flight.before) << 32);
-            laid_.add(flight.ray, flight.end, flight.power, keep_rng);
+            laid_.add(flight.ray(), flight.segment.end, flight.power, keep_rng);
             leave_landing(flight, landings);
         },
         report_);

@@ -1,27 +1,31 @@
-// The light that the bound of point lights takes away: along a ray of the camera, and at a point of a surface.
+// Bias compensation: the light that the bound of point lights removes, along a ray of the camera and at a surface
+// point.
 //
-// At a place u the bounded lights leave out, of all that arrives from smoke at v at a distance w below r = 1 / sqrt(b),
+// At a vertex u the bounded lights leave out, of all light from the medium at v at a distance w below r = 1 / sqrt(b),
 // the part 1 - b w^2:
 //   integral over directions and w of  p(u) sigma_s(v) T(u, v) (1 - b w^2) S(v -> u)      [W/(m^2 sr)]
-// S is all that is scattered at v: light that has come to v straight from fire and emitters, from surfaces, and from
-// other smoke, that is, from the bounded lights, and what they leave out at v in turn.
+// S is all light scattered at v: direct light of fire and emitters, light of surfaces, and light of the medium
+// elsewhere, which is that of the bounded lights and what they leave out at v in turn.
 //
-// Exact (Raab, Seibert, Keller, Unbiased Global Illumination with Participating Media, MCQMC 2006; after Kollig and
-// Keller 2004): a path by the phase function or the BSDF of u that collides at v. There it asks lines toward the fire
-// and emitters, and one of the bounded lights, and goes on: into smoke nearer than r with the part left out there, no
-// farther; to surfaces, and to fire and emitters along its way, as any path does, as the lights hold none of these.
-// After mirrors smoke counts whole, as lights do not shine into delta lobes. Unbiased, but for what paths from the
-// camera cannot find: a point lamp in a mirror. Where r is many mean free paths this is a path tracer.
+// Exact [1, 2]: a path that samples the phase function or the BSDF at u and collides at v. There it gathers direct
+// light (transport/path_step.h) and one of the bounded lights, and continues. A collision within r counts by the part
+// left out there, and none beyond r counts, as the bounded lights hold that light; surfaces, fire and emitters count in
+// full, as the lights hold none of theirs. After a delta lobe, which the lights do not reach, every collision counts in
+// full. Unbiased, except for what paths from the camera cannot find: a point lamp in a mirror. Where r is many mean
+// free paths this is a path tracer.
 //
-// Local (after the idea of Engelhardt, Novak, Schmidt, Dachsbacher, Approximate Bias Compensation for Rendering Scenes
-// with Heterogeneous Participating Media, CGF 31(7), 2012; its formulas are not public, these are this program's own
-// reading): the smoke within r is taken to be like that at u, of its extinction, albedo and transmittance in closed
-// form, and nothing is taken to hide v from u. v is drawn by them alone; S is asked there, from fire, emitters and one
-// bounded light. What is left out at v in turn is taken to be the same part k of all light there as anywhere near:
-// S / (1 - k), k = albedo * Bound::share_left_out(extinction). Its bias: too bright or dark where smoke changes within
-// r, at the smoke's edge above all, and behind walls thinner than r; light that comes from a surface to v and scatters
-// there is missing; S / (1 - k) is wrong where light changes within r, the more so the whiter and denser the smoke, as
-// k nears 1.
+// Local (after the idea of [3], whose formulas are not public; these are this program's own): the medium within r is
+// taken to be homogeneous, with the extinction and albedo at u and transmittance in closed form, and without surfaces
+// between u and v. v is sampled from this model, and S is estimated there from fire, emitters and one bounded light.
+// The part k = albedo * Bound::share_left_out(extinction) that is left out at v in turn is taken to be the same
+// throughout r, which gives S / (1 - k). Its bias: too bright or too dark where the medium changes within r, above all
+// at its edge and behind walls thinner than r; light of surfaces that scatters at v is missing; S / (1 - k) is wrong
+// where the light changes within r, the more so the denser the medium and the higher its albedo, as k nears 1.
+//
+// [1] Raab, Seibert, Keller, Unbiased Global Illumination with Participating Media, MCQMC 2006.
+// [2] Kollig, Keller, Illumination in the Presence of Weak Singularities, MCQMC 2004.
+// [3] Engelhardt, Novak, Schmidt, Dachsbacher, Approximate Bias Compensation for Rendering Scenes with Heterogeneous
+//     Participating Media, CGF 31(7), 2012.
 #pragma once
 
 #include "volumetric_vpls/settings.h"
@@ -29,23 +33,22 @@
 
 namespace brisance {
 
+struct PathState;
+
 class Compensation {
 public:
     // Keeps references to scene and lights. `bounces`: the most scatterings of a path; -1: all.
     Compensation(const DirectLight& scene, const VplSum& lights, const VolumetricVplSettings& settings, int bounces);
 
-    Rgb along_ray(const RayMedium& seen, Rng& rng) const;     // [W/(m^2 sr)]
-    Rgb at_surface(const PathVertex& place, Rng& rng) const;  // of its lobes without delta [W/(m^2 sr)]
+    Rgb along_ray(const RayMedium& seen, Rng& rng) const;      // [W/(m^2 sr)]
+    Rgb at_surface(const PathVertex& vertex, Rng& rng) const;  // of its lobes without delta [W/(m^2 sr)]
 
 private:
-    struct Vertex;
-    struct Step;
+    class LostPath;
     bool wanted() const;
-    Rgb lost_exactly(const PathVertex& place, Rng& rng) const;
-    Rgb lost_locally(const PathVertex& place, const Collision& smoke, Rng& rng) const;
-    Rgb follow(Vertex vertex, Rng& rng) const;
-    Step gather(const Vertex& vertex, Rng& rng) const;
-    bool go_on(Vertex& vertex, const Step& step) const;
+    Rgb lost_exactly(const PathVertex& vertex, Rng& rng) const;
+    Rgb lost_locally(const PathVertex& vertex, const Collision& smoke, Rng& rng) const;
+    Rgb follow(PathState first, Rng& rng) const;
 
     const DirectLight& scene_;
     const VplSum& lights_;

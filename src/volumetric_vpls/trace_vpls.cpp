@@ -12,8 +12,8 @@ std::vector<VolumetricVpl> trace_vpls(const DirectLight& scene, const Volumetric
             return;
         const Collision& c = *f.collision;
         VolumetricVpl light;
-        light.position = f.ray.origin + c.distance * f.ray.direction;
-        light.direction = f.ray.direction;
+        light.position = f.ray().origin + c.distance * f.ray().direction;
+        light.direction = f.ray().direction;
         light.power = f.power * field.albedo(c.brick, c.position);
         light.scatterings = f.before + 1;
         light.extinction = field.extinction(c.brick, c.position);

@@ -1,7 +1,7 @@
 // What ray lights bring is what the path tracer finds: MM and SM, in media of all kinds, with light of all kinds.
 #include <gtest/gtest.h>
 
-#include "ray_fixture.h"
+#include "fixtures/ray_fixture.h"
 
 namespace brisance {
 namespace {

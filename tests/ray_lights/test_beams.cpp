@@ -6,8 +6,8 @@
 #include <functional>
 #include <string>
 
+#include "fixtures/ray_fixture.h"
 #include "light_selection/joint_sampling.h"
-#include "ray_fixture.h"
 
 namespace brisance {
 namespace {
@@ -296,7 +296,7 @@ TEST(Beams, PassesHaveSeedsOfTheirOwn) {
     RayLightSettings next = s;
     next.seed = 6;
     EXPECT_NE(settings_of_pass(s, 1, 0.2).seed, settings_of_pass(next, 0, 0.2).seed);
-    EXPECT_DOUBLE_EQ(settings_of_pass(s, 3, 0.2).radius, 0.2 * radius_shrunk(3, s.shrink));
+    EXPECT_DOUBLE_EQ(settings_of_pass(s, 3, 0.2).radius, 0.2 * radius_shrunk(3, s.radius_reduction));
     EXPECT_EQ(settings_of_pass(s, 3, 0.0).radius, 0.0);
 }
 

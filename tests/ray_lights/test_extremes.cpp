@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "fixtures/ray_fixture.h"
 #include "light_selection/joint_sampling.h"
-#include "ray_fixture.h"
 
 namespace brisance {
 namespace {

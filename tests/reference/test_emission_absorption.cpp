@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "tracing_fixture.h"
+#include "fixtures/tracing_fixture.h"
 
 namespace brisance {
 namespace {

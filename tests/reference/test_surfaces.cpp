@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "fixtures/sets.h"
-#include "tracing_fixture.h"
+#include "fixtures/tracing_fixture.h"
 
 namespace brisance::testing {
 namespace {

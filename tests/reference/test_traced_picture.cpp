@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "fixtures/media.h"
 #include "reference/trace_picture.h"
+#include "render/plan.h"
 
 namespace brisance {
 namespace {
@@ -50,8 +51,10 @@ struct Render {
 
 Render render(const Shot& shot, const Medium& medium, const Checkpoint& checkpoint = {}) {
     Render r;
-    r.picture = trace_picture(shot, plan_cells(shot, medium), medium, nullptr, Camera(shot.camera, medium), checkpoint,
-                              r.statistics, r.told);
+    const Camera camera(shot.camera, medium);
+    const CellSet needed = plan_cells(shot, medium).needed;
+    r.picture = trace_picture({medium, camera, nullptr, shot.tracing, shot.scattering.bounces, needed, shot.output},
+                              checkpoint, r.statistics, r.told);
     return r;
 }
 

@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "camera/camera.h"
+#include "fixtures/tracing_fixture.h"
 #include "reference/trace_picture.h"
 #include "render/trace_path.h"
-#include "tracing_fixture.h"
 
 namespace brisance {
 namespace {

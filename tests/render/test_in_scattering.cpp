@@ -20,7 +20,17 @@ using namespace testing;
 
 constexpr int kSide = 20;
 
-Shot small_shot(RenderMethod method, ScatteringMethod scattering = ScatteringMethod::RayLights) {
+RayLightSettings& rays_of(Shot& shot) {
+    return shot.scattering_methods.get<RayLightSettings>();
+}
+VolumetricVplSettings& vpls_of(Shot& shot) {
+    return shot.scattering_methods.get<VolumetricVplSettings>();
+}
+VolumetricPhotonSettings& photons_of(Shot& shot) {
+    return shot.scattering_methods.get<VolumetricPhotonSettings>();
+}
+
+Shot small_shot(RenderMethod method, const std::string& scattering = RayLightsMethod::kName) {
     Shot shot;
     shot.method = method;
     shot.camera_given = true;
@@ -31,14 +41,14 @@ Shot small_shot(RenderMethod method, ScatteringMethod scattering = ScatteringMet
     shot.camera.samples_per_axis = 2;
     shot.tracing.samples = 64;
     shot.virtual_lights.count = 0;
-    shot.ray_lights.method = scattering;
-    shot.ray_lights.paths = 4000;
-    shot.ray_lights.count = 30000;
-    shot.ray_lights.samples = 4;
-    shot.point_lights.paths = 4000;
-    shot.point_lights.count = 6000;
-    shot.particles.paths = 100000;
-    shot.particles.neighbours = 32;
+    shot.scattering_methods.method = scattering;
+    rays_of(shot).paths = 4000;
+    rays_of(shot).count = 30000;
+    rays_of(shot).samples = 4;
+    vpls_of(shot).paths = 4000;
+    vpls_of(shot).count = 6000;
+    photons_of(shot).paths = 100000;
+    photons_of(shot).neighbours = 32;
     return shot;
 }
 
@@ -80,7 +90,7 @@ Sets over_sets(Shot shot, const Medium& medium, const Surroundings* set, const c
     double sum = 0.0, square = 0.0;
     Progress silent;
     for (int i = 0; i < kSets; ++i) {
-        shot.ray_lights.seed = shot.point_lights.seed = shot.particles.seed = static_cast<std::uint32_t>(i);
+        rays_of(shot).seed = vpls_of(shot).seed = photons_of(shot).seed = static_cast<std::uint32_t>(i);
         const double mean = mean_of(render_medium(shot, medium, silent, set).image, layer);
         sum += mean / kSets;
         square += mean * mean / kSets;
@@ -90,29 +100,34 @@ Sets over_sets(Shot shot, const Medium& medium, const Surroundings* set, const c
 
 void expect_as_paths(const Shot& by_lights, const Medium& medium, const Surroundings* set, const char* layer,
                      double bias = 0.0) {
-    const ScatteringMethod scattering = by_lights.ray_lights.method;
+    const std::string scattering = by_lights.scattering_methods.method;
     Progress silent;
     const RenderedFrame paths = render_medium(small_shot(RenderMethod::Path, scattering), medium, silent, set);
     const double a = mean_of(paths.halves[0], layer), b = mean_of(paths.halves[1], layer);
     const Sets lights = over_sets(by_lights, medium, set, layer);
     const double error = std::hypot(lights.error, 0.5 * (a - b));
-    std::printf("%s, %s: paths %.5g, lights %.5g, standard error %.2g\n", name_of(scattering), layer, 0.5 * (a + b),
+    std::printf("%s, %s: paths %.5g, lights %.5g, standard error %.2g\n", scattering.c_str(), layer, 0.5 * (a + b),
                 lights.mean, error);
     // The camera's samples differ: half a percent.
     EXPECT_NEAR(lights.mean, 0.5 * (a + b), 3.0 * error + (0.005 + bias) * a) << layer;
     EXPECT_LT(error, 0.05 * a) << layer;
 }
 
-class LightsInSmokePictures : public ::testing::TestWithParam<ScatteringMethod> {};
+std::vector<std::string> all_methods() {
+    std::vector<std::string> names;
+    for (const ScatteringMethod& method : scattering_methods())
+        names.push_back(method.name);
+    return names;
+}
 
-INSTANTIATE_TEST_SUITE_P(Kinds, LightsInSmokePictures,
-                         ::testing::Values(ScatteringMethod::RayLights, ScatteringMethod::PointLights,
-                                           ScatteringMethod::Particles),
-                         [](const auto& kind) { return std::string(name_of(kind.param)); });
+class LightsInSmokePictures : public ::testing::TestWithParam<std::string> {};
+
+INSTANTIATE_TEST_SUITE_P(Kinds, LightsInSmokePictures, ::testing::ValuesIn(all_methods()),
+                         [](const auto& kind) { return kind.param; });
 
 // Particles are blurred over voxels, eight of which make the smoke's radius.
-double blur_of(ScatteringMethod method) {
-    return method == ScatteringMethod::Particles ? 0.02 : 0.0;
+double blur_of(const std::string& method) {
+    return method == std::string(VolumetricPhotonsMethod::kName) ? 0.02 : 0.0;
 }
 
 TEST_P(LightsInSmokePictures, SmokeIsAsPathsSeeIt) {
@@ -132,18 +147,18 @@ TEST_P(LightsInSmokePictures, ThreadsChangeNothing) {
     const Medium medium = smoke(0.6f);
     const Surroundings set = floor_of_two();
     std::vector<Shot> shots = {small_shot(RenderMethod::LightingGrid, GetParam())};
-    if (GetParam() == ScatteringMethod::RayLights) {  // beams
+    if (GetParam() == std::string(RayLightsMethod::kName)) {  // beams
         shots.push_back(shots.front());
-        shots.back().ray_lights.radius = kAutomaticRadius;
-        shots.back().ray_lights.passes = 2;
+        rays_of(shots.back()).radius = kAutomaticRadius;
+        rays_of(shots.back()).passes = 2;
     }
-    for (const Shot& shot : shots) {
+    for (Shot& shot : shots) {
         const auto pixels = [&](int threads) {
             const ThreadLimit limit(threads);
             Progress silent;
             return render_medium(shot, medium, silent, &set).image.layer("").pixels;
         };
-        EXPECT_EQ(pixels(1), pixels(2)) << "radius " << shot.ray_lights.radius;
+        EXPECT_EQ(pixels(1), pixels(2)) << "radius " << rays_of(shot).radius;
     }
 }
 
@@ -151,10 +166,10 @@ TEST_P(LightsInSmokePictures, ThreadsChangeNothing) {
 TEST(RayLightPasses, HaveLessNoise) {
     const Medium medium = smoke(0.0f);
     Shot shot = small_shot(RenderMethod::LightingGrid);
-    shot.ray_lights.paths = 300;
+    rays_of(shot).paths = 300;
     shot.camera.width = shot.camera.height = 10;
     const auto spread = [&](int passes) {
-        shot.ray_lights.passes = passes;
+        rays_of(shot).passes = passes;
         const Sets sets = over_sets(shot, medium, nullptr, "MM");
         return sets.error / sets.mean;
     };
@@ -175,8 +190,8 @@ TEST(RayLightPasses, ShrinkBeamsAndDoNotAddUpInMemory) {
     Shot shot = small_shot(RenderMethod::LightingGrid);
     shot.camera.width = shot.camera.height = 4;
     const auto statistics = [&](double radius, int passes) {
-        shot.ray_lights.radius = radius;
-        shot.ray_lights.passes = passes;
+        rays_of(shot).radius = radius;
+        rays_of(shot).passes = passes;
         Progress silent;
         return render_medium(shot, medium, silent).statistics;
     };
@@ -189,9 +204,10 @@ TEST(RayLightPasses, ShrinkBeamsAndDoNotAddUpInMemory) {
     const Statistics one = statistics(0.3, 1), four = statistics(0.3, 4), automatic = statistics(kAutomaticRadius, 4);
     EXPECT_EQ(detail_of(one)["last_radius"], 0.3);
     EXPECT_EQ(detail_of(four)["first_radius"], 0.3);
-    EXPECT_DOUBLE_EQ(detail_of(four)["last_radius"].get<double>(), 0.3 * radius_shrunk(3, RayLightSettings{}.shrink));
+    EXPECT_DOUBLE_EQ(detail_of(four)["last_radius"].get<double>(),
+                     0.3 * radius_shrunk(3, RayLightSettings{}.radius_reduction));
     EXPECT_NEAR(detail_of(automatic)["last_radius"].get<double>() / detail_of(automatic)["first_radius"].get<double>(),
-                radius_shrunk(3, RayLightSettings{}.shrink), 1e-9);
+                radius_shrunk(3, RayLightSettings{}.radius_reduction), 1e-9);
     EXPECT_EQ(detail_of(statistics(0.0, 2))["last_radius"], 0.0);
     EXPECT_EQ(detail_of(four)["particles"], 4 * detail_of(one)["particles"].get<int>());
     EXPECT_NEAR(bytes(four) / bytes(one), 1.0, 0.1);
@@ -200,10 +216,10 @@ TEST(RayLightPasses, ShrinkBeamsAndDoNotAddUpInMemory) {
 // The mean of passes is the truth but for what is left of the blur.
 TEST(RayLightPasses, AreAsPathsSeeThem) {
     Shot shot = small_shot(RenderMethod::LightingGrid);
-    shot.ray_lights.passes = 2;
+    rays_of(shot).passes = 2;
     expect_as_paths(shot, smoke(0.3f), nullptr, "MM");
     // Two per metre: 0.1 mean free paths.
-    shot.ray_lights.radius = 0.05;
+    rays_of(shot).radius = 0.05;
     expect_as_paths(shot, smoke(0.3f), nullptr, "MM", 0.015);
     const Surroundings set = floor_of_two();
     expect_as_paths(shot, smoke(0.0f), &set, "SM", 0.015);
@@ -227,15 +243,14 @@ bool skips(const Plan& plan, const char* part) {
 TEST_P(LightsInSmokePictures, NothingIsTracedForWhatIsNotThere) {
     const Shot shot = small_shot(RenderMethod::LightingGrid, GetParam());
     const Medium medium = smoke(0.0f);
-    EXPECT_TRUE(plan_cells(shot, medium).scattered_lights);
+    EXPECT_TRUE(plan_cells(shot, medium).scattering_method);
     EXPECT_TRUE(skips(plan_cells(shot, medium), "scattered hierarchies"));
-    EXPECT_FALSE(plan_cells(shot, Medium{}).scattered_lights);
-    EXPECT_FALSE(plan_cells(small_shot(RenderMethod::Path, GetParam()), medium).scattered_lights);
+    EXPECT_FALSE(plan_cells(shot, Medium{}).scattering_method);
+    EXPECT_FALSE(plan_cells(small_shot(RenderMethod::Path, GetParam()), medium).scattering_method);
     Shot once = shot;
     once.scattering.bounces = 1;
-    EXPECT_FALSE(plan_cells(once, medium).scattered_lights);
-    std::string kind = name_of(GetParam());
-    std::ranges::replace(kind, '_', ' ');
+    EXPECT_FALSE(plan_cells(once, medium).scattering_method);
+    const std::string kind = find_scattering_method(GetParam())->product;
     EXPECT_TRUE(skips(plan_cells(once, medium), kind.c_str()));
     Progress silent;
     for (const StageCost& stage : render_medium(once, medium, silent).statistics.stages)
@@ -244,19 +259,20 @@ TEST_P(LightsInSmokePictures, NothingIsTracedForWhatIsNotThere) {
 
 // By the shot, not by what a frame holds.
 TEST(ScatteringMethods, AreChosenByTheShotAlone) {
-    const auto chosen = [](float mean_cosine, bool box, bool file, ScatteringMethod asked) {
+    const auto chosen = [](float mean_cosine, bool box, bool file, const std::string& asked) {
         Shot shot = small_shot(RenderMethod::LightingGrid, asked);
         if (box)
             shot.volumes.emplace_back().volume.box = FogBox{{-1, -1, -1}, {1, 1, 1}, 0.1};
         if (file)
             shot.volume.file = "smoke.vdb";
         const Plan plan = plan_cells(shot, smoke(mean_cosine));
-        EXPECT_EQ(plan.scattered_lights, plan.scattering != ScatteringMethod::LightingGrid);
-        EXPECT_EQ(skips(plan, "ray lights, point lights, particles"), !plan.scattered_lights);
-        return plan.scattering;
+        EXPECT_EQ(plan.scattering_method != nullptr, plan.scattering_choice != kLightingGridMethod);
+        EXPECT_EQ(skips(plan, "ray lights, volumetric virtual point lights, volumetric photons"),
+                  !plan.scattering_method);
+        return plan.scattering_choice;
     };
-    const auto automatic = ScatteringMethod::Automatic, grid = ScatteringMethod::LightingGrid,
-               rays = ScatteringMethod::RayLights, particles = ScatteringMethod::Particles;
+    const auto automatic = std::string(kAutomaticMethod), grid = std::string(kLightingGridMethod),
+               rays = std::string(RayLightsMethod::kName), particles = std::string(VolumetricPhotonsMethod::kName);
     EXPECT_EQ(chosen(0.8f, true, false, automatic), particles);
     EXPECT_EQ(chosen(-0.8f, true, false, automatic), particles);
     EXPECT_EQ(chosen(0.5f, true, false, automatic), grid);
@@ -264,13 +280,6 @@ TEST(ScatteringMethods, AreChosenByTheShotAlone) {
     EXPECT_EQ(chosen(0.8f, false, true, automatic), grid);
     EXPECT_EQ(chosen(0.8f, true, false, grid), grid);
     EXPECT_EQ(chosen(0.0f, false, true, rays), rays);
-}
-
-TEST_P(LightsInSmokePictures, MarchingIsRefused) {
-    Shot shot = small_shot(RenderMethod::LightingGrid, GetParam());
-    shot.lighting.gather = GatherMethod::RayMarch;
-    Progress silent;
-    EXPECT_THROW(render_medium(shot, smoke(0.0f), silent), Error);
 }
 
 }  // namespace

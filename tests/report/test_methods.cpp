@@ -185,11 +185,11 @@ TEST(Runs, OfVirtualLightsChangeTheirChoicesAndTheSamples) {
                                             "vsl",
                                             "vpl",
                                             "ray_lights",
-                                            "particles",
-                                            "point_lights",
-                                            "point_lights_bounded",
-                                            "point_lights_compensated",
-                                            "point_lights_local"};
+                                            "volumetric_photons",
+                                            "volumetric_vpls",
+                                            "volumetric_vpls_bounded",
+                                            "volumetric_vpls_compensated",
+                                            "volumetric_vpls_local"};
     const std::vector<PlannedMethod> planned = plan_runs(base, parse(names, {"rich_vsl:2,4", "4"}));
     ASSERT_EQ(planned.size(), names.size());
     std::set<std::string> looks;

@@ -1,6 +1,7 @@
 // The table of keys: ranges and types hold for every key, in the code as in the schema.
 
 #include "shot/keys.h"
+#include "shot/renamed_keys.h"
 
 #include <gtest/gtest.h>
 
@@ -129,6 +130,31 @@ TEST(Keys, BoundsAreChecked) {
     };
     for (const std::string& setting : right)
         EXPECT_EQ(complaint_about({setting}), "") << setting;
+}
+
+// Nobody has to guess what an old key has become.
+TEST(Keys, OldNamesAreErrorsThatNameTheNew) {
+    const std::vector<std::pair<std::string, std::string>> renamed = {
+        {"point_lights.paths=9", "point_lights.paths is now called volumetric_vpls.paths"},
+        {"particles.neighbours=9", "particles.neighbours is now called volumetric_photons.neighbours"},
+        {"particles={}", "particles is now called volumetric_photons"},
+        {"ray_lights.shrink=0.5", "ray_lights.shrink is now called ray_lights.radius_reduction"},
+        {"virtual_lights.extension=false", "virtual_lights.extension is now called virtual_lights.path_extension"},
+        {"scattering.method=point_lights", "is now called \"volumetric_vpls\""},
+        {"scattering.method=particles", "is now called \"volumetric_photons\""},
+        {"lighting.gather=cache", "lighting.gather is no longer there"}};
+    for (const auto& [setting, message] : renamed)
+        EXPECT_NE(complaint_about({setting}).find(message), std::string::npos) << complaint_about({setting});
+}
+
+// Where the error says to go there is something to find.
+TEST(Keys, NewNamesOfOldKeysAreKnown) {
+    for (const Key& key : shot_keys())
+        EXPECT_FALSE(renamed_key(key.path)) << key.path;
+    EXPECT_EQ(complaint_about({"volumetric_vpls.paths=9", "volumetric_photons.neighbours=9",
+                               "ray_lights.radius_reduction=0.5", "virtual_lights.path_extension=false",
+                               "scattering.method=volumetric_vpls"}),
+              "");
 }
 
 TEST(Keys, FloatsAreWrittenAsTheyWereMeant) {

@@ -54,7 +54,7 @@ TEST(ReadShot, EveryKindOfValueArrives) {
                    "width": 640, "height": 480, "samples_per_axis": 4, "filter": "gaussian",
                    "filter_width_pixels": 2},
         "lighting": {"alpha": 3, "levels": 5, "shadows": "exact", "shadow_resolution": 32, "shadow_distances": 12,
-                     "memory_limit_mebibytes": 512, "gather": "ray_march", "energy_balance": false},
+                     "memory_limit_mebibytes": 512, "energy_balance": false},
         "scattering": {"bounces": 4, "remainder": 0.01, "lattice_level": 1, "alpha": 2},
         "output": {"path": "x.exr", "png": false, "statistics": false, "layers": {"cells": false, "bounces": true},
                    "exposure_stops": -1.5, "view": "srgb", "frames_per_second": 24}
@@ -88,7 +88,6 @@ TEST(ReadShot, EveryKindOfValueArrives) {
     EXPECT_EQ(shot.lighting.levels, 5);
     EXPECT_EQ(shot.lighting.shadows, ShadowMethod::Exact);
     EXPECT_EQ(shot.lighting.memory_limit_bytes, std::uint64_t{512} << 20);
-    EXPECT_EQ(shot.lighting.gather, GatherMethod::RayMarch);
     EXPECT_FALSE(shot.lighting.energy_balance);
     EXPECT_EQ(shot.scattering.bounces, 4);
     EXPECT_EQ(shot.scattering.lattice_level, 1);

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/parallel.h"
-#include "ray_fixture.h"
+#include "fixtures/ray_fixture.h"
 #include "volumetric_photons/volumetric_photons.h"
 
 namespace brisance {

@@ -1,7 +1,7 @@
 // Point lights in the small media of the tests of ray lights.
 #pragma once
 
-#include "ray_fixture.h"
+#include "fixtures/ray_fixture.h"
 #include "volumetric_vpls/volumetric_vpls.h"
 
 namespace brisance::testing {

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "scattering_methods/methods.h"
 #include "virtual_lights/choices.h"
 
 namespace brisance {
@@ -33,27 +34,28 @@ BuiltIn by_virtual_lights(const TechniquePreset& preset) {
     return method;
 }
 
-// Volumetric virtual point lights with these choices.
-BuiltIn by_point_lights(const std::string& name, const Settings& choices) {
-    BuiltIn method{name, {"method=lighting_grid", "scattering.method=point_lights"}, StepsOf::Samples};
-    for (const std::string& choice : choices)
-        method.settings.push_back("point_lights." + choice);
-    return method;
+// The presets of all scattering methods.
+void add_scattering_methods(std::vector<BuiltIn>& methods) {
+    for (const ScatteringMethod& method : scattering_methods())
+        for (const MethodPreset& preset : method.presets) {
+            BuiltIn built_in{
+                preset.label, {"method=lighting_grid", "scattering.method=" + method.name}, StepsOf::Samples};
+            for (const std::string& setting : preset.settings)
+                built_in.settings.push_back(method.name + "." + setting);
+            methods.push_back(std::move(built_in));
+        }
 }
 
 std::vector<BuiltIn> make_built_ins() {
-    return {{"lighting_grid", {"method=lighting_grid", "scattering.method=lighting_grid"}, StepsOf::Grid},
-            {"path", {"method=path"}, StepsOf::Paths},
-            {"path_plain",
-             {"method=path", "tracing.emission=collision", "tracing.light_sampling=false",
-              "tracing.free_flight=null_collision"},
-             StepsOf::Paths},
-            {"ray_lights", {"method=lighting_grid", "scattering.method=ray_lights"}, StepsOf::Samples},
-            {"particles", {"method=lighting_grid", "scattering.method=particles"}, StepsOf::Samples},
-            by_point_lights("point_lights", {"bound_per_metre2=0"}),
-            by_point_lights("point_lights_bounded", {"compensation=none"}),
-            by_point_lights("point_lights_compensated", {"compensation=exact"}),
-            by_point_lights("point_lights_local", {"compensation=local"})};
+    std::vector<BuiltIn> methods = {
+        {"lighting_grid", {"method=lighting_grid", "scattering.method=lighting_grid"}, StepsOf::Grid},
+        {"path", {"method=path"}, StepsOf::Paths},
+        {"path_plain",
+         {"method=path", "tracing.emission=collision", "tracing.light_sampling=false",
+          "tracing.free_flight=null_collision"},
+         StepsOf::Paths}};
+    add_scattering_methods(methods);
+    return methods;
 }
 
 const std::vector<BuiltIn>& built_ins() {

@@ -1,12 +1,10 @@
 // What a report compares: methods, each with a ladder of steps from cheap to good.
 //
 // A method:  NAME, or LABEL=NAME, followed by settings:    exact=path,tracing.free_flight=exact
-//   NAME is lighting_grid, ray_lights (virtual ray lights for what is scattered more than once), particles (the same,
-//   counted along their tracks), point_lights (the same
-//   by volumetric virtual point lights, unbounded), point_lights_bounded (too dark), point_lights_compensated
-//   (exactly), point_lights_local (approximately), path, path_plain (the path tracer without what makes it fast), or
-//   one for light between surfaces: vbnl (virtual blue noise lighting), vbnl_GATHERER (the same lights, sampled
-//   otherwise), or a baseline of virtual lights (the presets of virtual_lights/choices.h).
+//   NAME is lighting_grid; path, or path_plain (the path tracer without what makes it fast); a preset of one of the
+//   scattering methods (scattering_methods/list.h), such as ray_lights or volumetric_vpls_bounded;
+//   vbnl (virtual blue noise lighting), vbnl_GATHERER (the same lights, sampled otherwise), or a baseline of virtual
+//   lights (the presets of virtual_lights/choices.h).
 // A budget:  LIST for all path methods, or LABEL:LIST:     4,16,64,256    path:16,64    lighting_grid:2,4
 //   For path methods samples per pixel, for lighting_grid numbers of steps of the built-in ladder, 1 to 4, for those
 //   of virtual lights samples along a pixel's side.

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "transport/roulette.h"
+#include "transport/particle_walk.h"
 #include "virtual_lights/octahedral_map.h"
 
 namespace brisance {
@@ -41,37 +41,16 @@ public:
             return;
         }
         report.emitted += luminance(power);
-        follow(particle->ray, power, rng, report, meet);
+        walk_particle(scene_, *particle, index, {}, rng, [&](const ParticleFlight& flight) {
+            if (flight.landing())
+                meet(flight.segment, flight.power);
+            else if (flight.escapes())
+                report.escaped += luminance(flight.power);
+            return true;
+        });
     }
 
 private:
-    // What is absorbed ends the path by roulette: powers stay about equal.
-    template <class Meet>
-    void follow(Ray ray, Rgb power, Rng& rng, PhotonReport& report, const Meet& meet) const {
-        for (int turn = 1;; ++turn) {
-            const RaySegment segment = scene_.segment_along(ray);
-            const std::optional<Collision> collision = null_collision_flight(scene_.field(), ray, segment.end, rng);
-            if (!collision && !segment.point) {
-                report.escaped += luminance(power);
-                return;
-            }
-            if (!collision)
-                meet(segment, power);
-            const PathVertex place =
-                collision ? scene_.in_smoke(ray, *collision) : PathVertex(*segment.point, ray.direction);
-            const std::optional<PathVertex::Sample> next = place.sample_particle(rng);
-            if (!next)
-                return;
-            const Rgb left =
-                power * (collision ? scene_.field().albedo(collision->brick, collision->position) : next->weight);
-            const float part = std::min(largest(left) / largest(power), turn > kManyScatterings ? kGoesOn : 1.0f);
-            if (!(rng.next() < part))  // so for what is not finite
-                return;
-            power = left / part;
-            ray = place.leaving(next->wi);
-        }
-    }
-
     const DirectLight& scene_;
     Particles particles_;
     Stream stream_;

@@ -4,47 +4,32 @@
 #include <array>
 
 #include "core/parallel.h"
-#include "transport/roulette.h"
+#include "transport/particle_walk.h"
 #include "virtual_lights/virtual_light.h"
 
 namespace brisance {
 
 namespace {
 
-constexpr int kPerPath = 2;     // candidates
-constexpr int kMostTurns = 16;  // of a path, mirrors and smoke included
+constexpr int kPerPath = 2;  // candidates
+// Absorption ends the walk as it would end light, so that dark surfaces draw no candidates to what they reflect.
+constexpr WalkRules kCameraWalk{
+    .transport = Transport::Radiance, .most_before = 15, .carries_colour = false};  // mirrors and smoke included
 
 struct Found {
     std::array<Deposit, kPerPath> candidates;
     int count = 0;
 };
 
-// Ended by roulette as light would be absorbed, so that dark surfaces draw no candidates to what they reflect.
-void follow(const DirectLight& scene, Ray ray, Rng& rng, Found& found) {
-    bool scattered = false;
-    for (int turn = 0; turn < kMostTurns; ++turn) {
-        const RaySegment segment = scene.segment_along(ray);
-        const std::optional<Collision> collision = null_collision_flight(scene.field(), ray, segment.end, rng);
-        if (!collision && !segment.point)
-            return;
-        if (!collision && scattered && holds_light(segment.point->material)) {
-            const int material = scene.surroundings()->scene().meshes[segment.hit->mesh].material;
-            found.candidates[found.count++] = {*segment.hit, vec3(segment.point->position), vec3(-ray.direction),
-                                               material};
-            if (found.count == kPerPath || !needs_energy_tables(segment.point->material))
-                return;
-        }
-        const PathVertex place =
-            collision ? scene.in_smoke(ray, *collision) : PathVertex(*segment.point, ray.direction);
-        const std::optional<PathVertex::Sample> next = place.sample(rng);
-        if (!next)
-            return;
-        const Rgb weight = collision ? scene.field().albedo(collision->brick, collision->position) : next->weight;
-        if (!(rng.next() < largest(weight)))
-            return;
-        scattered = scattered || !next->delta;
-        ray = place.leaving(next->wi);
-    }
+// Keeps the surfaces that the camera path meets once it was scattered. False: it needs no more of them.
+bool keep_candidate(const DirectLight& scene, const ParticleFlight& flight, Found& found) {
+    const SurfacePoint* point = flight.landing();
+    if (!point || !flight.scattered || !holds_light(point->material))
+        return true;
+    const SurfaceHit& hit = *flight.segment.hit;
+    const int material = scene.surroundings()->scene().meshes[hit.mesh].material;
+    found.candidates[found.count++] = {hit, vec3(point->position), vec3(-flight.ray().direction), material};
+    return found.count < kPerPath && needs_energy_tables(point->material);
 }
 
 }  // namespace
@@ -58,11 +43,12 @@ std::vector<Deposit> light_candidates(const DirectLight& scene, const PixelCamer
     parallel_blocks(paths, 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             Rng rng(Stream::LightCandidate, i, seed);
-            const double place = std::min((double(i) + rng.next_double()) / double(paths) * pixels, pixels - 1.0);
-            const auto pixel = static_cast<std::uint64_t>(place);
+            const double position = std::min((double(i) + rng.next_double()) / double(paths) * pixels, pixels - 1.0);
+            const auto pixel = static_cast<std::uint64_t>(position);
             const std::uint64_t column = pixel % camera.width, row = pixel / camera.width;
             const double x = double(column) + rng.next_double(), y = double(row) + rng.next_double();
-            follow(scene, camera.ray(x, y), rng, found[i]);
+            const auto visit = [&](const ParticleFlight& flight) { return keep_candidate(scene, flight, found[i]); };
+            walk_particle(scene, {camera.ray(x, y), Rgb(1.0f)}, i, kCameraWalk, rng, visit);
         }
     });
     std::vector<Deposit> out;

@@ -1,0 +1,59 @@
+// The lights of fire or smoke as they are seen from outside of dense smoke: by surfaces, and by nodes of thin media.
+//
+// What passes through a sphere around the medium is balanced against rays that say how much of the light escapes.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "medium_lighting/exterior/visibility_ratio.h"
+#include "medium_lighting/lit_lattice.h"
+#include "scattering/multiple_scattering.h"
+#include "statistics/statistics.h"
+#include "thin_media/thin_medium_lights.h"
+
+namespace brisance {
+
+// What surfaces draw positions from to learn how much of the light other surfaces hide: of dense smoke, and of thin
+// media. Null where there is no such light.
+using VisibilityRatios = std::array<const VisibilityRatio*, 2>;
+
+class ExteriorLights {
+public:
+    // Keeps a reference to the lattice. `alpha`: of the blends between levels. Adds stages to the statistics.
+    ExteriorLights(const LitLattice& lattice, HierarchyLights lights, float alpha, Statistics& statistics);
+    ExteriorLights(const ExteriorLights&) = delete;
+    ExteriorLights& operator=(const ExteriorLights&) = delete;
+
+    // At nodes of thin media takes the place of what was gathered there from the lattice itself. `request`: of that
+    // gather.
+    void light_thin_medium(const LatticeRequest& request, Gathered& gathered, Statistics& statistics,
+                           Progress& progress) const;
+
+    // At receivers on surfaces (point_receivers.h): of dense smoke, and of thin media, empty where they have no lights
+    // of their own. Planar over the receivers; to be scaled by escape_scale().
+    std::array<Gathered, 2> at_surfaces(const Receivers& receivers) const;
+    Rgb escape_scale() const { return escape_scale_; }
+
+    VisibilityRatios visibility_ratios() const { return {ratio_.get(), thin_ratio_.get()}; }
+
+private:
+    NodeWeights escape_probabilities() const;
+    void part_thin_medium(float alpha);
+    void keep_for_exterior(float alpha);
+    void balance_escape(const dvec3& power, const EscapeEstimate& escape, Statistics& statistics);
+
+    const LitLattice& lattice_;
+    HierarchyLights lights_;
+    NodeWeights escape_;                      // per node: how likely its light is to leave the medium
+    LightingGrid for_thin_;                   // levels that thin media need, where surfaces need fewer
+    std::unique_ptr<ThinMediumLights> thin_;  // lights of thin media, apart from the rest; or none
+    std::unique_ptr<VisibilityRatio> ratio_, thin_ratio_;
+    ShadowMapCache maps_;
+    LightField field_;
+    GridLevel bottom_;
+    Rgb escape_scale_{1.0f};
+};
+
+}  // namespace brisance

@@ -1,0 +1,39 @@
+// What the lighting of a medium is computed from.
+#pragma once
+
+#include "emitters/surroundings.h"
+#include "gathering/settings.h"
+#include "medium/medium.h"
+#include "medium_lighting/stages/specular_photons.h"
+#include "medium_lighting/stages/virtual_lights_as_points.h"
+
+namespace brisance {
+
+// What surfaces send into the medium.
+struct ReflectedLight {
+    const PointsOfSides* lights = nullptr;  // null: none
+    const SpecularPhotons* cast = nullptr;  // null: none
+};
+
+// Everything by reference must outlive the lighting.
+struct MediumLightingInput {
+    const Medium& medium;
+    vec3 eye;  // of the camera, local [m]
+    LightingSettings lighting;
+    ScatteringSettings scattering;
+    const Surroundings* surroundings = nullptr;  // null: none
+    ReflectedLight reflected = {};
+
+    // Which light is wanted.
+    bool fire = false;                // something emits: the source of MV, MM and SV
+    bool single = false;              // MV
+    bool multiple = false;            // MM
+    bool surfaces_on_medium = false;  // MS
+    bool emitters_on_medium = false;  // MA, or its share of MM
+    bool emitters_at_nodes = true;    // MA is left at the nodes; false: the camera's rays find it themselves
+    bool surfaces_lit = false;        // SV or SM: lights are kept for receivers on surfaces
+    bool directional = false;         // anisotropic phase function: light keeps its direction
+    bool orders_apart = false;        // orders of scattering are kept for layers of their own
+};
+
+}  // namespace brisance

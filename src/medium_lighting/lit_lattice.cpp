@@ -1,0 +1,101 @@
+#include "medium_lighting/lit_lattice.h"
+
+#include "core/parallel.h"
+#include "medium/phase.h"
+#include "medium_lighting/surface_occluders.h"
+
+namespace brisance {
+
+namespace {
+
+// Level of the pyramid that rays toward lights seen from outside march: how much of a light smoke hides needs no finer
+// one.
+constexpr int kExteriorRayLevel = 2;
+
+// Nodes whose light the camera or the smoke can look up: corners of voxels with extinction.
+std::vector<std::uint8_t> nodes_beside_extinction(const Medium& medium) {
+    constexpr int kWide = BrickLattice::kSize + 2;
+    std::vector<std::uint8_t> needed(medium.lattice.node_count(), 0);
+    parallel_for(medium.lattice.brick_count(), [&](std::size_t b) {
+        std::vector<float> box(kWide * kWide * kWide);
+        copy_box(medium.lattice, medium.extinction, 1, medium.lattice.first_node(b) - 1, ivec3(kWide), box);
+        for (int n = 0; n < BrickLattice::kNodes; ++n) {
+            const ivec3 p = BrickLattice::node_in_brick(n);
+            bool any = false;
+            for (int k = 0; k < 27 && !any; ++k)
+                any = box[((p.x + k / 9) * kWide + p.y + k / 3 % 3) * kWide + p.z + k % 3] > 0.0f;
+            needed[b * BrickLattice::kNodes + n] = any;
+        }
+    });
+    return needed;
+}
+
+std::vector<vec3> directions_to(const Medium& medium, const vec3& eye) {
+    std::vector<vec3> directions(medium.lattice.node_count());
+    parallel_for(
+        directions.size(),
+        [&](std::size_t i) {
+            const vec3 p = medium.local_of_node(medium.lattice.node(i));
+            const vec3 way = eye - p;
+            const float d = glm::length(way);
+            directions[i] = d > 0.0f ? way / d : vec3(0.0f, 0.0f, 1.0f);
+        },
+        4096);
+    return directions;
+}
+
+}  // namespace
+
+LitLattice::LitLattice(const MediumLightingInput& input)
+    : input_(input),
+      pyramid_(input.medium, ExtinctionPyramid::kMaxLevels),
+      needed_(nodes_beside_extinction(input.medium)),
+      depths_(pyramid_, kExteriorRayLevel) {
+    if (input.surroundings && input.surroundings->has_surfaces()) {
+        surfaces_ = std::make_unique<SurfaceOccluders>(input.surroundings->intersector());
+        if (surfaces_reach_into(input.surroundings->scene(), input.medium))
+            pyramid_.set_occluders(surfaces_.get());
+    }
+    if (input.directional)
+        toward_camera_ = directions_to(input.medium, input.eye);
+    if (input.single || input.multiple)
+        thin_medium_ = ThinMedium(input.medium, depths_, needed_,
+                                  input.directional ? std::optional<vec3>(input.eye) : std::nullopt);
+    if (!thin_medium_.empty())
+        pyramid_.set_homogeneous_bricks(&thin_medium_.homogeneous_bricks());
+}
+
+LatticeRequest LitLattice::request() const {
+    const bool moments = input_.multiple && input_.directional;
+    return {&needed_, input_.directional ? &toward_camera_ : nullptr, moments, medium().mean_cosine};
+}
+
+LatticeRequest LitLattice::last_request() const {
+    LatticeRequest request = this->request();
+    request.moments = false;
+    return request;
+}
+
+Gathered LitLattice::dark() const {
+    Gathered none;
+    none.resize(needed_.size(), input_.directional, input_.multiple && input_.directional);
+    return none;
+}
+
+std::vector<Rgb> LitLattice::source_function(const Gathered& g) const {
+    const std::size_t n = needed_.size();
+    std::vector<Rgb> source(n, Rgb(0.0f));
+    parallel_for(
+        n,
+        [&](std::size_t i) {
+            if (!needed_[i])
+                return;
+            for (int c = 0; c < 3; ++c)
+                source[i][c] = medium().albedo_at(i)[c] *
+                               (g.scattered.empty() ? g.fluence[c * n + i] / (4.0f * kPi) : g.scattered[c * n + i]);
+        },
+        4096);
+    return source;
+}
+
+}  // namespace brisance

@@ -1,0 +1,52 @@
+// The lattice on which a medium is lit, and what all stages of the lighting share: which nodes receive light, what is
+// wanted there, optical depths, thin media, and surfaces in between.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "gathering/gather.h"
+#include "gathering/point_depths.h"
+#include "medium_lighting/input.h"
+#include "thin_media/thin_medium.h"
+
+namespace brisance {
+
+class LitLattice {
+public:
+    explicit LitLattice(const MediumLightingInput& input);
+    LitLattice(const LitLattice&) = delete;
+    LitLattice& operator=(const LitLattice&) = delete;
+
+    const MediumLightingInput& input() const { return input_; }
+    const Medium& medium() const { return input_.medium; }
+    const ExtinctionPyramid& pyramid() const { return pyramid_; }
+    const PointDepths& depths() const { return depths_; }  // of coarse rays toward lights seen from outside
+    const ThinMedium& thin_medium() const { return thin_medium_; }
+    const Occluders* surfaces() const { return surfaces_.get(); }        // null: none
+    const std::vector<std::uint8_t>& needed() const { return needed_; }  // per node: whether light is wanted there
+    std::size_t node_count() const { return needed_.size(); }
+
+    // Of a flight after which light scatters on, with the moments that needs, and of the last one before the camera.
+    LatticeRequest request() const;
+    LatticeRequest last_request() const;
+    // No light, with the planes of request().
+    Gathered dark() const;
+
+    // Whether lights are kept for receivers outside of dense smoke: surfaces, or nodes of thin media.
+    bool lights_exterior() const { return input_.surfaces_lit || !thin_medium_.empty(); }
+
+    // Albedo times the radiance that scatters toward the camera, per node [W/(m^2 sr)].
+    std::vector<Rgb> source_function(const Gathered& gathered) const;
+
+private:
+    const MediumLightingInput& input_;
+    std::unique_ptr<Occluders> surfaces_;
+    ExtinctionPyramid pyramid_;
+    std::vector<std::uint8_t> needed_;
+    std::vector<vec3> toward_camera_;
+    PointDepths depths_;
+    ThinMedium thin_medium_;
+};
+
+}  // namespace brisance

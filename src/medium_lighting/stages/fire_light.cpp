@@ -1,0 +1,71 @@
+#include "medium_lighting/stages/fire_light.h"
+
+#include "core/stopwatch.h"
+#include "lighting_grid/voxel_lights.h"
+#include "medium_lighting/balance_table.h"
+#include "medium_lighting/level_costs.h"
+
+namespace brisance {
+
+namespace {
+
+HierarchyLights build_fire_lights(const LitLattice& lattice, Statistics& statistics, Progress& progress) {
+    progress.stage("fire to lights");
+    const Stopwatch watch;
+    const Medium& medium = lattice.medium();
+    HierarchyLights lights = build_hierarchy(medium, {voxel_lights(medium), {}}, lattice.input().lighting.levels);
+    const double emitted = luminance(Rgb(total(lights.light.intensity)));
+    statistics.stages.push_back(
+        {"lights and hierarchy",
+         watch.seconds(),
+         lights.grid.bytes(),
+         {{"intensity_sum", emitted}, {"lattice_and_pyramid_bytes", lattice.pyramid().bytes()}}});
+    return lights;
+}
+
+Gathered gather_at_lattice(const LitLattice& lattice, const HierarchyLights& lights, Statistics& statistics,
+                           Progress& progress) {
+    const Stopwatch watch;
+    const LightingSettings& settings = lattice.input().lighting;
+    StageCost stage{"light from the fire (MV)", 0.0, 0, {}};
+    std::vector<LevelCost> costs;
+    const LightField field = lights.field(lattice.pyramid(), settings.alpha, settings, nullptr);
+    Gathered arriving = gather_at_nodes(field, lattice.request(), costs, progress);
+    prepare_interpolation(lattice.medium().lattice, lattice.needed(), arriving);
+    if (settings.energy_balance) {
+        BounceBalance balance;
+        balance.emitted = 1.0;
+        arriving.scale(
+            close_balance(lattice.pyramid(), lights.light, fluence_at_nodes(arriving, lattice.needed()), balance));
+        stage.detail["balance"].push_back(balance_row(balance, "0"));
+    }
+    stage.bytes =
+        most_held(costs) + (arriving.fluence.size() + arriving.scattered.size() + arriving.moments.size()) * 4;
+    stage.detail["levels"] = level_table(costs);
+    stage.seconds = watch.seconds();
+    statistics.stages.push_back(stage);
+    return arriving;
+}
+
+}  // namespace
+
+FireLight light_from_fire(const LitLattice& lattice, Statistics& statistics, Progress& progress) {
+    FireLight out;
+    const bool at_nodes = lattice.input().single;
+    HierarchyLights lights = build_fire_lights(lattice, statistics, progress);
+    progress.stage("light from the fire (MV)");
+    if (at_nodes)
+        out.arriving = gather_at_lattice(lattice, lights, statistics, progress);
+    if (lattice.lights_exterior())
+        out.exterior =
+            std::make_unique<ExteriorLights>(lattice, std::move(lights), lattice.input().lighting.alpha, statistics);
+    if (at_nodes && out.exterior)
+        out.exterior->light_thin_medium(lattice.request(), out.arriving, statistics, progress);
+    if (at_nodes)
+        out.single = lattice.source_function(out.arriving);
+    else
+        out.arriving = lattice.dark();
+    return out;
+}
+
+}  // namespace brisance

@@ -1,0 +1,18 @@
+// The fire's own light at the medium's nodes: the source of MV, and of everything that scatters later.
+#pragma once
+
+#include <memory>
+
+#include "medium_lighting/exterior/exterior_lights.h"
+
+namespace brisance {
+
+struct FireLight {
+    Gathered arriving;                         // at the nodes; dark where single scattering is not wanted
+    std::vector<Rgb> single;                   // source function of MV per node; empty where it is not wanted
+    std::unique_ptr<ExteriorLights> exterior;  // where LitLattice::lights_exterior(), else null
+};
+
+FireLight light_from_fire(const LitLattice& lattice, Statistics& statistics, Progress& progress);
+
+}  // namespace brisance

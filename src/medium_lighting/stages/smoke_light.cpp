@@ -1,0 +1,168 @@
+#include "medium_lighting/stages/smoke_light.h"
+
+#include "core/stopwatch.h"
+#include "medium_lighting/balance_table.h"
+#include "medium_lighting/level_costs.h"
+#include "scattering/balance.h"
+
+namespace brisance {
+
+namespace {
+
+std::vector<ScatteredLight> orders_of_scattering(const LitLattice& lattice, const Gathered& first,
+                                                 Statistics& statistics, Progress& progress) {
+    progress.stage("orders of scattering");
+    const Stopwatch watch;
+    const MediumLightingInput& input = lattice.input();
+    ScatteringCosts costs;
+    std::vector<ScatteredLight> orders = solve_scattering(
+        {&lattice.pyramid(), &first, &lattice.needed(), input.lighting, input.scattering, input.orders_apart}, costs,
+        progress);
+    StageCost series{"orders of scattering on the coarse lattice", watch.seconds(), costs.bytes, {}};
+    series.detail = {{"lattice_level", costs.lattice_level},
+                     {"nodes", costs.coarse_nodes},
+                     {"operator_seconds", costs.operator_seconds},
+                     {"series_seconds", costs.series_seconds},
+                     {"bounces", costs.bounces},
+                     {"tail_ratio", costs.tail_ratio},
+                     {"tail_share", costs.tail_share},
+                     {"estimated_remainder", costs.remainder}};
+    series.detail["levels"] = level_table(costs.levels);
+    // Without the balance nobody has marched what escapes.
+    for (std::size_t k = 0; k < costs.balances.size() && input.lighting.energy_balance; ++k)
+        series.detail["balance"].push_back(balance_row(costs.balances[k], std::to_string(costs.balances[k].order)));
+    statistics.stages.push_back(series);
+    if (input.scattering.bounces < 0 && costs.remainder > input.scattering.remainder)
+        progress.warning("series", "multiple scattering stopped after " + std::to_string(costs.bounces) +
+                                       " bounces with an estimated " + std::to_string(100.0 * costs.remainder) +
+                                       " % of its light missing");
+    return orders;
+}
+
+// The flight that ends where the light is scattered toward the camera.
+class LastFlight {
+public:
+    LastFlight(const LitLattice& lattice, Progress& progress) : lattice_(lattice), progress_(progress) {}
+
+    HierarchyLights build(ScatteredLight order) const {
+        order.sharpen(lattice_.medium().lattice);
+        return build_hierarchy(lattice_.medium(), std::move(order), lattice_.input().lighting.levels);
+    }
+
+    // At the nodes. Leaves the lights themselves, but not always their grid. `order`: its name in the balance.
+    Gathered gather(HierarchyLights& lights, const std::string& order) {
+        std::vector<LevelCost> costs;
+        Gathered g = gather_unbalanced(lights, costs);
+        if (levels_.empty())
+            levels_ = costs;
+        prepare_interpolation(lattice_.medium().lattice, lattice_.needed(), g);
+        if (!lattice_.input().lighting.energy_balance)
+            return g;
+        BounceBalance balance;
+        balance.emitted = 1.0;
+        g.scale(close_balance(lattice_.pyramid(), lights.light, fluence_at_nodes(g, lattice_.needed()), balance));
+        balances_.push_back(balance_row(balance, order));
+        return g;
+    }
+
+    StageCost cost(const Gathered& sum) const {
+        StageCost stage{"light from the smoke (MM)", watch_.seconds(), 0, {}};
+        stage.bytes = most_held(levels_) + (sum.fluence.size() + sum.scattered.size()) * 4;
+        stage.detail["levels"] = level_table(levels_);
+        if (!balances_.empty())
+            stage.detail["balance"] = balances_;
+        return stage;
+    }
+
+private:
+    // Lights of thin media apart from the rest.
+    Gathered gather_unbalanced(HierarchyLights& lights, std::vector<LevelCost>& costs) {
+        const std::vector<std::uint32_t>& thin_bricks = lattice_.thin_medium().even_bricks();
+        const auto thin = take_thin_medium_lights(lattice_.medium(), thin_bricks, lights);
+        const auto field = [&](const HierarchyLights& h) {
+            const MediumLightingInput& input = lattice_.input();
+            return h.field(lattice_.pyramid(), input.scattering.alpha, input.lighting, nullptr);
+        };
+        Gathered g = gather_at_nodes(field(lights), lattice_.last_request(), costs, progress_);
+        if (!thin)
+            return g;
+        LightField of_thin = field(thin->lights);
+        of_thin.bottom = kFinestHazeLights;
+        g.add(gather_from_outside(of_thin, lattice_.last_request(), costs, progress_));
+        give_back(*thin, thin_bricks, lights.light);
+        return g;
+    }
+
+    const LitLattice& lattice_;
+    Progress& progress_;
+    Stopwatch watch_;
+    std::vector<LevelCost> levels_;  // of the first gather
+    nlohmann::ordered_json balances_ = nlohmann::ordered_json::array();
+};
+
+// The lights of all orders as they are seen from outside. What the camera sees is what lights the surroundings: all
+// light that arrives at the nodes, scattered once more. Where light has a direction, or orders are counted, that is not
+// known, and the lights of the last flight stand in for it.
+HierarchyLights exterior_lights_of(const LitLattice& lattice, HierarchyLights last_flight, const Gathered& first,
+                                   const Gathered& scattered) {
+    const MediumLightingInput& input = lattice.input();
+    if (input.directional || input.scattering.bounces >= 0)
+        return last_flight;
+    Gathered all = first;
+    all.add(scattered);
+    ScatteredLight leaving = scattered_light(lattice.medium(), all, lattice.needed());
+    leaving.sharpen(lattice.medium().lattice);
+    return build_hierarchy(lattice.medium(), std::move(leaving), input.lighting.levels);
+}
+
+Gathered gather_together(const LitLattice& lattice, ScatteredLight orders, const Gathered& first, LastFlight& flight,
+                         SmokeLight& out, Statistics& statistics, Progress& progress) {
+    Gathered sum;
+    sum.resize(lattice.node_count(), lattice.input().directional, false);
+    HierarchyLights lights = flight.build(std::move(orders));
+    sum.add(flight.gather(lights, "last"));
+    if (lattice.lights_exterior()) {
+        out.exterior =
+            std::make_unique<ExteriorLights>(lattice, exterior_lights_of(lattice, std::move(lights), first, sum),
+                                             lattice.input().scattering.alpha, statistics);
+        out.exterior->light_thin_medium(lattice.last_request(), sum, statistics, progress);
+    }
+    return sum;
+}
+
+Gathered gather_apart(const LitLattice& lattice, std::vector<ScatteredLight> orders, LastFlight& flight,
+                      SmokeLight& out, Statistics& statistics, Progress& progress) {
+    Gathered sum;
+    sum.resize(lattice.node_count(), lattice.input().directional, false);
+    for (std::size_t k = 0; k < orders.size(); ++k) {
+        HierarchyLights lights = flight.build(std::move(orders[k]));
+        Gathered g = flight.gather(lights, std::to_string(k + 1));
+        if (lattice.lights_exterior()) {
+            out.exterior = std::make_unique<ExteriorLights>(lattice, std::move(lights),
+                                                            lattice.input().scattering.alpha, statistics);
+            out.exterior->light_thin_medium(lattice.last_request(), g, statistics, progress);
+        }
+        out.orders.push_back(lattice.source_function(g));
+        sum.add(g);
+    }
+    return sum;
+}
+
+}  // namespace
+
+SmokeLight light_from_smoke(const LitLattice& lattice, const Gathered& first, Statistics& statistics,
+                            Progress& progress) {
+    std::vector<ScatteredLight> orders = orders_of_scattering(lattice, first, statistics, progress);
+    progress.stage("light from the smoke (MM)");
+    LastFlight flight(lattice, progress);
+    SmokeLight out;
+    const Gathered sum =
+        lattice.input().orders_apart
+            ? gather_apart(lattice, std::move(orders), flight, out, statistics, progress)
+            : gather_together(lattice, std::move(orders.front()), first, flight, out, statistics, progress);
+    out.multiple = lattice.source_function(sum);
+    statistics.stages.push_back(flight.cost(sum));
+    return out;
+}
+
+}  // namespace brisance

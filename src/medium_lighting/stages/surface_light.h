@@ -1,0 +1,12 @@
+// Light that surfaces send into the medium: the cell MS.
+#pragma once
+
+#include "medium_lighting/lit_lattice.h"
+#include "statistics/statistics.h"
+
+namespace brisance {
+
+// At the nodes: of the virtual lights as points, and of particles for what those do not hold.
+Gathered light_from_surfaces(const LitLattice& lattice, Statistics& statistics, Progress& progress);
+
+}  // namespace brisance

@@ -1,0 +1,40 @@
+#include "medium_lighting/stages/virtual_lights_as_points.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "gathering/sh.h"
+
+namespace brisance {
+
+namespace {
+
+// Lambert's cosine lobe of flux 1 has the intensity cos / pi: per coefficient of degrees 1 and 2, times the harmonic of
+// the normal (Ramamoorthi and Hanrahan, An Efficient Representation for Irradiance Environment Maps, 2001).
+constexpr float kDegree1 = 2.0f / 3.0f, kDegree2 = 0.25f;
+
+// Normal of that plane.
+constexpr vec3 kAside(0.517f, 0.382f, 0.766f);
+
+}  // namespace
+
+PointsOfSides points_of_virtual_lights(const VirtualLights& lights) {
+    PointsOfSides sides;
+    for (const VirtualLight& light : lights.lights()) {
+        const Rgb flux = light.base_flux;
+        if (!(luminance(flux) > 0.0f))
+            continue;
+        const vec3 normal(light.frame.normal);
+        PointLights& out = sides[glm::dot(normal, kAside) < 0.0f];
+        out.position.emplace_back(light.position +
+                                  std::max(kAboveSurface * light.radius, light.clearance) * light.frame.normal);
+        out.intensity.push_back(flux / (4.0f * std::numbers::pi_v<float>));
+        const auto basis = sh_basis(normal);
+        for (int m = 0; m < kShMoments; ++m)
+            for (int c = 0; c < 3; ++c)
+                out.directional.push_back(flux[c] * (m < 3 ? kDegree1 : kDegree2) * basis[m]);
+    }
+    return sides;
+}
+
+}  // namespace brisance

@@ -1,0 +1,39 @@
+// The picture of one frame by many lights: lighting grids in the medium, virtual lights on surfaces.
+#pragma once
+
+#include <optional>
+
+#include "camera/camera.h"
+#include "diagnostics/light_pictures.h"
+#include "emitters/surroundings.h"
+#include "film/write_image.h"
+#include "render/plan.h"
+#include "shot/shot.h"
+#include "statistics/statistics.h"
+
+namespace brisance {
+
+// What is drawn, by reference.
+struct DrawInput {
+    const Shot& shot;
+    const Plan& plan;
+    const Medium& medium;
+    const Surroundings* surroundings;  // null: none
+    const Camera& camera;
+};
+
+struct Drawn {
+    Image image;
+    std::optional<LightPictures> light_pictures;  // where output.virtual_lights wants them and there are lights
+    double samples_per_pixel = 0.0;
+};
+
+// Builds the lights, draws the picture, adds its layers. Throws Error Usage for settings that do not go together.
+Drawn draw_by_many_lights(const DrawInput& input, Statistics& statistics, Progress& progress);
+
+// Why a shot has no virtual lights to make pictures of, as half a sentence; nothing where it has some.
+std::optional<std::string> why_no_virtual_lights(const Shot& shot, const Plan& plan);
+
+inline constexpr const char* kNoLightPictures = "no pictures of virtual lights are written: ";
+
+}  // namespace brisance

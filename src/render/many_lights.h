@@ -1,0 +1,66 @@
+// Everything that one frame is lit by, built in the order in which it depends on each other: paths for surfaces,
+// virtual lights on them, then the lighting of the medium.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "camera_rays/source_field.h"
+#include "medium_lighting/medium_lighting.h"
+#include "reference/path_tracer.h"
+#include "render/draw.h"
+#include "virtual_lights/virtual_lights.h"
+
+namespace brisance {
+
+// `plan`: which light is wanted; `medium`: through which it is followed.
+MediumLightingInput medium_lighting_input(const DrawInput& input, const Plan& plan, const Medium& medium,
+                                          const ReflectedLight& reflected = {}, bool orders_apart = false);
+
+// The medium's lighting, and what the camera samples of it.
+class LitMedium {
+public:
+    // `plan`: which light is wanted of it. `bounces`: scatterings that it follows, -1: all. `orders_apart`: keeps
+    // orders of scattering for layers.
+    LitMedium(const DrawInput& input, const Plan& plan, int bounces, const ReflectedLight& reflected, bool orders_apart,
+              Statistics& statistics, Progress& progress);
+    LitMedium(const LitMedium&) = delete;
+    LitMedium& operator=(const LitMedium&) = delete;
+
+    const SourceField& field() const { return *field_; }
+    const MediumLighting* lighting() const { return lighting_.get(); }  // null: nothing shines
+    const Medium* similar() const { return similar_ ? &*similar_ : nullptr; }
+
+private:
+    std::optional<Medium> similar_;  // where the medium itself is too stiff (medium/similar_medium.h)
+    std::unique_ptr<MediumLighting> lighting_;
+    std::optional<SourceField> field_;
+};
+
+class ManyLights {
+public:
+    ManyLights(const DrawInput& input, Statistics& statistics, Progress& progress);
+    ManyLights(const ManyLights&) = delete;
+    ManyLights& operator=(const ManyLights&) = delete;
+
+    const PathTracer* paths() const { return paths_ ? &*paths_ : nullptr; }  // null: no surfaces
+    // What paths and estimators along rays look up; null where nothing does.
+    const DirectLight* direct() const { return paths_ ? &paths_->direct() : own_direct_ ? &*own_direct_ : nullptr; }
+    const VirtualLights* virtual_lights() const { return virtual_lights_.get(); }  // null: the shot wants none
+    const LitMedium& medium() const { return *medium_; }
+    // Of light that scattered once, where MV and MA of medium() hold more (PictureSettings::once); null: not so.
+    const LitMedium* once() const { return once_.get(); }
+
+private:
+    void light_medium(const DrawInput& input, Statistics& statistics, Progress& progress);
+    void light_medium_once(const DrawInput& input, Statistics& statistics, Progress& progress);
+
+    std::optional<PathTracer> paths_;
+    std::optional<DirectLight> own_direct_;
+    std::unique_ptr<VirtualLights> virtual_lights_;
+    std::optional<PointsOfSides> reflecting_;
+    std::optional<SpecularPhotons> cast_;
+    std::unique_ptr<LitMedium> medium_, once_;
+};
+
+}  // namespace brisance

@@ -1,0 +1,38 @@
+"""Every test that CTest knows has exactly one of the labels `quick` and `slow`, and one that names its folder.
+
+Usage: check_labels.py CTEST BUILD_FOLDER
+"""
+
+import collections
+import json
+import subprocess
+import sys
+
+
+def faults(tests):
+    """One line for each test whose labels break the rule."""
+    for test in tests:
+        labels = []
+        for entry in test.get("properties", []):
+            if entry["name"] == "LABELS":
+                labels = entry["value"]
+        speeds = [label for label in labels if label in ("quick", "slow")]
+        if len(speeds) != 1 or len(labels) != 2:
+            yield f"{test['name']}: labels {labels}, expected a folder and one of quick and slow"
+    counts = collections.Counter(test["name"] for test in tests)
+    for name, count in counts.items():
+        if count > 1:
+            yield f"{name}: known {count} times"
+
+
+def main():
+    ctest, folder = sys.argv[1:]
+    listed = subprocess.run([ctest, "--test-dir", folder, "--show-only=json-v1"], check=True, capture_output=True)
+    tests = json.loads(listed.stdout)["tests"]
+    found = list(faults(tests))
+    print("\n".join(found) if found else f"{len(tests)} tests")
+    return 1 if found or not tests else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

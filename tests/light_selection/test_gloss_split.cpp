@@ -1,0 +1,111 @@
+// Places on ray lights and rays drawn from a glossy lobe find the same light, and share it.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "fixtures/ray_fixture.h"
+
+namespace brisance {
+namespace {
+
+using namespace testing;
+
+constexpr int kPointsToASet = 64;
+constexpr int kPlaces = 4;
+
+SurfacePoint on_metal(Rng& rng, float roughness, const dvec3& normal = {0.0, 0.0, 1.0}) {
+    SurfacePoint p;
+    p.position = {rng.next_double() - 0.5, rng.next_double() - 2.0, -1.3};
+    p.geometric_normal = {0.0, 0.0, 1.0};
+    p.frame = frame_around(normal);
+    p.material.metallic = 1.0f;
+    p.material.roughness = roughness;
+    p.material.base_colour = Rgb(0.9f, 0.8f, 0.6f);
+    return p;
+}
+
+// What smoke that smoke lights up shows on metal. `places`: of the split, whatever is asked.
+double reflected(const DirectLight& scene, const RayLights& lights, const SurfacePoint& point, double places,
+                 Rng& rng) {
+    const dvec3 viewer = glm::normalize(dvec3(0.0, -1.0, 0.8));
+    const Bsdf base(point.material, point.frame, Lobes::Base), gloss(point.material, point.frame, Lobes::Specular);
+    const GlossSplit split(point, gloss, viewer, places);
+    double sum = lights.at_surface(point, AskedLobes(base, &split), viewer, rng).x;
+    const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
+    const std::optional<BsdfSample> drawn = gloss.sample(viewer, {x, y, z});
+    const double left = drawn ? split.of_rays(drawn->wi) : 0.0;
+    if (!(left > 0.0))
+        return sum;
+    const RaySegment segment = scene.segment_along(point.leaving(drawn->wi));
+    RayMedium seen;
+    seen.look(scene.field(), segment.ray, segment.end);
+    return sum + drawn->weight.x * left * lights.along_ray(seen, rng).x;
+}
+
+struct Shared {
+    double rays, places, both;  // relative deviation of one point's estimate, about
+};
+
+Shared expect_same(const Stage& stage, RayLightSettings settings, float roughness, const dvec3& normal) {
+    settings.paths = 600;
+    settings.samples = kPlaces;
+    constexpr double kSplits[] = {0.0, 1e12, kPlaces};
+    const Estimate e = estimate(3, 2, [&](const dvec3&, Rng& rng, double* out) {
+        settings.seed = static_cast<std::uint32_t>(rng.next_double() * 0x1p32);
+        const RayLights lights = stage.lights(settings, 16, settings.seed);
+        std::fill(out, out + 3, 0.0);
+        for (int i = 0; i < kPointsToASet; ++i)
+            for (int k = 0; k < 3; ++k)
+                out[k] +=
+                    reflected(stage.scene(), lights, on_metal(rng, roughness, normal), kSplits[k], rng) / kPointsToASet;
+    });
+    std::printf("roughness %g: by rays %.4g +- %.2g %%, by places %.4g +- %.2g %%, by both %.4g +- %.2g %%\n",
+                roughness, e.mean[0], 100.0 * e.error[0] / e.mean[0], e.mean[1], 100.0 * e.error[1] / e.mean[1],
+                e.mean[2], 100.0 * e.error[2] / e.mean[2]);
+    for (int k = 0; k < 2; ++k)
+        EXPECT_NEAR(e.mean[k], e.mean[2], 3.0 * std::hypot(e.error[k], e.error[2])) << roughness << ", " << k;
+    EXPECT_LT(e.error[2], 0.03 * e.mean[2]) << roughness << ": not sampled enough";
+    return {e.error[0], e.error[1], e.error[2]};
+}
+
+TEST(GlossSplit, PlacesAndRaysFindTheSameLight) {
+    const Stage stage(lumpy_ball(8, 3.0f, 0.3f), {});
+    const dvec3 up(0.0, 0.0, 1.0);
+    for (const float roughness : {0.15f, 0.4f, 0.9f}) {
+        const Shared noise = expect_same(stage, {}, roughness, up);
+        EXPECT_LT(noise.both, 1.15 * std::min(noise.rays, noise.places)) << roughness;
+    }
+}
+
+TEST(GlossSplit, HoldsForBentNormalsAndLongLights) {
+    const Stage stage(lumpy_ball(8, 2.0f, 0.0f), {});
+    const dvec3 bent = glm::normalize(dvec3(0.3, -0.4, 1.0));
+    RayLightSettings settings;
+    settings.length = RayLength::Long;
+    expect_same(stage, settings, 0.4f, bent);
+}
+
+TEST(GlossSplit, PartsOfADirectionAddUp) {
+    Rng rng(Stream::Points, 9);
+    for (const float roughness : {0.1f, 0.5f, 1.0f}) {
+        const SurfacePoint point = on_metal(rng, roughness);
+        const Bsdf gloss(point.material, point.frame, Lobes::Specular);
+        const dvec3 viewer = glm::normalize(dvec3(0.4, -1.0, 0.8));
+        const GlossSplit split(point, gloss, viewer, kPlaces);
+        for (int i = 0; i < 1000; ++i) {
+            const dvec3 to =
+                glm::normalize(dvec3(rng.next_double() - 0.5, rng.next_double() - 0.5, rng.next_double() - 0.5));
+            const Rgb whole = gloss.evaluate(viewer, to);
+            const double of_rays = split.of_rays(to);
+            EXPECT_GE(of_rays, 0.0);
+            EXPECT_LE(of_rays, 1.0);
+            EXPECT_NEAR(split.of_places(to).x + of_rays * whole.x, whole.x, 1e-5 * whole.x);
+            // What makes a place bright is bounded, however sharp the lobe.
+            EXPECT_LE(split.of_places(to).x, 1.0001 * kPlaces / (2.0 * std::numbers::pi));
+        }
+        EXPECT_EQ(split.of_rays({0.0, 0.6, -0.8}), 1.0);
+    }
+}
+
+}  // namespace
+}  // namespace brisance

@@ -1,0 +1,90 @@
+// Light that mirrors cast on smoke.
+#include <gtest/gtest.h>
+
+#include "fixtures/media.h"
+#include "fixtures/sets.h"
+#include "medium_lighting/stages/specular_photons.h"
+
+namespace brisance {
+namespace {
+
+using namespace testing;
+
+SceneMaterial mirror() {
+    SceneMaterial m = lambert(1.0f);
+    m.surface.metallic = 1.0f;
+    m.surface.roughness = 0.0f;
+    return m;
+}
+
+// A cube of thin smoke, 21 nodes along each side from -1 to 1.
+Medium thin_cube() {
+    Recipe r;
+    r.box = cube(-10, 10);
+    r.world_from_index = cubic(0.1);
+    r.density = [](const ivec3&) { return 1.0f; };
+    r.settings = black_smoke();
+    r.settings.smoke.extinction_per_metre = 1e-4f;
+    r.settings.smoke.albedo = Rgb(0.5f);
+    return make_medium(r);
+}
+
+// A lamp before a mirror is two lamps: fluence falls with the squared distance from the one behind it.
+TEST(SpecularPhotons, AMirrorCastsTheLightOfAnotherLamp) {
+    const Medium medium = thin_cube();
+    Scene scene;
+    scene.origin = medium.world_of_local(vec3(0.0f));
+    const dvec3 lamp(0.4, -0.3, -1.2), image(0.4, -0.3, -2.8);
+    add_quad(scene, {-20, -20, -2}, {40, 0, 0}, {0, 40, 0}, mirror());
+    LightSettings light;
+    light.position = medium.world_of_local(vec3(lamp));
+    light.power = Rgb(1.0f, 2.0f, 3.0f);  // [W/sr]
+    const Surroundings surroundings(std::move(scene), {light});
+    const DirectLight direct(medium, {}, &surroundings);
+    VirtualLightSettings settings;
+    settings.photons = 400000;
+    const SpecularPhotons cast(direct, nullptr, settings);
+    ASSERT_FALSE(cast.empty());
+    const std::size_t nodes = medium.lattice.node_count();
+    const std::vector<std::uint8_t> needed(nodes, 1);
+    const Gathered g = cast.on(medium, {&needed, nullptr, true, 0.0f});
+    double sum = 0.0, expected = 0.0;
+    dvec3 heading(0.0), expected_heading(0.0);
+    for (std::size_t i = 0; i < nodes; ++i) {
+        if (!(medium.extinction[i] > 0.0f))
+            continue;
+        const ivec3 node = medium.lattice.first_node(i / BrickLattice::kNodes) +
+                           BrickLattice::node_in_brick(int(i % BrickLattice::kNodes));
+        const dvec3 way = dvec3(medium.local_of_node(node)) - image;
+        const double fluence = 1.0 / glm::dot(way, way);
+        sum += g.fluence[i];
+        expected += fluence;
+        EXPECT_NEAR(g.fluence[nodes + i], 2.0 * g.fluence[i], 1e-4 * g.fluence[i]);
+        // Degree 1 of the harmonics is (y, z, x).
+        heading += dvec3(g.moments[6 * nodes + i], g.moments[i], g.moments[3 * nodes + i]);
+        expected_heading += double(0.48860251f) * fluence * glm::normalize(way);
+    }
+    EXPECT_NEAR(sum / expected, 1.0, 0.01);
+    for (int axis = 0; axis < 3; ++axis)
+        EXPECT_NEAR(heading[axis], expected_heading[axis], 0.01 * glm::length(expected_heading)) << axis;
+}
+
+TEST(SpecularPhotons, IsNotWantedWithoutSurfacesOrLight) {
+    const Medium medium = thin_cube();
+    const auto empty = [&](bool surfaces, bool light) {
+        Scene scene;
+        scene.origin = medium.world_of_local(vec3(0.0f));
+        if (surfaces)
+            add_quad(scene, {-2, -2, -2}, {4, 0, 0}, {0, 4, 0}, mirror());
+        const Surroundings surroundings(std::move(scene),
+                                        light ? std::vector{LightSettings{}} : std::vector<LightSettings>{});
+        const DirectLight direct(medium, {}, &surroundings);
+        return SpecularPhotons(direct, nullptr, {}).empty();
+    };
+    EXPECT_FALSE(empty(true, true));
+    EXPECT_TRUE(empty(false, true));
+    EXPECT_TRUE(empty(true, false));
+}
+
+}  // namespace
+}  // namespace brisance
