@@ -52,8 +52,8 @@ public:
     Rgb radiance(const VirtualLight& light, const dvec3& toward) const;
     // What one of the covering lights adds to the radiance that the ray finds [W/(m^2 sr)].
     Rgb reflected(const CoveredHit& hit, int share) const;
-    // The probability with which virtual lights end a path at this hit, by how many of them lie in the footprint of a
-    // ray that was sampled with density `pdf` [1/sr].
+    // The fraction of a path that virtual lights end at this hit, the rest of it continues: by how many of them lie in
+    // the footprint of a ray that was sampled with density `pdf` [1/sr].
     double termination_probability(const CoveredHit& hit, double pdf) const;
 
 private:

@@ -32,7 +32,7 @@ struct VirtualLightSettings {
     int resampling_candidates = 32;  // sampling resampled: lights to choose from
     bool path_extension = true;      // paths continue where a ray's footprint covers few lights
     double n_min = 40.0;             // lights in the footprint: with fewer the path continues, ...
-    double n_max = 80.0;             // ... with more it ends; between them it does either by chance
+    double n_max = 80.0;             // ... with more it ends; between them it does both in part
     std::uint32_t seed = 0;          // other seeds draw other random numbers
 };
 

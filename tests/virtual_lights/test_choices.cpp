@@ -57,7 +57,8 @@ TEST(Choices, ByDefaultGoTogether) {
     EXPECT_EQ(why_not_together({}), "");
 }
 
-// Every product is either built or refused with a reason; 4 x (1 x 7 + 2 x 4) of gathered flux, 2 x 4 of photons' own.
+// Every product is either built or refused with a reason. Of gathered flux, patches go with all gatherers, spheres and
+// points with all but the three that need rays; flux of deposits is for spheres and points, where photons place them.
 TEST(Choices, AreAllBuiltOrRefused) {
     const Room room(coloured_room());
     int built = 0, refused = 0;
@@ -85,8 +86,9 @@ TEST(Choices, AreAllBuiltOrRefused) {
                     EXPECT_TRUE(std::isfinite(room.by_lights(lights, 0.4, 0.6, rng).x)) << what;
                     ++built;
                 }
-    EXPECT_EQ(built, 4 * (7 + 2 * 4) + 2 * 4);
-    EXPECT_EQ(built + refused, 4 * 2 * 3 * 7);
+    const auto gatherers = static_cast<int>(light_gatherers().size());
+    EXPECT_EQ(built, 4 * (gatherers + 2 * (gatherers - 3)) + 2 * (gatherers - 3));
+    EXPECT_EQ(built + refused, 4 * 2 * 3 * gatherers);
 }
 
 TEST(Presets, AreSettingsOfAShotThatGoTogether) {

@@ -85,7 +85,7 @@ void add_gathering_keys(std::vector<Key>& keys) {
         "virtual_lights.n_min", "lights in the footprint: with fewer the path continues", real_in(Ranges::n_min),
         [](Shot & s) -> auto& { return s.virtual_lights.n_min; }));
     keys.push_back(make_key(
-        "virtual_lights.n_max", "with more it ends; between them it does either by chance", real_in(Ranges::n_max),
+        "virtual_lights.n_max", "with more it ends; between them it does both in part", real_in(Ranges::n_max),
         [](Shot & s) -> auto& { return s.virtual_lights.n_max; }));
     keys.push_back(make_key(
         "virtual_lights.seed", "other seeds draw other random numbers", whole(0, 2147483647),
