@@ -28,7 +28,8 @@ def faults(tests):
 def main():
     ctest, folder = sys.argv[1:]
     listed = subprocess.run([ctest, "--test-dir", folder, "--show-only=json-v1"], check=True, capture_output=True)
-    tests = json.loads(listed.stdout)["tests"]
+    # A program that is not built stands for its tests, and fails by itself.
+    tests = [test for test in json.loads(listed.stdout)["tests"] if not test["name"].endswith("_NOT_BUILT")]
     found = list(faults(tests))
     print("\n".join(found) if found else f"{len(tests)} tests")
     return 1 if found or not tests else 0
