@@ -19,10 +19,10 @@ def faults(tests):
         speeds = [label for label in labels if label in ("quick", "slow")]
         if len(speeds) != 1 or len(labels) != 2:
             yield f"{test['name']}: labels {labels}, expected a folder and one of quick and slow"
-    counts = collections.Counter(test["name"] for test in tests)
-    for name, count in counts.items():
+    counts = collections.Counter((test["name"], test["command"][0]) for test in tests)
+    for (name, program), count in counts.items():
         if count > 1:
-            yield f"{name}: known {count} times"
+            yield f"{name} of {program}: known {count} times"
 
 
 def main():
