@@ -18,14 +18,10 @@ namespace {
 // Of the pyramid that rays toward extended lights march: which part of a light is hidden by smoke needs no more.
 constexpr int kAimLevel = 2;
 
-nlohmann::ordered_json balance_row(const BounceBalance& b, const std::string& order) {
-    return {{"order", order},
-            {"emitted", b.emitted},
-            {"collided", b.collided},
-            {"escaped", b.escaped()},
-            {"escape_standard_error", b.expected_error},
-            {"scale", b.scale},
-            {"corrected", b.corrected()}};
+nlohmann::ordered_json balance_row(const BounceBalance& b, const std::string& orders) {
+    return {{"orders", orders}, {"emitted", b.emitted}, {"collided", b.collided},
+            {"scale", b.scale}, {"escaped", b.escaped}, {"escape_standard_error", b.escaped_error},
+            {"sum", b.sum()}};
 }
 
 // Nodes whose light the camera or the smoke can ask for: corners of cells with extinction.
@@ -203,7 +199,7 @@ Gathered MediumLighting::light_from_fire() {
         if (shot_.lighting.energy_balance) {
             BounceBalance balance;
             balance.emitted = 1.0;
-            scale = close_balance(pyramid_, lights.light, fluence_at_nodes(first, needed_), balance);
+            scale = energy_balance_factor(pyramid_, lights.light, fluence_at_nodes(first, needed_), balance);
             first.scale(scale);
             stage.detail["balance"].push_back(balance_row(balance, "0"));
         }
@@ -251,7 +247,7 @@ Gathered MediumLighting::gather_last_flight(HierarchyLights& lights, int order, 
         return g;
     BounceBalance balance;
     balance.emitted = 1.0;
-    const Rgb scale = close_balance(pyramid_, lights.light, fluence_at_nodes(g, needed_), balance);
+    const Rgb scale = energy_balance_factor(pyramid_, lights.light, fluence_at_nodes(g, needed_), balance);
     g.scale(scale);
     if (smoke_)
         smoke_->scale = scale;
@@ -275,9 +271,9 @@ std::vector<ScatteredLight> MediumLighting::orders_of_scattering(const Gathered&
                      {"tail_share", costs.tail_share},
                      {"estimated_remainder", costs.remainder}};
     series.detail["levels"] = level_table(costs.levels);
-    // Without the balance nobody has marched what escapes.
-    for (std::size_t k = 0; k < costs.balances.size() && shot_.lighting.energy_balance; ++k)
-        series.detail["balance"].push_back(balance_row(costs.balances[k], std::to_string(costs.balances[k].order)));
+    if (costs.balance)
+        series.detail["balance"].push_back(
+            balance_row(*costs.balance, "1-" + std::to_string(costs.balance->last_order)));
     statistics_.stages.push_back(series);
     if (shot_.scattering.bounces < 0 && costs.remainder > shot_.scattering.remainder)
         progress_.warning("series", "multiple scattering stopped after " + std::to_string(costs.bounces) +

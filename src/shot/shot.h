@@ -11,6 +11,7 @@
 #include "gathering/settings.h"
 #include "medium/settings.h"
 #include "ray_lights/settings.h"
+#include "scattering/settings.h"
 #include "scene/settings.h"
 #include "tracking/settings.h"
 #include "virtual_lights/settings.h"

@@ -17,8 +17,8 @@ namespace {
 using testing::Recipe;
 
 // Means must agree within four standard errors of their difference, in each of three colours of eleven views in all:
-// were both right, one choice of seeds in five hundred would fail by chance, and seeds are fixed. Four standard errors must be less
-// than 2 % of the mean, so that an error of 2 % shows.
+// were both right, one choice of seeds in five hundred would fail by chance, and seeds are fixed. Four standard errors
+// must be less than 2 % of the mean, so that an error of 2 % shows.
 constexpr double kSigmas = 4.0;
 constexpr double kMostError = 0.0045;
 
