@@ -2,14 +2,14 @@
 
 namespace brisance {
 
-nlohmann::ordered_json balance_row(const BounceBalance& b, const std::string& order) {
-    return {{"order", order},
+nlohmann::ordered_json balance_row(const BounceBalance& b, const std::string& orders) {
+    return {{"orders", orders},
             {"emitted", b.emitted},
             {"collided", b.collided},
-            {"escaped", b.escaped()},
-            {"escape_standard_error", b.expected_error},
             {"scale", b.scale},
-            {"corrected", b.corrected()}};
+            {"escaped", b.escaped},
+            {"escape_standard_error", b.escaped_error},
+            {"sum", b.sum()}};
 }
 
 }  // namespace brisance

@@ -69,18 +69,23 @@ TEST(ModelFireball, IsAsBrightAsTheIntegralEquationSays) {
     }
 }
 
-TEST(ModelFireball, EveryBounceCollidesOrEscapes) {
+// The fire's light, all orders on the coarse lattice together, and the last flight: rays with no part in the balance
+// find that what is emitted collides or escapes. Four standard errors, seeds are fixed.
+TEST(ModelFireball, WhatIsEmittedCollidesOrEscapes) {
     const Lit lit = light_ball(2.0f, 0.9f);
-    int bounces = 0;
+    int rows = 0;
     for (const StageCost& stage : lit.statistics.stages)
         if (stage.detail.contains("balance"))
             for (const auto& b : stage.detail["balance"]) {
-                EXPECT_NEAR(b["corrected"].get<double>(), 1.0, 0.002);
+                const double error = b["escape_standard_error"].get<double>();
+                EXPECT_GT(error, 0.0);
+                EXPECT_LE(error, 0.001) << "not sampled enough";
+                EXPECT_NEAR(b["sum"].get<double>(), 1.0, 0.003 + 4.0 * error) << b;
                 // What had to be corrected is the gather's own error: percents, not factors.
                 EXPECT_NEAR(b["scale"].get<double>(), 1.0, 0.06);
-                ++bounces;
+                ++rows;
             }
-    EXPECT_GE(bounces, 4);
+    EXPECT_EQ(rows, 3);
 }
 
 TEST(ModelFireball, AWeaklyForwardPhaseFunctionIsNearlyIsotropic) {

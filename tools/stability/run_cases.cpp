@@ -32,8 +32,9 @@ void read_balances(const Statistics& statistics, Result& result) {
             continue;
         for (const auto& flight : stage.detail["balance"]) {
             const double off = flight["collided"].get<double>() + flight["escaped"].get<double>() - 1.0;
+            const double noise = flight["escape_standard_error"].get<double>();
             // Written so that NaN counts as out of balance.
-            if (!(std::abs(flight["corrected"].get<double>() - 1.0) <= kMostImbalance))
+            if (!(std::abs(flight["sum"].get<double>() - 1.0) <= kMostImbalance + kStandardErrors * noise))
                 result.balanced = false;
             if (!result.imbalance || !(std::abs(off) <= std::abs(*result.imbalance)))
                 result.imbalance = off;

@@ -14,7 +14,7 @@ struct Result {
     RenderMethod method = RenderMethod::LightingGrid;
     bool finite = false;              // every value of every layer
     std::optional<double> imbalance;  // collided + escaped - emitted of the worst flight, as gathered
-    bool balanced = true;             // the same within 0.5 % once scaled
+    bool balanced = true;             // the same within 0.5 % and the noise of its measurement, once scaled
     Measured measured;
     double tolerance = 0.0;
     double seconds = 0.0;

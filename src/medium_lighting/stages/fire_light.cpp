@@ -36,7 +36,7 @@ Gathered gather_at_lattice(const LitLattice& lattice, const HierarchyLights& lig
         BounceBalance balance;
         balance.emitted = 1.0;
         arriving.scale(
-            close_balance(lattice.pyramid(), lights.light, fluence_at_nodes(arriving, lattice.needed()), balance));
+            energy_balance_factor(lattice.pyramid(), lights.light, fluence_at_nodes(arriving, lattice.needed()), balance));
         stage.detail["balance"].push_back(balance_row(balance, "0"));
     }
     stage.bytes =
