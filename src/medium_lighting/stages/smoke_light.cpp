@@ -60,7 +60,8 @@ public:
             return g;
         BounceBalance balance;
         balance.emitted = 1.0;
-        g.scale(energy_balance_factor(lattice_.pyramid(), lights.light, fluence_at_nodes(g, lattice_.needed()), balance));
+        g.scale(
+            energy_balance_factor(lattice_.pyramid(), lights.light, fluence_at_nodes(g, lattice_.needed()), balance));
         balances_.push_back(balance_row(balance, order));
         return g;
     }
