@@ -78,7 +78,7 @@ bool owns_a_cell(const Method& method, const Scene& scene) {
         return true;
     Shot shot = scene.shot;
     method.apply_to(shot, 0);
-    return plan_cells(shot, scene.medium, scene.surroundings.get()).scattered_lights;
+    return plan_cells(shot, scene.medium, scene.surroundings.get()).scattering_method;
 }
 
 const Limit* Case::limit_of(const Method& method) const {
