@@ -36,7 +36,7 @@ Traced unscattered(const Recipe& recipe) {
 }
 
 // j = R = 1, no extinction: 2 pi + pi (1 - r^2) / r ln |(1 + r) / (1 - r)|.
-TEST(FluenceOfBalls, WithoutExtinctionMatchesTheClosedForm) {
+TEST(TracedFluenceOfBalls, WithoutExtinctionMatchesTheClosedForm) {
     Rows rows("fluence, transparent ball");
     Recipe r = glowing_ball(kNodes, 1.0f);
     r.flame = r.density;
@@ -69,7 +69,7 @@ constexpr struct {
 // of radius R has in units of j. With source function 1 everywhere, the truth of the lattice's own ball follows from
 // optical depths; on the surface, half way down the ramp, it differs from the table by up to 2 % for each mean free
 // path of R.
-TEST(FluenceOfBalls, WithAbsorptionMatchesTheTable) {
+TEST(TracedFluenceOfBalls, WithAbsorptionMatchesTheTable) {
     Rows rows("fluence, absorbing ball");
     constexpr double at[] = {0.0, 0.25, 0.5, 0.75, 0.9, 1.0};
     for (const auto& ball : kAbsorbing) {

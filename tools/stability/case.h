@@ -65,9 +65,10 @@ struct Case {
 // cell.
 bool owns_a_cell(const Method& method, const Scene& scene);
 
-// Measures. Pictures of the lighting grid are judged by the relative L2 distance over all pixels, those of the others
-// by the relative error of their mean, since noise is no error: its standard error comes from the path tracer's two
-// halves, or from pictures by other lights.
+// Measures. Pictures of the lighting grid have no noise and are judged by the relative L2 distance over all pixels;
+// those of the others, and of the grid where there are surfaces or emitters, which are sampled, by the relative error
+// of their mean. Its standard error comes from the path tracer's two halves, from pictures by other lights, or from the
+// spread of pixels that are sampled independently.
 
 // All pixels of `layer` ought to have this radiance.
 Measure every_pixel_is(const Rgb& radiance, const std::string& layer = "");

@@ -74,9 +74,25 @@ Measured of_pixels(const std::vector<dvec3>& found, const std::vector<dvec3>& wa
     return {relative(std::sqrt(error), std::sqrt(square)), 0.0};
 }
 
-Measured against(const RenderedFrame& frame, const std::vector<dvec3>& wanted, const std::string& layer,
-                 const Method& method) {
-    return method.is_grid() ? of_pixels(colours_of(frame.image, layer), wanted) : of_mean(frame, wanted, layer, method);
+// Of a picture whose pixels are sampled independently of each other: of its mean, with the noise that their spread
+// tells.
+Measured of_sampled_pixels(const std::vector<dvec3>& found, const std::vector<dvec3>& wanted) {
+    dvec3 sum(0.0), square(0.0);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        sum += found[i] - wanted[i];
+        square += (found[i] - wanted[i]) * (found[i] - wanted[i]);
+    }
+    const double n = double(found.size()), truth = norm(sum_of(wanted));
+    const dvec3 spread = glm::sqrt(glm::max(square - sum * sum / n, 0.0));
+    return {relative(norm(sum), truth), relative(norm(spread), truth)};
+}
+
+Measured against(const Scene& scene, const RenderedFrame& frame, const std::vector<dvec3>& wanted,
+                 const std::string& layer, const Method& method) {
+    if (!method.is_grid())
+        return of_mean(frame, wanted, layer, method);
+    const std::vector<dvec3> found = colours_of(frame.image, layer);
+    return scene.surroundings ? of_sampled_pixels(found, wanted) : of_pixels(found, wanted);
 }
 
 // L2 distance to a reference, free of its noise: the product of the distances to two independent halves.
@@ -111,9 +127,9 @@ Scene by_other_estimators(const Scene& scene) {
 }  // namespace
 
 Measure every_pixel_is(const Rgb& radiance, const std::string& layer) {
-    return [=](const Scene&, const RenderedFrame& frame, const Method& method, const Render&) {
+    return [=](const Scene& scene, const RenderedFrame& frame, const Method& method, const Render&) {
         const std::size_t pixels = std::size_t(frame.image.width) * frame.image.height;
-        return against(frame, std::vector<dvec3>(pixels, dvec3(radiance)), layer, method);
+        return against(scene, frame, std::vector<dvec3>(pixels, dvec3(radiance)), layer, method);
     };
 }
 
@@ -124,7 +140,7 @@ Measure every_ray_is(const RadianceOfRay& radiance, const std::string& layer) {
         for (int y = 0; y < frame.image.height; ++y)
             for (int x = 0; x < frame.image.width; ++x)
                 wanted.emplace_back(radiance(scene.shot.camera.eye, camera.ray(x + 0.5, y + 0.5).direction));
-        return against(frame, wanted, layer, method);
+        return against(scene, frame, wanted, layer, method);
     };
 }
 
@@ -133,7 +149,7 @@ Measure same_picture_as(const std::function<Scene()>& other) {
         Scene twin = other();
         twin.shot.tracing = scene.shot.tracing;
         const RenderedFrame wanted = render(twin, method);
-        Measured m = against(frame, colours_of(wanted.image, ""), "", method);
+        Measured m = against(scene, frame, colours_of(wanted.image, ""), "", method);
         m.noise *= std::sqrt(2.0);
         return m;
     };
