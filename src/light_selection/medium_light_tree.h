@@ -16,8 +16,8 @@ struct MediumLightBounds {
     dvec3 low{0.0}, high{0.0};
     double scattered = 0.0;
     double extinction = 0.0;  // mean around the lights, by power [1/m]
-    dvec3 heading{
-        0.0};  // power-weighted mean of the lights' directions; its length is between 0 (all directions) and 1
+    // Power-weighted mean of the lights' directions; its length is between 0 (all directions) and 1.
+    dvec3 heading{0.0};
 };
 // The boxes of all lights.
 template <class Lights>

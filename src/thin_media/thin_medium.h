@@ -37,9 +37,8 @@ public:
 
     // Bricks that contain no dense smoke and have none around them, and are far from the camera.
     const std::vector<std::uint32_t>& even_bricks() const { return even_; }
-    const HomogeneousBricks& homogeneous_bricks() const {
-        return homogeneous_bricks_;
-    }  // the same, whatever the distance from the camera
+    // The same bricks, whatever the distance from the camera.
+    const HomogeneousBricks& homogeneous_bricks() const { return homogeneous_bricks_; }
 
     // Light that arrives at thin nodes from the lights for exterior receivers; as gather_at_nodes(), unsharpened.
     // `bottom`: bottom_level() of the field; `of_thin`: the lights of even bricks if they are separate, else null.
