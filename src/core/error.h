@@ -6,7 +6,7 @@
 
 namespace brisance {
 
-// Process exit codes, after sysexits. They are part of the command line's contract (README).
+// Process exit codes, after sysexits. They are part of the command line's contract (docs/command_line.md).
 enum class ExitCode : int {
     Success = 0,
     RenderFailed = 1,

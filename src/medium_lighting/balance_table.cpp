@@ -2,14 +2,10 @@
 
 namespace brisance {
 
-nlohmann::ordered_json balance_row(const BounceBalance& b, const std::string& order) {
-    return {{"order", order},
-            {"emitted", b.emitted},
-            {"collided", b.collided},
-            {"escaped", b.escaped()},
-            {"escape_standard_error", b.expected_error},
-            {"scale", b.scale},
-            {"corrected", b.corrected()}};
+nlohmann::ordered_json balance_row(const BounceBalance& b, const std::string& orders) {
+    return {{"orders", orders}, {"emitted", b.emitted}, {"collided", b.collided},
+            {"scale", b.scale}, {"escaped", b.escaped}, {"escape_standard_error", b.escaped_error},
+            {"sum", b.sum()}};
 }
 
 }  // namespace brisance

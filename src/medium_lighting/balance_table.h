@@ -1,14 +1,14 @@
-// The energy balance of one flight as a row of the frame's statistics.
+// The energy balance of flights as a row of the frame's statistics.
 #pragma once
 
 #include <string>
 
-#include "scattering/multiple_scattering.h"
+#include "scattering/bounce_balance.h"
 #include "statistics/statistics.h"
 
 namespace brisance {
 
-// `order`: how often the light had scattered before, or a word for it.
-nlohmann::ordered_json balance_row(const BounceBalance& balance, const std::string& order);
+// `orders`: how often the light had scattered before, "1-12" for several flights together, or a word for it.
+nlohmann::ordered_json balance_row(const BounceBalance& balance, const std::string& orders);
 
 }  // namespace brisance

@@ -6,6 +6,7 @@
 #include "medium/medium.h"
 #include "medium_lighting/stages/specular_photons.h"
 #include "medium_lighting/stages/virtual_lights_as_points.h"
+#include "scattering/settings.h"
 
 namespace brisance {
 

@@ -1,4 +1,4 @@
-// The energy balance of a bounce: what is emitted either collides or escapes.
+// Estimates for the energy balance of a flight: what is emitted either collides or escapes.
 #pragma once
 
 #include <span>
@@ -34,8 +34,14 @@ EscapeEstimate estimate_escape(const ExtinctionPyramid& pyramid, const std::vect
                                std::span<const float> directional, const std::vector<float>& likelihood,
                                std::size_t rays);
 
-// Power absorbed and scattered, over 4 pi: the exact integral of extinction * fluence of the two interpolated fields.
-dvec3 collided(const Medium& medium, const std::vector<Rgb>& fluence);
+// Radiant intensity of a node's light in a direction of local space [W/sr]. `directional`: 24 per node, or none.
+dvec3 directional_intensity(const std::vector<Rgb>& intensity, std::span<const float> directional, std::size_t node,
+                            const vec3& direction);
+
+// Power that collides, is absorbed or scattered, over 4 pi [W/sr]: the exact integral of extinction * fluence of the
+// two interpolated fields. And the part of it that is absorbed: the same with (1 - albedo) * fluence.
+dvec3 collided_power(const Medium& medium, const std::vector<Rgb>& fluence);
+dvec3 absorbed_power(const Medium& medium, std::vector<Rgb> fluence);
 
 // Collision probability over all directions and over what each vertex stands for: `directions` stratified rays per
 // vertex (of the lattice 2^level coarser than the medium's), each from a node under its hat picked by extinction.

@@ -195,17 +195,17 @@ void CoarseOperator::balance_nodes(const ExtinctionPyramid& fine) {
     for (std::size_t k = 0; k < nodes.size(); ++k)
         std::copy_n(&collision[k * collision_numbers_], collision_numbers_, &collision_[nodes[k] * collision_numbers_]);
 
-    // D K D (unit source) = 4 pi collision, by the symmetric fixed point D <- D sqrt(wanted / found).
+    // D K D (unit source) = 4 pi collision, by the symmetric fixed point D <- D sqrt(expected / gathered).
     std::vector<LevelCost> costs;
     Progress silent;
     ScatteredLight unit;
     unit.intensity = unit_;
     for (int sweep = 0; sweep < kBalanceSweeps; ++sweep) {
-        const Gathered found = gather(unit, costs, silent);
+        const Gathered gathered = gather(unit, costs, silent);
         for (std::size_t i : nodes) {
-            const float wanted = 4.0f * kPi * collision_[i * collision_numbers_];
-            if (found.fluence[i] > 0.0f && wanted > 0.0f)
-                factor_[i] = std::clamp(factor_[i] * std::sqrt(wanted / found.fluence[i]), 0.2f, 5.0f);
+            const float expected = 4.0f * kPi * collision_[i * collision_numbers_];
+            if (gathered.fluence[i] > 0.0f && expected > 0.0f)
+                factor_[i] = std::clamp(factor_[i] * std::sqrt(expected / gathered.fluence[i]), 0.2f, 5.0f);
         }
     }
 }
@@ -261,23 +261,19 @@ dvec3 CoarseOperator::expected_collisions(const ScatteredLight& lights) const {
     return sum;
 }
 
-ScatteredLight CoarseOperator::bounce(const ScatteredLight& lights, BounceBalance& balance,
-                                      std::vector<LevelCost>& costs, Progress& progress) {
+ScatteredLight CoarseOperator::bounce(const ScatteredLight& lights, FlightPower& flight, std::vector<LevelCost>& costs,
+                                      Progress& progress) {
     Gathered arriving = gather(lights, costs, progress);
     prepare_interpolation(medium_.lattice, mask_, arriving);
-    const dvec3 emitted = total(lights.intensity);
-    const dvec3 wanted = collision_.empty() ? dvec3(0.0) : expected_collisions(lights);
-    const dvec3 hit = collided(medium_, fluence_at_nodes(arriving, mask_));
-    const double y = luminance(Rgb(emitted));
-    balance.collided = luminance(Rgb(hit)) / y;
-    balance.expected = luminance(Rgb(wanted)) / y;
+    flight.gathered = collided_power(medium_, fluence_at_nodes(arriving, mask_));
     if (lighting_.energy_balance) {
+        const dvec3 expected = expected_collisions(lights);
         Rgb scale(1.0f);
         for (int c = 0; c < 3; ++c)
-            if (hit[c] > 0.0)
-                scale[c] = static_cast<float>(wanted[c] / hit[c]);
-        balance.scale = balance.collided > 0.0 ? balance.expected / balance.collided : 1.0;
+            if (flight.gathered[c] > 0.0)
+                scale[c] = static_cast<float>(expected[c] / flight.gathered[c]);
         arriving.scale(scale);
+        flight.absorbed = absorbed_power(medium_, fluence_at_nodes(arriving, mask_));
     }
     ScatteredLight next = scattered_light(medium_, arriving, mask_);
     next.sharpen(medium_.lattice);

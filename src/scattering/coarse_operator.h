@@ -8,8 +8,6 @@
 
 namespace brisance {
 
-struct BounceBalance;
-
 // Light leaving the nodes of a lattice after a scattering.
 struct ScatteredLight {
     std::vector<Rgb> intensity;                                // mean over directions [W/sr]
@@ -23,6 +21,12 @@ struct ScatteredLight {
 // and of its higher moments times the phase function's. Only nodes with `mask` count.
 ScatteredLight scattered_light(const Medium& medium, const Gathered& arriving, const std::vector<std::uint8_t>& mask);
 
+// Where the power of one flight went, over 4 pi [W/sr].
+struct FlightPower {
+    dvec3 gathered{0.0};  // collisions as gathered, before they were scaled
+    dvec3 absorbed{0.0};  // afterwards
+};
+
 class CoarseOperator {
 public:
     CoarseOperator(const ExtinctionPyramid& fine, int level, const LightingSettings& lighting, float alpha);
@@ -33,8 +37,8 @@ public:
     // Lights of the fine lattice splatted to the coarse nodes.
     ScatteredLight restricted(const ScatteredLight& fine, const BrickLattice& fine_lattice) const;
 
-    // One flight and one scattering. Fills the balance; appends level costs when `costs` is empty.
-    ScatteredLight bounce(const ScatteredLight& lights, BounceBalance& balance, std::vector<LevelCost>& costs,
+    // One flight and one scattering. Appends level costs when `costs` is empty.
+    ScatteredLight bounce(const ScatteredLight& lights, FlightPower& flight, std::vector<LevelCost>& costs,
                           Progress& progress);
 
     // Scattered light of the coarse nodes as fine lights: the source function is interpolated, the fine extinction

@@ -15,17 +15,9 @@ namespace brisance {
 
 namespace {
 
-constexpr std::size_t kCollisionRays = std::size_t{1} << 18;
-constexpr double kGatherError = 0.03;  // of a gather's collisions, typically
+constexpr std::size_t kSeriesEscapeRays = std::size_t{1} << 16;
 constexpr int kMostBounces = 96;
 constexpr double kDark = 1e-6;  // of the power scattered once: bounces below it are left to the tail
-
-// How far the rays are right where they and a gather differ by `difference`, relative: a gather errs by some percent,
-// or by what noise does not explain.
-double trust_in_rays(double difference, double noise) {
-    const double error = std::max(kGatherError * kGatherError, difference * difference - 4.0 * noise * noise);
-    return error / (error + noise * noise);
-}
 
 double power(const std::vector<Rgb>& lights) {
     return luminance(Rgb(total(lights)));
@@ -113,20 +105,19 @@ private:
 // the extrapolated tail last.
 template <class Take>
 void run_series(CoarseOperator& op, const ScatteredLight& first, const ScatteringSettings& settings,
-                ScatteringCosts& costs, Progress& progress, const Take& take) {
+                SeriesBalance& balance, ScatteringCosts& costs, Progress& progress, const Take& take) {
     const bool endless = settings.bounces < 0;
     const int wanted = endless ? kMostBounces : settings.bounces - 2;
     const double start = power(first.intensity);
     ScatteredLight lights = first;
     SeriesTail tail(first);
     for (double left = start; costs.bounces < wanted && left > (endless ? kDark * start : 0.0);) {
-        BounceBalance balance;
-        balance.order = costs.bounces + 1;
-        balance.emitted = left / start;
-        lights = op.bounce(lights, balance, costs.levels, progress);
+        FlightPower flight;
+        ScatteredLight scattered = op.bounce(lights, flight, costs.levels, progress);
+        balance.add(lights, flight, scattered);
+        lights = std::move(scattered);
         left = power(lights.intensity);
         tail.add(lights);
-        costs.balances.push_back(balance);
         take(lights, Rgb(1.0f));
         ++costs.bounces;
         if (!endless)
@@ -168,30 +159,6 @@ void prepare_interpolation(const BrickLattice& lattice, const std::vector<std::u
             v = std::max(v, 0.0f);
 }
 
-Rgb close_balance(const ExtinctionPyramid& pyramid, const ScatteredLight& lights, const std::vector<Rgb>& fluence,
-                  BounceBalance& balance) {
-    const CollisionEstimate marched =
-        estimate_collisions(pyramid, lights.intensity, lights.directional, kCollisionRays);
-    const dvec3 emitted = total(lights.intensity);
-    const dvec3 hit = collided(pyramid.medium(), fluence);
-    const double y = luminance(Rgb(emitted));
-    if (!(y > 0.0))
-        return Rgb(1.0f);
-    balance.collided = luminance(Rgb(hit)) / y;
-    balance.expected = luminance(Rgb(marched.fraction * emitted)) / y;
-    balance.expected_error = marched.standard_error;
-    if (!(balance.collided > 0.0) || !(balance.expected > 0.0))
-        return Rgb(1.0f);
-    const double noise = balance.expected_error / balance.expected;
-    const double trust = trust_in_rays(balance.collided / balance.expected - 1.0, noise);
-    Rgb scale(1.0f);
-    for (int c = 0; c < 3; ++c)
-        if (hit[c] > 0.0)
-            scale[c] = static_cast<float>(1.0 + trust * (marched.fraction[c] * emitted[c] / hit[c] - 1.0));
-    balance.scale = luminance(Rgb(dvec3(scale) * hit)) / luminance(Rgb(hit));
-    return scale;
-}
-
 std::vector<ScatteredLight> solve_scattering(const ScatteringInput& input, ScatteringCosts& costs, Progress& progress) {
     const ExtinctionPyramid& pyramid = *input.pyramid;
     const Medium& medium = pyramid.medium();
@@ -210,16 +177,20 @@ std::vector<ScatteredLight> solve_scattering(const ScatteringInput& input, Scatt
     const ScatteredLight first = op.restricted(orders[0], medium.lattice);
     ScatteredLight sum = first;
     sum.add(first, Rgb(-1.0f));
-    run_series(op, first, input.settings, costs, progress, [&](const ScatteredLight& light, const Rgb& factor) {
-        if (!input.separate_orders)
-            return sum.add(light, factor);
-        ScatteredLight scaled = light;
-        scaled.add(light, factor - 1.0f);
-        orders.push_back(op.spread_to_fine(scaled, medium));
-    });
+    SeriesBalance balance;
+    run_series(op, first, input.settings, balance, costs, progress,
+               [&](const ScatteredLight& light, const Rgb& factor) {
+                   if (!input.separate_orders)
+                       return sum.add(light, factor);
+                   ScatteredLight scaled = light;
+                   scaled.add(light, factor - 1.0f);
+                   orders.push_back(op.spread_to_fine(scaled, medium));
+               });
     if (!input.separate_orders)
         orders[0].add(op.spread_to_fine(sum, medium), Rgb(1.0f));
     costs.series_seconds = watch.seconds();
+    if (input.lighting.energy_balance && !balance.empty())
+        costs.balance = balance.measure(pyramid, costs.lattice_level, kSeriesEscapeRays);
     costs.bytes = op.bytes();
     return orders;
 }

@@ -12,45 +12,37 @@
 // Balance. A gather errs by some percent, and bounces multiply it. What is emitted collides or escapes, and escape
 // probabilities are cheap to march exactly; by reciprocity the same number says how bright an isothermal medium is. So
 // K becomes D K D with a positive factor per node, such that a unit source function gives 4 pi (1 - escape) at every
-// node: energy is then conserved for any distribution of light, and Kirchhoff's law holds. What remains is measured
-// against independent escape rays bounce by bounce, reported, and scaled out.
+// node: energy is then conserved for any distribution of light, and Kirchhoff's law holds. What remains of each
+// bounce's error against that table is scaled out. Rays that share nothing with the table measure the series as a whole
+// (bounce_balance.h).
 //
 // Anisotropic phase functions: radiance arriving is kept as moments up to degree 2 (sh.h), lights are directional, and
 // the last scattering uses the phase function itself.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "gathering/gather.h"
 #include "scattering/balance.h"
+#include "scattering/bounce_balance.h"
 #include "scattering/coarse_operator.h"
+#include "scattering/settings.h"
 
 namespace brisance {
-
-// One bounce's energy, as fractions of the power it set out with (luminance).
-struct BounceBalance {
-    int order = 0;                // scatterings before this flight: 0 is the fire's own light
-    double emitted = 0.0;         // power / 4 pi that set out [W/sr], relative to the fire's
-    double collided = 0.0;        // as gathered
-    double expected = 0.0;        // as marched: what does not escape
-    double expected_error = 0.0;  // standard error of `expected`
-    double scale = 1.0;           // applied: expected / collided, as far as `expected` is known
-    double escaped() const { return 1.0 - expected; }
-    double corrected() const { return collided * scale + escaped(); }  // 1 after correction
-};
 
 struct ScatteringCosts {
     int lattice_level = 0;
     std::size_t coarse_nodes = 0;
     double operator_seconds = 0.0;  // escape probabilities and balance factors
     double series_seconds = 0.0;
-    std::vector<LevelCost> levels;  // of the first bounce
-    std::vector<BounceBalance> balances;
-    int bounces = 0;          // computed one by one
-    double tail_ratio = 0.0;  // of successive bounces' power at the end, the largest of the colours'
-    double tail_share = 0.0;  // of the scattered power that the extrapolated tail makes up
-    double remainder = 0.0;   // estimated share still missing
+    std::vector<LevelCost> levels;         // of the first bounce
+    std::optional<BounceBalance> balance;  // of all flights together; none: not measured
+    int bounces = 0;                       // computed one by one
+    double tail_ratio = 0.0;               // of successive bounces' power at the end, the largest of the colours'
+    double tail_share = 0.0;               // of the scattered power that the extrapolated tail makes up
+    double remainder = 0.0;                // estimated share still missing
     std::uint64_t bytes = 0;
 };
 
@@ -76,11 +68,6 @@ struct HierarchyLights {
                      ShadowMapCache* cache) const;
 };
 HierarchyLights build_hierarchy(const Medium& medium, ScatteredLight light, int levels);
-
-// The factor that closes a bounce's balance, from a gather at all nodes with extinction; fills `balance`. Where rays
-// hardly ever meet the medium they know its collisions worse than the gather does, and are believed the less.
-Rgb close_balance(const ExtinctionPyramid& pyramid, const ScatteredLight& lights, const std::vector<Rgb>& fluence,
-                  BounceBalance& balance);
 
 // Node fluence as colour triples, 0 where `mask` is 0.
 std::vector<Rgb> fluence_at_nodes(const Gathered& gathered, const std::vector<std::uint8_t>& mask);

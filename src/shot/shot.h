@@ -10,6 +10,7 @@
 #include "film/settings.h"
 #include "gathering/settings.h"
 #include "medium/settings.h"
+#include "scattering/settings.h"
 #include "scattering_methods/methods.h"
 #include "scene/settings.h"
 #include "tracking/settings.h"

@@ -43,13 +43,15 @@ void list_levels(std::ostringstream& out, const nlohmann::ordered_json& levels) 
     }
 }
 
+// Everything in a row is measured: collisions are gathered, and rays with no part in the scale find what escapes.
 void list_balances(std::ostringstream& out, const nlohmann::ordered_json& balances) {
-    out << "      energy: order   emitted   collided + escaped (raw)   scaled by   after\n" << std::setprecision(4);
+    out << "      energy: orders   emitted   collided x scale   + escaped (+- standard error)   = sum\n"
+        << std::setprecision(4);
     for (const auto& b : balances)
-        out << "              " << std::setw(5) << b["order"].get<std::string>() << std::setw(10)
-            << b["emitted"].get<double>() << "   " << b["collided"].get<double>() << " + " << b["escaped"].get<double>()
-            << " = " << b["collided"].get<double>() + b["escaped"].get<double>() << "   " << std::setw(11)
-            << b["scale"].get<double>() << std::setw(9) << b["corrected"].get<double>() << "\n";
+        out << "            " << std::setw(8) << b["orders"].get<std::string>() << std::setw(10)
+            << b["emitted"].get<double>() << std::setw(11) << b["collided"].get<double>() << " x "
+            << b["scale"].get<double>() << "   + " << b["escaped"].get<double>() << " (+- "
+            << b["escape_standard_error"].get<double>() << ")   = " << b["sum"].get<double>() << "\n";
     out << std::setprecision(2);
 }
 

@@ -12,7 +12,7 @@ constexpr double kUnseenDepth = 64.0;
 }  // namespace
 
 std::optional<Collision> RayProbe::collision_at(double t) const {
-    const dvec3 nodes = way_.origin + t * way_.direction;
+    const dvec3 nodes = path_.origin + t * path_.direction;
     const dvec3 brick = glm::floor(nodes / double(BrickLattice::kSize));
     const dvec3 bound = dvec3(field_->bricks().brick_extent());
     for (int a = 0; a < 3; ++a)

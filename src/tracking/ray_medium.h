@@ -17,7 +17,7 @@ struct Coefficients {
 // Coefficients of the medium at points of one ray.
 class RayProbe {
 public:
-    RayProbe(const TrackingField& field, const Ray& ray) : field_(&field), way_(field.enter(ray)) {}
+    RayProbe(const TrackingField& field, const Ray& ray) : field_(&field), path_(field.enter(ray)) {}
     // The coefficients at a distance [m]; zero scattering outside the medium.
     Coefficients at(double t) const;
     // The point as a collision; none outside the medium.
@@ -25,7 +25,7 @@ public:
 
 private:
     const TrackingField* field_;
-    LatticeRay way_;
+    LatticeRay path_;
 };
 
 // A ray of the camera with all cells on it. Its transmittance is known everywhere, and collisions of free flights can

@@ -1,4 +1,4 @@
-// Pictures whose MM and SM are owned by ray lights, by point lights, or by particles.
+// Pictures whose MM and SM are owned by a scattering method of the table.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -160,7 +160,7 @@ TEST(Balance, CollisionsAreTheIntegralOfExtinctionTimesFluence) {
     const Lit lit(make_medium(glowing_ball(16, 3.0f)));
     const std::vector<Rgb> fluence(lit.medium.lattice.node_count(), Rgb(4.0f, 2.0f, 0.0f));
     const double pi = 3.14159265358979;
-    const dvec3 sum = collided(lit.medium, fluence);
+    const dvec3 sum = collided_power(lit.medium, fluence);
     EXPECT_NEAR(sum.x / (3.0 * 4.0 / 3.0 * pi * 4.0 / (4.0 * pi)), 1.0, 2e-3);
     EXPECT_NEAR(sum.y / sum.x, 0.5, 1e-5);
     EXPECT_EQ(sum.z, 0.0);

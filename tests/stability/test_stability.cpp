@@ -17,35 +17,72 @@ namespace {
 
 struct Run {
     Case what;
-    RenderMethod method;
+    Method method;
 };
 
 void PrintTo(const Run& run, std::ostream* out) {
-    *out << run.what.name << ", " << method_name(run.method);
+    *out << run.what.name << ", " << run.method.name();
 }
 
-std::vector<Run> quick_runs() {
+// Of the quick cases: by one picture each, or by methods that several pictures judge.
+std::vector<Run> quick_runs(bool several_pictures) {
     std::vector<Run> runs;
-    for (const Case& c : all_cases())
-        for (const RenderMethod method : {RenderMethod::LightingGrid, RenderMethod::Path})
-            if (c.quick && c.tolerance.of(method))
+    for (const Case& c : all_cases()) {
+        if (!c.quick)
+            continue;
+        const Scene scene = c.scene();
+        for (const Method& method : all_methods())
+            if (method.shares_noise() == several_pictures && c.tolerance_of(method) && owns_a_cell(method, scene))
                 runs.push_back({c, method});
+    }
     return runs;
 }
 
-class QuickCases : public ::testing::TestWithParam<Run> {};
-
-TEST_P(QuickCases, AreWithinTheirTolerance) {
-    const Result result = run_case(GetParam().what, GetParam().method);
-    EXPECT_TRUE(result.passed()) << table_head() << "\n" << table_line(result);
-}
-
-INSTANTIATE_TEST_SUITE_P(Stability, QuickCases, ::testing::ValuesIn(quick_runs()), [](const auto& info) {
-    std::string name = info.param.what.name + "_" + method_name(info.param.method);
+std::string name_of_run(const ::testing::TestParamInfo<Run>& info) {
+    std::string name = info.param.what.name + "_" + info.param.method.name();
     std::replace_if(
         name.begin(), name.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
     return name;
-});
+}
+
+class QuickCases : public ::testing::TestWithParam<Run> {};
+class ExpensiveQuickCases : public QuickCases {};
+
+void expect_pass(const Run& run) {
+    const std::optional<Result> result = run_case(run.what, run.method);
+    ASSERT_TRUE(result) << "the method owns no cell of the case";
+    EXPECT_TRUE(result->passed()) << table_head() << "\n" << table_line(*result);
+}
+
+TEST_P(QuickCases, AreWithinTheirTolerance) {
+    expect_pass(GetParam());
+}
+
+TEST_P(ExpensiveQuickCases, AreWithinTheirTolerance) {
+    expect_pass(GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(Stability, QuickCases, ::testing::ValuesIn(quick_runs(false)), name_of_run);
+INSTANTIATE_TEST_SUITE_P(Stability, ExpensiveQuickCases, ::testing::ValuesIn(quick_runs(true)), name_of_run);
+
+TEST(StabilityCases, AreRenderedByEveryMethodThatTheShotKnows) {
+    std::set<std::string> names;
+    for (const Method& method : all_methods())
+        names.insert(method.name());
+    // The lighting grid and the path tracer besides.
+    EXPECT_EQ(names.size(), 2u + scattering_methods().size());
+}
+
+TEST(StabilityCases, LimitsNameMethodsAndAreNoSmallerThanTheTolerance) {
+    for (const Case& c : all_cases())
+        for (const auto& [name, limit] : c.tolerance.limits) {
+            EXPECT_FALSE(limit.reason.empty()) << c.name;
+            EXPECT_TRUE(std::any_of(all_methods().begin(), all_methods().end(),
+                                    [&, wanted = name](const Method& method) { return method.name() == wanted; }))
+                << c.name << ": " << name;
+            EXPECT_GT(limit.tolerance, c.tolerance.lighting_grid.value_or(0.0)) << c.name << ": " << name;
+        }
+}
 
 TEST(StabilityCases, HaveNamesOfTheirOwn) {
     std::set<std::string> names;

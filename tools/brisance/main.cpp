@@ -240,8 +240,8 @@ int run(int argc, char** argv) {
     StabilityOptions extreme;
     CLI::App* const stability =
         app.add_subcommand("stability", "Stiff and extreme cases through every method: a table");
-    stability->add_option("--methods", extreme.methods, "lighting_grid, path")
-        ->check(CLI::IsMember({"lighting_grid", "path"}))
+    stability->add_option("--methods", extreme.methods, fmt::format("{}", fmt::join(extreme.methods, ", ")))
+        ->check(CLI::IsMember(stability_methods()))
         ->delimiter(',');
     stability->add_option("--case", extreme.part, "Only cases whose name has this in it");
     stability->add_flag("--markdown", extreme.markdown, "As a table for a document");

@@ -18,6 +18,13 @@ void print(const std::string& text, std::FILE* to = stdout) {
 
 }  // namespace
 
+std::vector<std::string> stability_methods() {
+    std::vector<std::string> names;
+    for (const stability::Method& method : stability::all_methods())
+        names.push_back(method.name());
+    return names;
+}
+
 int run_stability(const StabilityOptions& options) {
     std::vector<stability::Case> cases = stability::all_cases();
     std::erase_if(cases, [&](const auto& c) { return c.name.find(options.part) == std::string::npos; });
@@ -28,12 +35,14 @@ int run_stability(const StabilityOptions& options) {
     print(stability::table_head(), lines);
     std::vector<stability::Result> results;
     for (const stability::Case& c : cases)
-        for (const RenderMethod method : {RenderMethod::LightingGrid, RenderMethod::Path}) {
-            const std::string name = stability::method_name(method);
-            if (!c.tolerance.of(method) || std::ranges::find(options.methods, name) == options.methods.end())
+        for (const stability::Method& method : stability::all_methods()) {
+            if (!c.tolerance_of(method) || std::ranges::find(options.methods, method.name()) == options.methods.end())
                 continue;
-            results.push_back(stability::run_case(c, method));
-            print(stability::table_line(results.back()), lines);
+            const std::optional<stability::Result> result = stability::run_case(c, method);
+            if (!result)
+                continue;
+            results.push_back(*result);
+            print(stability::table_line(*result), lines);
         }
     if (options.markdown)
         print(stability::markdown_table(cases, results));

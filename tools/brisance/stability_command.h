@@ -6,8 +6,11 @@
 
 namespace brisance {
 
+// The names of all methods that the cases know.
+std::vector<std::string> stability_methods();
+
 struct StabilityOptions {
-    std::vector<std::string> methods = {"lighting_grid", "path"};
+    std::vector<std::string> methods = stability_methods();
     std::string part;  // of a case's name; empty: all
     bool markdown = false;
     bool json = false;

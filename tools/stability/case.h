@@ -2,19 +2,25 @@
 #pragma once
 
 #include <functional>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "emitters/surroundings.h"
 #include "media/node_media.h"
 #include "render/render_frame.h"
+#include "stability/methods.h"
 
 namespace brisance::stability {
 
-// A medium, and a shot whose camera looks at it. The method is filled in by whoever renders.
+// A medium, the surfaces and lamps around it if any, and a shot whose camera looks at them. The method is filled in by
+// whoever renders.
 struct Scene {
     Medium medium;
     Shot shot;
+    std::shared_ptr<const Surroundings> surroundings = nullptr;
 };
 
 // How far a picture is from what it ought to be, both as parts of the latter.
@@ -23,15 +29,20 @@ struct Measured {
     double noise = 0.0;  // standard error of `error`, where the method or the reference is random
 };
 
-using Render = std::function<RenderedFrame(const Scene&, RenderMethod)>;
-using Measure = std::function<Measured(const Scene&, const RenderedFrame&, RenderMethod, const Render&)>;
+// Of a method that shares its noise, `image` is the mean of the pictures in `halves`, each by lights of its own.
+using Render = std::function<RenderedFrame(const Scene&, const Method&)>;
+using Measure = std::function<Measured(const Scene&, const RenderedFrame&, const Method&, const Render&)>;
+
+// A method that a case is beyond: how wrong it may be there at most, and why.
+struct Limit {
+    double tolerance = 0.0;
+    std::string reason;
+};
 
 struct Tolerance {
     std::optional<double> lighting_grid, path;  // empty: the method does not render this case
     std::string reason;                         // why no smaller
-    const std::optional<double>& of(RenderMethod method) const {
-        return method == RenderMethod::LightingGrid ? lighting_grid : path;
-    }
+    std::map<std::string, Limit> limits = {};   // by the method's name, in place of those above
 };
 
 struct Case {
@@ -43,10 +54,20 @@ struct Case {
     bool quick = false;  // of the subset that every test run renders
 
     std::string family() const { return name.substr(0, name.find('/')); }
+
+    // Empty: the method does not render this case. Of methods that own MM and SM, what they leave of the picture is the
+    // grid's, so that they are as wrong as it is where they are not worse.
+    std::optional<double> tolerance_of(const Method& method) const;
+    const Limit* limit_of(const Method& method) const;
 };
 
-// Measures. Pictures of the lighting grid are judged by the relative L2 distance over all pixels, those of the path
-// tracer by the relative error of their mean, since noise is no error: its standard error comes from the two halves.
+// Whether the method has a part in the case: the lighting grid and the path tracer always, others where they own a
+// cell.
+bool owns_a_cell(const Method& method, const Scene& scene);
+
+// Measures. Pictures of the lighting grid are judged by the relative L2 distance over all pixels, those of the others
+// by the relative error of their mean, since noise is no error: its standard error comes from the path tracer's two
+// halves, or from pictures by other lights.
 
 // All pixels of `layer` ought to have this radiance.
 Measure every_pixel_is(const Rgb& radiance, const std::string& layer = "");
@@ -78,6 +99,7 @@ std::vector<Case> lattice_cases();
 std::vector<Case> shadow_cases();
 std::vector<Case> camera_cases();
 std::vector<Case> light_cases();
+std::vector<Case> surface_cases();
 
 std::vector<Case> all_cases();
 

@@ -15,7 +15,7 @@ Tolerance of_the_ball() {
 }
 
 Measure middle(double radius, double albedo, double emission) {
-    return [=](const Scene& scene, const RenderedFrame& frame, RenderMethod method, const Render& render) {
+    return [=](const Scene& scene, const RenderedFrame& frame, const Method& method, const Render& render) {
         const double truth = ScatteringBall(radius, albedo, emission).radiance(0.0);
         return every_pixel_is(Rgb(static_cast<float>(truth)))(scene, frame, method, render);
     };
@@ -80,7 +80,7 @@ Case coloured() {
         r.settings.smoke.albedo = Rgb(albedo);
         return scene_of(r, camera_on_centre(8), 1024);
     };
-    c.measure = [=](const Scene& scene, const RenderedFrame& frame, RenderMethod method, const Render& render) {
+    c.measure = [=](const Scene& scene, const RenderedFrame& frame, const Method& method, const Render& render) {
         Rgb truth;
         for (int k = 0; k < 3; ++k)
             truth[k] = static_cast<float>(ScatteringBall(radius, albedo[k], 1.0 - albedo[k]).radiance(0.0));

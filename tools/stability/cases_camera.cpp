@@ -60,7 +60,7 @@ Case in_ball(const std::string& name, double radius, double albedo) {
         CameraSettings camera = camera_at(dvec3(0.0), {0.3, 1.0, 0.2}, 1.0, 8);
         return scene_of(isothermal_ball(12, radius, albedo), camera, 512);
     };
-    c.measure = [=](const Scene& scene, const RenderedFrame& frame, RenderMethod method, const Render& render) {
+    c.measure = [=](const Scene& scene, const RenderedFrame& frame, const Method& method, const Render& render) {
         const double truth = ScatteringBall(radius, albedo, 1.0 - albedo).radiance_from_centre();
         return every_pixel_is(Rgb(static_cast<float>(truth)))(scene, frame, method, render);
     };

@@ -45,7 +45,7 @@ Case scattering(int decade) {
         r.settings.smoke.albedo = Rgb(static_cast<float>(kAlbedo));
         return scene_of(r, camera_on_slab(12, 0.1), 1024);
     };
-    c.measure = [=](const Scene& scene, const RenderedFrame& frame, RenderMethod method, const Render& render) {
+    c.measure = [=](const Scene& scene, const RenderedFrame& frame, const Method& method, const Render& render) {
         const double truth =
             thin ? ScatteringBall(radius, kAlbedo, 1.0 - kAlbedo).radiance(0.0) : isothermal_half_space(kAlbedo, 1.0);
         return every_pixel_is(Rgb(static_cast<float>(truth)))(scene, frame, method, render);

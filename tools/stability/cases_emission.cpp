@@ -28,7 +28,7 @@ Case black_body(double kelvin) {
         return scene_of(r, camera_on_slab(kNodes, kEdge), 16);
     };
     // The mean over pixels and channels, weighted as luminance is, so that colour does not matter.
-    c.measure = [=](const Scene&, const RenderedFrame& frame, RenderMethod, const Render&) {
+    c.measure = [=](const Scene&, const RenderedFrame& frame, const Method&, const Render&) {
         const std::vector<float>& p = frame.image.layer("").pixels;
         double found = 0.0;
         for (std::size_t i = 0; i < p.size(); i += 4)

@@ -40,7 +40,7 @@ Case scattered() {
         scene.shot.scattering.bounces = 1;
         return scene;
     };
-    c.measure = [](const Scene& scene, const RenderedFrame& frame, RenderMethod method, const Render& render) {
+    c.measure = [](const Scene& scene, const RenderedFrame& frame, const Method& method, const Render& render) {
         const double depth = 0.01 * 6 * 0.01, way = kMeanWay * kSide * 0.01;
         const double truth = one_minus_transmittance(depth) * way;
         return every_pixel_is(Rgb(static_cast<float>(truth)), "MV")(scene, frame, method, render);

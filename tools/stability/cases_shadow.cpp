@@ -91,7 +91,7 @@ Case scattered() {
         scene.shot.scattering.bounces = 1;
         return scene;
     };
-    c.measure = [](const Scene& scene, const RenderedFrame& frame, RenderMethod method, const Render& render) {
+    c.measure = [](const Scene& scene, const RenderedFrame& frame, const Method& method, const Render& render) {
         const auto along = [](double y) { return hat(y) * fluence(dvec3(0.0, y, kFire / 2)); };
         const double truth = 0.5 * thin * 1e4 * kEdge / (4.0 * kExactPi) * integrate(along, -1.0, 1.0, 20);
         return every_pixel_is(Rgb(static_cast<float>(truth)), "MV")(scene, frame, method, render);

@@ -34,8 +34,22 @@ double relative(double error, double wanted) {
     return wanted > 0.0 ? error / wanted : error;
 }
 
-// Standard error of the sum of a picture's pixels, from its two halves pixel by pixel.
-double noise_of_sum(const RenderedFrame& frame, const std::string& layer) {
+// Standard error of the sum of a picture's pixels, from the sums of the pictures that it is the mean of.
+double spread_of_sums(const std::vector<Image>& pictures, const std::string& layer) {
+    const double n = double(pictures.size());
+    dvec3 sum(0.0), square(0.0);
+    for (const Image& picture : pictures) {
+        const dvec3 one = sum_of(colours_of(picture, layer));
+        sum += one / n;
+        square += one * one / n;
+    }
+    return norm(glm::sqrt(glm::max(square - sum * sum, 0.0) / (n - 1.0)));
+}
+
+// The same; where pixels are independent, from two halves pixel by pixel.
+double noise_of_sum(const RenderedFrame& frame, const std::string& layer, const Method& method) {
+    if (method.shares_noise())
+        return spread_of_sums(frame.halves, layer);
     if (frame.halves.size() != 2)
         return 0.0;
     const std::vector<dvec3> a = colours_of(frame.halves[0], layer), b = colours_of(frame.halves[1], layer);
@@ -45,9 +59,10 @@ double noise_of_sum(const RenderedFrame& frame, const std::string& layer) {
     return norm(glm::sqrt(square));
 }
 
-Measured of_mean(const RenderedFrame& frame, const std::vector<dvec3>& wanted, const std::string& layer) {
+Measured of_mean(const RenderedFrame& frame, const std::vector<dvec3>& wanted, const std::string& layer,
+                 const Method& method) {
     const dvec3 found = sum_of(colours_of(frame.image, layer)), truth = sum_of(wanted);
-    return {relative(norm(found - truth), norm(truth)), relative(noise_of_sum(frame, layer), norm(truth))};
+    return {relative(norm(found - truth), norm(truth)), relative(noise_of_sum(frame, layer, method), norm(truth))};
 }
 
 Measured of_pixels(const std::vector<dvec3>& found, const std::vector<dvec3>& wanted) {
@@ -60,9 +75,8 @@ Measured of_pixels(const std::vector<dvec3>& found, const std::vector<dvec3>& wa
 }
 
 Measured against(const RenderedFrame& frame, const std::vector<dvec3>& wanted, const std::string& layer,
-                 RenderMethod method) {
-    return method == RenderMethod::Path ? of_mean(frame, wanted, layer)
-                                        : of_pixels(colours_of(frame.image, layer), wanted);
+                 const Method& method) {
+    return method.is_grid() ? of_pixels(colours_of(frame.image, layer), wanted) : of_mean(frame, wanted, layer, method);
 }
 
 // L2 distance to a reference, free of its noise: the product of the distances to two independent halves.
@@ -97,14 +111,14 @@ Scene by_other_estimators(const Scene& scene) {
 }  // namespace
 
 Measure every_pixel_is(const Rgb& radiance, const std::string& layer) {
-    return [=](const Scene&, const RenderedFrame& frame, RenderMethod method, const Render&) {
+    return [=](const Scene&, const RenderedFrame& frame, const Method& method, const Render&) {
         const std::size_t pixels = std::size_t(frame.image.width) * frame.image.height;
         return against(frame, std::vector<dvec3>(pixels, dvec3(radiance)), layer, method);
     };
 }
 
 Measure every_ray_is(const RadianceOfRay& radiance, const std::string& layer) {
-    return [=](const Scene& scene, const RenderedFrame& frame, RenderMethod method, const Render&) {
+    return [=](const Scene& scene, const RenderedFrame& frame, const Method& method, const Render&) {
         const Camera camera(scene.shot.camera, scene.medium);
         std::vector<dvec3> wanted;
         for (int y = 0; y < frame.image.height; ++y)
@@ -115,7 +129,7 @@ Measure every_ray_is(const RadianceOfRay& radiance, const std::string& layer) {
 }
 
 Measure same_picture_as(const std::function<Scene()>& other) {
-    return [=](const Scene& scene, const RenderedFrame& frame, RenderMethod method, const Render& render) {
+    return [=](const Scene& scene, const RenderedFrame& frame, const Method& method, const Render& render) {
         Scene twin = other();
         twin.shot.tracing = scene.shot.tracing;
         const RenderedFrame wanted = render(twin, method);
@@ -126,7 +140,7 @@ Measure same_picture_as(const std::function<Scene()>& other) {
 }
 
 Measure same_paths_as(const std::function<Scene()>& other) {
-    return [pictures = same_picture_as(other)](const Scene& scene, const RenderedFrame& frame, RenderMethod method,
+    return [pictures = same_picture_as(other)](const Scene& scene, const RenderedFrame& frame, const Method& method,
                                                const Render& render) {
         Measured m = pictures(scene, frame, method, render);
         m.noise = 0.0;
@@ -135,24 +149,25 @@ Measure same_paths_as(const std::function<Scene()>& other) {
 }
 
 Measure power_is(const std::function<double(const Scene&)>& power) {
-    return [=](const Scene& scene, const RenderedFrame& frame, RenderMethod, const Render&) {
+    return [=](const Scene& scene, const RenderedFrame& frame, const Method& method, const Render&) {
         const Camera camera(scene.shot.camera, scene.medium);
         const double side = camera.pixel_angle() * glm::length(scene.shot.camera.target - scene.shot.camera.eye);
         const double truth = power(scene), area = side * side;
         const double found = area * norm(sum_of(colours_of(frame.image, ""))) / 3.0;
-        return Measured{std::abs(found - truth) / truth, area * noise_of_sum(frame, "") / 3.0 / truth};
+        return Measured{std::abs(found - truth) / truth, area * noise_of_sum(frame, "", method) / 3.0 / truth};
     };
 }
 
 Measure like_the_reference(int samples) {
-    return [=](const Scene& scene, const RenderedFrame& frame, RenderMethod method, const Render& render) {
-        Scene reference = method == RenderMethod::Path ? by_other_estimators(scene) : scene;
+    return [=](const Scene& scene, const RenderedFrame& frame, const Method& method, const Render& render) {
+        const Method path;
+        Scene reference = method.is_path() ? by_other_estimators(scene) : scene;
         reference.shot.tracing.samples = samples;
-        const RenderedFrame wanted = render(reference, RenderMethod::Path);
-        if (method == RenderMethod::LightingGrid)
+        const RenderedFrame wanted = render(reference, path);
+        if (method.is_grid())
             return against_halves(colours_of(frame.image, ""), wanted);
-        Measured m = of_mean(frame, colours_of(wanted.image, ""), "");
-        m.noise = std::hypot(m.noise, of_mean(wanted, colours_of(wanted.image, ""), "").noise);
+        Measured m = of_mean(frame, colours_of(wanted.image, ""), "", method);
+        m.noise = std::hypot(m.noise, of_mean(wanted, colours_of(wanted.image, ""), "", path).noise);
         return m;
     };
 }

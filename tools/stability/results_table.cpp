@@ -26,6 +26,10 @@ std::string error_text(const Result& r) {
                : percent(r.measured.error);
 }
 
+const char* verdict(const Result& r) {
+    return !r.passed() ? "MISS" : r.limit ? "limit" : "pass";
+}
+
 // The first case of this name.
 const Case& case_of(const std::vector<Case>& cases, const std::string& name) {
     return *std::find_if(cases.begin(), cases.end(), [&](const Case& c) { return c.name == name; });
@@ -39,9 +43,8 @@ std::string table_head() {
 }
 
 std::string table_line(const Result& r) {
-    return fmt::format("{:38} {:14} {:7} {:>9} {:>17} {:>10}  {:5} {:6.2f}", r.name, method_name(r.method),
-                       r.finite ? "yes" : "NO", balance_text(r), error_text(r), percent(r.tolerance),
-                       r.passed() ? "pass" : "FAIL", r.seconds);
+    return fmt::format("{:38} {:14} {:7} {:>9} {:>17} {:>10}  {:5} {:6.2f}", r.name, r.method, r.finite ? "yes" : "NO",
+                       balance_text(r), error_text(r), percent(r.tolerance), verdict(r), r.seconds);
 }
 
 std::string markdown_table(const std::vector<Case>& cases, const std::vector<Result>& results) {
@@ -49,9 +52,9 @@ std::string markdown_table(const std::vector<Case>& cases, const std::vector<Res
         "| case | method | finite | energy | error | tolerance | | s |\n"
         "| --- | --- | --- | --- | --- | --- | --- | --- |\n";
     for (const Result& r : results)
-        text += fmt::format("| {} | `{}` | {} | {} | {} | {} | {} | {:.2f} |\n", r.name, method_name(r.method),
-                            r.finite ? "yes" : "no", balance_text(r), error_text(r), percent(r.tolerance),
-                            r.passed() ? "pass" : "**miss**", r.seconds);
+        text +=
+            fmt::format("| {} | `{}` | {} | {} | {} | {} | {} | {:.2f} |\n", r.name, r.method, r.finite ? "yes" : "no",
+                        balance_text(r), error_text(r), percent(r.tolerance), verdict(r), r.seconds);
     text += "\n| case | held against | tolerance, because |\n| --- | --- | --- |\n";
     std::string last;
     for (const Result& r : results)
@@ -59,6 +62,11 @@ std::string markdown_table(const std::vector<Case>& cases, const std::vector<Res
             const Case& c = case_of(cases, r.name);
             text += fmt::format("| {} | {} | {} |\n", c.name, c.truth, c.tolerance.reason);
         }
+    text += "\n| case | method | limit, because |\n| --- | --- | --- |\n";
+    for (const Result& r : results)
+        if (r.limit)
+            text += fmt::format("| {} | `{}` | {}: {} |\n", r.name, r.method, percent(r.tolerance),
+                                case_of(cases, r.name).tolerance.limits.at(r.method).reason);
     return text;
 }
 
@@ -66,12 +74,13 @@ std::string results_json(const std::vector<Case>& cases, const std::vector<Resul
     auto list = nlohmann::ordered_json::array();
     for (const Result& r : results) {
         nlohmann::ordered_json row = {{"case", r.name},
-                                      {"method", method_name(r.method)},
+                                      {"method", r.method},
                                       {"finite", r.finite},
                                       {"error", r.measured.error},
                                       {"noise", r.measured.noise},
                                       {"tolerance", r.tolerance},
                                       {"passed", r.passed()},
+                                      {"limit", r.limit},
                                       {"seconds", r.seconds},
                                       {"truth", case_of(cases, r.name).truth}};
         if (r.imbalance)

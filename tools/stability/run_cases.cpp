@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "core/stopwatch.h"
+#include "render/plan.h"
 
 namespace brisance::stability {
 
@@ -13,11 +14,35 @@ namespace {
 constexpr double kMostImbalance = 0.005;  // after scaling
 constexpr double kStandardErrors = 4.0;
 
-RenderedFrame rendered(const Scene& scene, RenderMethod method) {
+// Pictures of a method that shares its noise; their spread has three degrees of freedom.
+constexpr int kPictures = 4;
+
+RenderedFrame rendered_once(const Scene& scene, const Method& method, int seed) {
     Shot shot = scene.shot;
-    shot.method = method;
+    method.apply_to(shot, seed);
     Progress silent;
-    return render_medium(shot, scene.medium, silent);
+    return render_medium(shot, scene.medium, silent, scene.surroundings.get());
+}
+
+void set_mean(Image& image, const std::vector<Image>& pictures) {
+    for (std::size_t l = 0; l < image.layers.size(); ++l)
+        for (std::size_t i = 0; i < image.layers[l].pixels.size(); ++i) {
+            double sum = 0.0;
+            for (const Image& picture : pictures)
+                sum += picture.layers[l].pixels[i];
+            image.layers[l].pixels[i] = static_cast<float>(sum / double(pictures.size()));
+        }
+}
+
+RenderedFrame rendered(const Scene& scene, const Method& method) {
+    RenderedFrame frame = rendered_once(scene, method, 0);
+    if (!method.shares_noise())
+        return frame;
+    frame.halves = {frame.image};
+    for (int seed = 1; seed < kPictures; ++seed)
+        frame.halves.push_back(rendered_once(scene, method, seed).image);
+    set_mean(frame.image, frame.halves);
+    return frame;
 }
 
 bool all_finite(const Image& image) {
@@ -32,8 +57,9 @@ void read_balances(const Statistics& statistics, Result& result) {
             continue;
         for (const auto& flight : stage.detail["balance"]) {
             const double off = flight["collided"].get<double>() + flight["escaped"].get<double>() - 1.0;
+            const double noise = flight["escape_standard_error"].get<double>();
             // Written so that NaN counts as out of balance.
-            if (!(std::abs(flight["corrected"].get<double>() - 1.0) <= kMostImbalance))
+            if (!(std::abs(flight["sum"].get<double>() - 1.0) <= kMostImbalance + kStandardErrors * noise))
                 result.balanced = false;
             if (!result.imbalance || !(std::abs(off) <= std::abs(*result.imbalance)))
                 result.imbalance = off;
@@ -47,18 +73,36 @@ bool Result::passed() const {
     return trouble.empty() && finite && balanced && measured.error <= tolerance + kStandardErrors * measured.noise;
 }
 
-std::string method_name(RenderMethod method) {
-    return method == RenderMethod::Path ? "path" : "lighting_grid";
+bool owns_a_cell(const Method& method, const Scene& scene) {
+    if (!method.shares_noise())
+        return true;
+    Shot shot = scene.shot;
+    method.apply_to(shot, 0);
+    return plan_cells(shot, scene.medium, scene.surroundings.get()).scattering_method;
 }
 
-Result run_case(const Case& c, RenderMethod method) {
+const Limit* Case::limit_of(const Method& method) const {
+    const auto found = tolerance.limits.find(method.name());
+    return found == tolerance.limits.end() ? nullptr : &found->second;
+}
+
+std::optional<double> Case::tolerance_of(const Method& method) const {
+    if (const Limit* const limit = limit_of(method))
+        return limit->tolerance;
+    return method.is_path() ? tolerance.path : tolerance.lighting_grid;
+}
+
+std::optional<Result> run_case(const Case& c, const Method& method) {
     Result result;
     result.name = c.name;
-    result.method = method;
-    result.tolerance = c.tolerance.of(method).value_or(0.0);
+    result.method = method.name();
+    result.tolerance = c.tolerance_of(method).value_or(0.0);
+    result.limit = c.limit_of(method) != nullptr;
     const Stopwatch watch;
     try {
         const Scene scene = c.scene();
+        if (!owns_a_cell(method, scene))
+            return std::nullopt;
         const RenderedFrame frame = rendered(scene, method);
         result.seconds = watch.seconds();
         result.finite = all_finite(frame.image);
@@ -74,7 +118,7 @@ Result run_case(const Case& c, RenderMethod method) {
 std::vector<Case> all_cases() {
     std::vector<Case> all;
     for (const auto& family : {depth_cases, albedo_cases, phase_cases, contrast_cases, emission_cases, scale_cases,
-                               lattice_cases, shadow_cases, camera_cases, light_cases}) {
+                               lattice_cases, shadow_cases, camera_cases, light_cases, surface_cases}) {
         std::vector<Case> cases = family();
         std::move(cases.begin(), cases.end(), std::back_inserter(all));
     }

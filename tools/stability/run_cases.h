@@ -11,20 +11,19 @@ namespace brisance::stability {
 
 struct Result {
     std::string name;
-    RenderMethod method = RenderMethod::LightingGrid;
+    std::string method;               // its name
     bool finite = false;              // every value of every layer
     std::optional<double> imbalance;  // collided + escaped - emitted of the worst flight, as gathered
-    bool balanced = true;             // the same within 0.5 % once scaled
+    bool balanced = true;             // the same within 0.5 % and the noise of its measurement, once scaled
     Measured measured;
     double tolerance = 0.0;
+    bool limit = false;  // the tolerance is that of a method which the case is beyond
     double seconds = 0.0;
     std::string trouble;  // what was thrown; empty: nothing
     bool passed() const;
 };
 
-std::string method_name(RenderMethod method);
-
-// One picture and its verdict. Errors of the renderer become `trouble`.
-Result run_case(const Case& c, RenderMethod method);
+// One picture and its verdict; none where the method owns no cell of the case. Errors of the renderer become `trouble`.
+std::optional<Result> run_case(const Case& c, const Method& method);
 
 }  // namespace brisance::stability

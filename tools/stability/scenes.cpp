@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "scene/load_scene.h"
 #include "stability/closed_forms.h"
 
 namespace brisance::stability {
@@ -23,6 +24,15 @@ Scene scene_of(const media::Recipe& recipe, const CameraSettings& camera, int pa
     scene.shot.camera = camera;
     scene.shot.camera_given = true;
     scene.shot.tracing.samples = paths;
+    return scene;
+}
+
+Scene with_set(Scene scene, const SceneSettings& set) {
+    constexpr std::uint64_t kMemory = std::uint64_t{1} << 30;
+    Progress silent;
+    scene.surroundings = std::make_shared<const Surroundings>(
+        load_scene(set, {}, 0.0, scene.medium.world_of_local(vec3(0.0f)), kMemory, silent), set.lights);
+    scene.shot.scene = set;
     return scene;
 }
 

@@ -11,6 +11,9 @@ CameraSettings camera_at(const dvec3& eye, const dvec3& target, double width, in
 // `paths`: per pixel, where the path tracer renders.
 Scene scene_of(const media::Recipe& recipe, const CameraSettings& camera, int paths);
 
+// The same scene among these surfaces and lights.
+Scene with_set(Scene scene, const SceneSettings& set);
+
 // Smoke that emits as it absorbs, source function 1 before the albedo is taken off, in a ball of 1 m radius.
 media::Recipe isothermal_ball(int nodes, double optical_radius, double albedo);
 

@@ -35,8 +35,8 @@ Gathered gather_at_lattice(const LitLattice& lattice, const HierarchyLights& lig
     if (settings.energy_balance) {
         BounceBalance balance;
         balance.emitted = 1.0;
-        arriving.scale(
-            close_balance(lattice.pyramid(), lights.light, fluence_at_nodes(arriving, lattice.needed()), balance));
+        arriving.scale(energy_balance_factor(lattice.pyramid(), lights.light,
+                                             fluence_at_nodes(arriving, lattice.needed()), balance));
         stage.detail["balance"].push_back(balance_row(balance, "0"));
     }
     stage.bytes =

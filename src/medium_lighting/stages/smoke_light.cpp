@@ -28,9 +28,9 @@ std::vector<ScatteredLight> orders_of_scattering(const LitLattice& lattice, cons
                      {"tail_share", costs.tail_share},
                      {"estimated_remainder", costs.remainder}};
     series.detail["levels"] = level_table(costs.levels);
-    // Without the balance, escaping light has not been marched.
-    for (std::size_t k = 0; k < costs.balances.size() && input.lighting.energy_balance; ++k)
-        series.detail["balance"].push_back(balance_row(costs.balances[k], std::to_string(costs.balances[k].order)));
+    if (costs.balance)
+        series.detail["balance"].push_back(
+            balance_row(*costs.balance, "1-" + std::to_string(costs.balance->last_order)));
     statistics.stages.push_back(series);
     if (input.scattering.bounces < 0 && costs.remainder > input.scattering.remainder)
         progress.warning("series", "multiple scattering stopped after " + std::to_string(costs.bounces) +
@@ -60,7 +60,8 @@ public:
             return g;
         BounceBalance balance;
         balance.emitted = 1.0;
-        g.scale(close_balance(lattice_.pyramid(), lights.light, fluence_at_nodes(g, lattice_.needed()), balance));
+        g.scale(
+            energy_balance_factor(lattice_.pyramid(), lights.light, fluence_at_nodes(g, lattice_.needed()), balance));
         balances_.push_back(balance_row(balance, order));
         return g;
     }

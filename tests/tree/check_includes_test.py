@@ -6,7 +6,7 @@ import sys
 import tempfile
 import unittest
 
-CHECKER = pathlib.Path(__file__).resolve().parent.parent / "tools" / "check_includes.py"
+CHECKER = pathlib.Path(__file__).resolve().parent.parent.parent / "tools" / "check_includes.py"
 TABLE = """
 | module | purpose | may include | libraries |
 | --- | --- | --- | --- |

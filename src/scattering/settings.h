@@ -1,0 +1,13 @@
+// How many times light scatters, and how orders of scattering above the first are solved.
+#pragma once
+
+namespace brisance {
+
+struct ScatteringSettings {
+    int bounces = -1;         // scatterings: 0 emission only, 1 single scattering, -1 all orders
+    float remainder = 1e-3f;  // with all orders: stop when the part not yet accounted for is below this
+    int lattice_level = -1;   // orders above one are solved on voxels 2^level wide; -1: from the voxel count
+    float alpha = 1.5f;       // as LightingSettings::alpha, for scattered light
+};
+
+}  // namespace brisance

@@ -1,0 +1,43 @@
+// What renders the cases: the path tracer, and the lighting grid with each of the owners of light that was scattered
+// more than once (MM and SM).
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "shot/shot.h"
+
+namespace brisance::stability {
+
+class Method {
+public:
+    // The path tracer.
+    Method() = default;
+    // The lighting grid, or a scattering method beside it. `scattering`: as scattering.method.
+    explicit Method(std::string scattering) : scattering_(std::move(scattering)) {}
+
+    // As the shot's keys call it.
+    std::string name() const;
+
+    bool is_path() const { return scattering_.empty(); }
+    bool is_grid() const { return scattering_ == kLightingGridMethod; }
+
+    // All pixels see the same random lights or particles: only other seeds tell how noisy they are.
+    bool shares_noise() const { return !is_path() && !is_grid(); }
+
+    // The same shot by this method. `seed`: other ones draw other lights and particles. Throws Error Usage where the
+    // shot has no such key.
+    void apply_to(Shot& shot, int seed) const;
+
+    bool operator==(const Method&) const = default;
+
+private:
+    std::string scattering_;  // empty: paths
+};
+
+// The lighting grid first, then the path tracer, which every case knows; then the others, which have a part in those
+// cases alone whose light is scattered twice.
+const std::vector<Method>& all_methods();
+
+}  // namespace brisance::stability
