@@ -16,7 +16,7 @@ public:
 
     // Through the point (x, y) of the picture in pixels: (0, 0) is the outer corner of the top left pixel.
     Ray ray(double x, double y) const;
-    // The point of the picture at which a local place is seen; nothing where it is not in front of the eye.
+    // The point of the picture at which a local position is seen; none where it is not in front of the eye.
     std::optional<glm::dvec2> project(const dvec3& local) const;
     dvec3 eye_local() const { return eye_; }
     dvec3 forward() const { return forward_; }
@@ -35,7 +35,7 @@ private:
 
 // A camera that sees all of the medium's emission and smoke from the front, slightly above the middle, z up.
 CameraSettings framed_camera(const Medium& medium, const CameraSettings& like);
-// The same for all of a scene's triangles.
+// The same for all triangles of a scene.
 CameraSettings framed_camera(const Scene& scene, const dvec3& up, const CameraSettings& like);
 
 }  // namespace brisance

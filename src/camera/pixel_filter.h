@@ -1,4 +1,4 @@
-// What a ray counts in its pixel.
+// The weight of a ray in its pixel.
 #pragma once
 
 #include <cmath>

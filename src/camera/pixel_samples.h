@@ -1,4 +1,4 @@
-// Where a pixel's rays go through it.
+// Positions of rays within a pixel.
 #pragma once
 
 #include <vector>
@@ -12,9 +12,9 @@ struct PixelSample {
     float weight;
 };
 
-// A grid turned by atan(1 / n), n * n samples, the same in each pixel: no two of them share a row or a column, so that
-// upright and level edges have n * n shades and not n, and what is smooth has no noise. `per_axis`: along the side of a
-// pixel; wider filters have more. Weights add up to 1.
+// A grid of n * n samples rotated by atan(1 / n), the same in each pixel. No two samples share a row or a column, so
+// that vertical and horizontal edges have n * n shades instead of n, and smooth areas have no noise. `per_axis`: along
+// the side of a pixel; wider filters have more. Weights add up to 1.
 std::vector<PixelSample> pixel_samples(const CameraSettings& camera, int per_axis);
 
 }  // namespace brisance

@@ -19,7 +19,7 @@ struct CameraSettings {
     int width = 1280;
     int height = 720;
     int samples_per_axis = 0;  // anti-aliasing samples along each side of a pixel; 0: as the voxels need
-    int edge_refinement = 4;   // as many times more along a side where light has edges, with surfaces; 1: none
+    int edge_refinement = 4;   // factor along a side where light has edges, with surfaces; 1: none
     PixelFilter filter = PixelFilter::Box;
     float filter_width_pixels = 1.0f;  // full width of the box, or four standard deviations of the Gaussian
 };

@@ -9,7 +9,7 @@ namespace {
 
 // Where on a segment the parts are sampled: Gauss points for two, so that a cubic extinction's integral is exact; the
 // middles otherwise.
-float sample_place(int part, int parts) {
+float position_in_part(int part, int parts) {
     if (parts == 2)
         return part == 0 ? 0.21132487f : 0.78867513f;
     return (part + 0.5f) / parts;
@@ -86,7 +86,7 @@ void walk_parts(const SourceField& field, const Ray& ray, int parts, double end,
         const bool thick = field.majorant(s.brick) * length > kThickVoxel;
         const int n = thick ? std::max(parts, kThickVoxelParts) : parts;
         for (int k = 0; k < n; ++k) {
-            const double t = s.begin + length * sample_place(k, n);
+            const double t = s.begin + length * position_in_part(k, n);
             const vec3 p = sample_position(s, t);
             Part part{field.sample(s.brick, p), {}, {}, static_cast<float>(length / n), static_cast<float>(t)};
             if (field.has_outside())

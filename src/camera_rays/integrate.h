@@ -8,9 +8,10 @@
 
 namespace brisance {
 
-// Integrates one ray against the field's own interpolation. Each voxel's segment is cut into `parts`; extinction and
-// source are constant on every part (their values at Gauss points, so that the optical depth of a voxel is exact for
-// two parts), and the part is integrated in closed form with phi1. `end`: where a surface ends the ray [m].
+// Integrates one ray against the field's own interpolation. Each voxel's segment is cut into `parts`. Extinction and
+// source are constant on every part and are evaluated at Gauss points, so that the optical depth of a voxel is exact
+// for two parts; each part is integrated in closed form with phi1. `end`: distance of the surface that ends the ray
+// [m].
 RaySum integrate(const SourceField& field, const Ray& ray, int parts,
                  double end = std::numeric_limits<double>::infinity());
 

@@ -80,11 +80,11 @@ private:
     const PictureSettings& settings_;
     const std::vector<PixelSample>& samples_;
     const LightSurfaces& light_surfaces_;
-    std::vector<Glare>& glare_;  // empty: nobody wants to know
+    std::vector<Glare>& glare_;  // empty: not recorded
     std::vector<RaySum> sums_;
 };
 
-// Rays whose surfaces are lit together: enough for gathers to be efficient, few enough to hold.
+// Number of rays whose surfaces are lit together: enough for efficient gathers, few enough for memory.
 constexpr std::size_t kRaysAtOnce = 1 << 18;
 
 }  // namespace

@@ -64,7 +64,7 @@ Image PictureWriter::take() {
     return std::move(image_);
 }
 
-// Leaves the cell what scattered once, and gives the rest to MM, so that every path stands in its own layer.
+// Keeps single scattering in the cell and moves the rest to MM, so that every path is in its own layer.
 void PictureWriter::file_single_scattering(Cell cell, const std::vector<Rgb>& once) {
     const int layer = cells_[static_cast<int>(cell)], multiple = cells_[static_cast<int>(Cell::MM)];
     if (layer < 0 || multiple < 0)

@@ -11,11 +11,11 @@ namespace brisance {
 
 class PictureWriter {
 public:
-    // Keeps a reference to the camera. `settings`: which layers there are.
+    // Keeps a reference to the camera. `settings` determine the layers.
     PictureWriter(const Camera& camera, const PictureSettings& settings);
 
     void pixel(int x, int y, const RaySum& seen);
-    // To all layers but Z, what more is known of a pixel.
+    // Adds further data of a pixel to all layers but Z.
     void add(int x, int y, const RaySum& more);
     float luminance_at(int x, int y) const;  // of the picture
 
@@ -29,7 +29,7 @@ private:
     Image image_;
     int beauty_ = -1, z_ = -1, albedo_ = -1;
     std::array<int, kCells> cells_;  // -1: no such layer
-    // Per pixel, where PictureSettings::once is given: what scattered once of MV and of MA.
+    // Single scattering of MV and MA per pixel, if PictureSettings::once is given.
     std::vector<Rgb> from_fire_, from_emitters_;
 };
 

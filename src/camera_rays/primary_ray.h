@@ -1,4 +1,4 @@
-// A primary ray: what the camera sees up to the first surface.
+// A primary ray: light up to the first surface.
 #pragma once
 
 #include <optional>
@@ -8,13 +8,13 @@
 namespace brisance {
 
 struct PrimaryRay {
-    RaySum sum;                         // and what the surface emits, or the background
-    std::optional<SurfaceHit> surface;  // where one is that may scatter light toward the camera
+    RaySum sum;                         // includes the emission of the surface or the background
+    std::optional<SurfaceHit> surface;  // if it may scatter light toward the camera
 };
 
 PrimaryRay trace_primary_ray(const SourceField& field, const PixelRay& ray, const PictureSettings& settings);
 
-// Adds what one of a pixel's rays saw.
+// Adds the result of one of a pixel's rays.
 void add_weighted(RaySum& sum, const RaySum& s, float weight);
 
 }  // namespace brisance

@@ -1,4 +1,4 @@
-// What one ray sees, and the walk through the voxels that it crosses.
+// The light along one ray, and the walk through the voxels that it crosses.
 #pragma once
 
 #include <limits>
@@ -19,17 +19,17 @@ void walk_voxels(const SourceField& field, const Ray& ray, const Visit& visit,
                 [&](const VoxelSegment& brick) { return walk_cubes<1>(brick, visit); });
 }
 
-// What one ray sees.
+// The light along one ray.
 struct RaySum {
     CellSum cells;
     float depth = 0.0f;            // optical depth of the ray so far, ...
-    float similar_depth = 0.0f;    // ... in the medium that scattered light was followed through
-    Rgb forward{0.0f};             // optical depth of scattering straight on, where that is followed by itself
+    float similar_depth = 0.0f;    // ... in the medium through which scattered light was traced
+    Rgb forward{0.0f};             // optical depth of undeflected scattering, where it is traced separately
     float alpha = 0.0f;            // 1 - exp(-depth), set when the ray is done
     float distance_weight = 0.0f;  // opacity gathered, ...
     float distance_sum = 0.0f;     // ... times the distance along the ray [m]
     Rgb albedo_sum{0.0f};          // ... times albedo (the medium's as luminance)
-    // MV and MA of light that scattered once, where those of `cells` hold more (PictureSettings::once).
+    // Single scattering of MV and MA, where those of `cells` hold more (PictureSettings::once).
     Rgb once_from_fire{0.0f}, once_from_emitters{0.0f};
 };
 

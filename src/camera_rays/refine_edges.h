@@ -1,10 +1,10 @@
-// More rays for pixels in which something that shines has an edge.
+// Traces more rays for pixels that contain the edge of a light source.
 //
-// A lamp, the sun in a puddle or a flame may be thousands of times brighter than what is beside it: what part of a
-// pixel it fills then decides the pixel, and the rays that shade surfaces are far too few to tell. Looking costs little
-// of what shading does. So where fire, emitters and background that are seen directly differ strongly within a pixel or
-// from those beside it, many more rays look, and what they see takes the place of what the pixel's own rays saw;
-// surfaces keep the light of those.
+// A lamp, the sun in a puddle or a flame may be thousands of times brighter than its neighbourhood. The fraction of a
+// pixel that it covers then determines the pixel, and the rays that shade surfaces are far too few to estimate it.
+// Tracing costs little compared with shading. Where directly visible fire, emitters and background differ strongly
+// within a pixel or between it and its neighbours, many more rays are therefore traced, and their result replaces that
+// of the pixel's own rays. The light of surfaces is kept.
 #pragma once
 
 #include <vector>
@@ -14,7 +14,7 @@
 
 namespace brisance {
 
-// Luminance of what shines by itself (cells V and A), over the rays of a pixel [W/(m^2 sr)].
+// Luminance of directly visible emission (cells V and A) over the rays of a pixel [W/(m^2 sr)].
 struct Glare {
     float least = std::numeric_limits<float>::infinity(), most = 0.0f;
 

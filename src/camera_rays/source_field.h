@@ -19,8 +19,8 @@ struct SourceRecord {
     float value[Size];
 };
 
-// Where scattered light was followed through a similar medium (similar_medium.h): its extinction, its own V, and what
-// the medium scatters straight on by the peak that was left out, as a part of its extinction.
+// Where scattered light was traced through a similar medium (similar_medium.h): its extinction, its own V, and the
+// fraction of the medium's extinction that its omitted peak scatters straight on.
 struct SimilarRecord {
     enum Slot { Extinction = 0, V = 1, Forward = 4, Size = 8 };
     float value[Size];
@@ -34,8 +34,8 @@ struct SurroundingsRecord {
 
 class SourceField {
 public:
-    // `similar`: what the sources belong to, if it is not the medium itself; `forward`: share of all scattering in the
-    // peak that it leaves out.
+    // `similar`: the medium of the sources, if it is not the medium itself; `forward`: the share of all scattering in
+    // its omitted peak.
     explicit SourceField(const Medium& medium, const NodeSources& sources = {}, const Medium* similar = nullptr,
                          float forward = 0.0f);
 

@@ -13,13 +13,14 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kDegree = kPi / 180.0;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// A triangle whose texture is black where it was looked at may still shine elsewhere.
+// Least luminance of a triangle, relative to its largest: a texture that is black at the sample points may be bright
+// elsewhere.
 constexpr double kLeastShare = 0.01;
 
 // Of spots, which the tree takes to shine alike within their cone and not at all beyond it.
 constexpr double kSharpReach = 1e-6;
 
-// A uniform place in a triangle, as weights of its second and third vertex.
+// A uniform point in a triangle, as the barycentric weights of its second and third vertex.
 vec2 sample_barycentric(double u, double v) {
     const double root = std::sqrt(u);
     return {float(1.0 - root), float(v * root)};
@@ -36,11 +37,11 @@ dvec3 around(const dvec3& axis, double cosine, double azimuth) {
 
 // Mean luminance of a triangle's front, by its middle and points between that and its corners.
 double mean_luminance(const Scene& scene, std::uint32_t mesh, std::uint32_t triangle) {
-    constexpr std::array<std::array<float, 2>, 4> kPlaces = {
+    constexpr std::array<std::array<float, 2>, 4> kPoints = {
         {{1 / 3.0f, 1 / 3.0f}, {1 / 6.0f, 1 / 6.0f}, {2 / 3.0f, 1 / 6.0f}, {1 / 6.0f, 2 / 3.0f}}};
     double sum = 0.0;
-    for (const auto& place : kPlaces)
-        sum += luminance(emission_at(scene, {0.0, mesh, triangle, {place[0], place[1]}})) / kPlaces.size();
+    for (const auto& point : kPoints)
+        sum += luminance(emission_at(scene, {0.0, mesh, triangle, {point[0], point[1]}})) / kPoints.size();
     const double most = luminance(scene.materials[scene.meshes[mesh].material].emission);
     return std::max(sum, kLeastShare * most);
 }
@@ -176,11 +177,11 @@ std::optional<EmitterSample> Emitters::sample_near(const LitPoint& point, double
     probability *= chosen->probability;
     std::optional<EmitterSample> s;
     if (near.light) {
-        const dvec3 way = near.position - point.position;
-        const double distance = glm::length(way);
+        const dvec3 offset = near.position - point.position;
+        const double distance = glm::length(offset);
         if (!(distance > 0.0))
             return std::nullopt;
-        const dvec3 direction = way / distance;
+        const dvec3 direction = offset / distance;
         s = EmitterSample{direction, distance, near.position, intensity(near, -direction) / float(distance * distance),
                           0.0};
     } else {
@@ -197,11 +198,11 @@ std::optional<EmitterSample> Emitters::sample_triangle(const Near& near, const L
     const Triangle triangle = triangle_of(scene_, near.mesh, near.triangle);
     const double u = rng.next_double();
     const vec2 b = sample_barycentric(u, rng.next_double());
-    const dvec3 place = at(triangle, b), way = place - point.position;
-    const double distance = glm::length(way);
+    const dvec3 position = at(triangle, b), offset = position - point.position;
+    const double distance = glm::length(offset);
     if (!(distance > 0.0))
         return std::nullopt;
-    const dvec3 direction = way / distance;
+    const dvec3 direction = offset / distance;
     const SurfacePoint there = surface_point(scene_, {distance, near.mesh, near.triangle, b}, -direction);
     const double cosine = std::abs(glm::dot(there.geometric_normal, direction));
     if (there.emission == Rgb(0.0f) || !(cosine > 0.0))

@@ -1,4 +1,4 @@
-// All that shines but the fire: emissive triangles, point, spot and sun lights, and the environment.
+// All light sources except the fire: emissive triangles, point, spot and sun lights, and the environment.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,7 @@
 
 namespace brisance {
 
-// Light on its way to a point, before anything stands in between.
+// Unoccluded light toward a point.
 struct EmitterSample {
     dvec3 direction;        // unit, from the point to the light
     double distance = 0.0;  // to it, or infinite [m]
@@ -21,18 +21,18 @@ struct EmitterSample {
     double pdf = 0.0;       // [1/sr]; 0 of delta lights, which no other technique can find
 };
 
-// A place where a particle starts, with the power that it stands for over the probability of drawing it.
+// The start of a particle, with its power over the probability of sampling it.
 struct EmittedParticle {
     Ray ray;
     Rgb power{0.0f};  // [W]
 };
 
-// A lamp without extent, and the cone that it shines into.
+// A lamp of no extent, and the cone that it illuminates.
 struct PointEmitter {
     dvec3 position;    // local [m]
     dvec3 axis;        // unit
     double cosine;     // of the cone's half angle; -1: it shines everywhere
-    double intensity;  // at most, luminance [W/sr]
+    double intensity;  // largest, luminance [W/sr]
 };
 
 class Emitters {
@@ -41,40 +41,40 @@ public:
     Emitters(const Scene& scene, const std::vector<LightSettings>& lights, const std::vector<const Texture*>& pictures);
 
     bool empty() const { return tree_.empty() && far_.empty(); }
-    bool visible() const;  // some of them can be seen: not points, spots, and suns without a disc alone
+    bool visible() const;  // some light can be seen: not only points, spots, and suns without a disc
     std::size_t near_count() const { return near_.size(); }
     const std::vector<PointEmitter>& points() const { return points_; }
 
-    // One light, chosen for the point, and a place on it. None where that brings nothing.
+    // Samples one light, chosen for the point, and a point on it. None if it contributes nothing.
     std::optional<EmitterSample> sample(const LitPoint& point, Rng& rng) const {
         return sample(point, rng.next_double(), rng);
     }
-    // The same with the number in [0, 1) that chooses the light: it may come from a stratified sequence.
+    // The same, where `choice` in [0, 1) chooses the light; it may come from a stratified sequence.
     std::optional<EmitterSample> sample(const LitPoint& point, double choice, Rng& rng) const;
 
-    // What is seen, and with which density sample() would have drawn it [1/sr]: the radiance of a triangle that a ray
-    // from the point hit, and of the background.
+    // The pdf [1/sr] with which sample() would have sampled what a ray from the point sees: a triangle that it hit, or
+    // the background. background() is radiance.
     double pdf_of_hit(const LitPoint& point, const SurfaceHit& hit, const dvec3& direction, double distance) const;
     Rgb background(const dvec3& direction) const;
     double pdf_of_background(const dvec3& direction) const;
 
-    // A particle, from the lights in proportion to their power; what comes from infinity starts on a disc that covers
-    // the ball around what can be lit (local, m). None where nothing shines.
+    // A particle; lights are chosen in proportion to their power. Light from infinity starts on a disc that covers the
+    // ball around everything that can be lit (local, m). None without lights.
     std::optional<EmittedParticle> emit(const dvec3& centre, double radius, Rng& rng) const;
-    // All power that emit() may draw, luminance [W].
+    // Total power of emit(), luminance [W].
     double power(double radius) const;
 
     std::uint64_t bytes() const;
 
 private:
-    // With a finite place: a triangle, a point or a spot.
+    // A light at a finite distance: a triangle, a point or a spot.
     struct Near {
         std::uint32_t mesh = 0, triangle = 0;
         const LightSettings* light = nullptr;  // of points and spots
         dvec3 position{0.0};                   // of them, local
         double area = 0.0;                     // of triangles [m^2]
     };
-    // Infinitely far: a sun or the environment.
+    // A light at infinity: a sun or the environment.
     struct Far {
         const LightSettings* light = nullptr;
         std::unique_ptr<Environment> environment;  // of kind Environment

@@ -12,7 +12,7 @@ constexpr double kPi = std::numbers::pi;
 // Directions drawn evenly over the sphere, so that what interpolation adds to dark pixels is never missed.
 constexpr double kEven = 0.05;
 
-// The axes of a picture whose top is z: x its middle, y its left.
+// The axes of a picture whose top is z: x at its centre, y at its left.
 dmat3 axes(const LightSettings& light) {
     const bool z_up = light.up != 'y';
     const dvec3 up = z_up ? dvec3(0, 0, 1) : dvec3(0, 1, 0), left = z_up ? dvec3(0, 1, 0) : dvec3(0, 0, -1);

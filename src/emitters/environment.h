@@ -1,4 +1,4 @@
-// Light from infinitely far: a latitude-longitude picture, or one radiance from everywhere.
+// Light from infinity: a latitude-longitude picture, or a constant radiance.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace brisance {
 
-// The picture's middle looks along the world's x; to its right lies -y where z is up, and z where y is up. Its top is
-// `up`. Directions are drawn in proportion to the picture's luminance and, to a small part, evenly.
+// The picture's centre looks along the world's x; to its right lies -y where z is up, and z where y is up. Its top is
+// `up`. Directions are sampled in proportion to the picture's luminance and, with a small probability, uniformly.
 class Environment {
 public:
     // Without a picture the radiance is `light.power` everywhere. Keeps a copy of neither.

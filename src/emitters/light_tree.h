@@ -1,4 +1,4 @@
-// A binary tree over bounded lights that picks one of them for a point, about in proportion to what it may send there
+// A binary tree over bounded lights that picks one of them for a point, about in proportion to its contribution there
 // (Conty Estevez and Kulla, Importance Sampling of Many Lights with Adaptive Tree Splitting, HPG 2018; the bounds of
 // angles as in Pharr, Jakob, Humphreys, Physically Based Rendering, 4th edition, section 12.6).
 #pragma once
@@ -11,25 +11,25 @@
 
 namespace brisance {
 
-// Where a group of lights lies, where it sends light to, and how much.
+// Bounds of a group of lights: position, directions of emission, and intensity.
 struct LightBounds {
     dvec3 low{0.0}, high{0.0};
     dvec3 axis{0.0, 0.0, 1.0};  // of emission
     double spread = 0.0;        // the lights' axes lie within this angle of it; pi: everywhere
     double reach = 0.0;         // each emits within this angle of its own axis
-    double intensity = 0.0;     // largest toward anywhere, summed, luminance [W/sr]
+    double intensity = 0.0;     // sum of the largest of each light, luminance [W/sr]
     bool two_sided = false;     // along both directions of the axis
 };
 
-// Who asks: a point of a medium, or of a surface, that faces `normal` (or both ways, where it lets light through).
+// A receiver: a point of a medium, or of a surface that faces `normal` (or both sides, where it transmits light).
 struct LitPoint {
     dvec3 position{0.0};
     dvec3 normal{0.0};
     enum class Kind { Medium, Surface, Transmitting } kind = Kind::Medium;
 };
 
-// What bounded lights send to a point at most, by the bounds' own geometry: their importance. Angles by their cosines
-// and sines, since every choice asks at every branch.
+// Importance: the most that bounded lights can send to a point, by the geometry of the bounds. Angles are stored as
+// cosines and sines, since every choice evaluates them at every branch.
 class LightCone {
 public:
     LightCone() = default;
@@ -54,9 +54,9 @@ public:
         std::size_t light;
         double probability;
     };
-    // From a number in [0, 1). None where no light can reach the point.
+    // Chooses by a number in [0, 1). None where no light can reach the point.
     std::optional<Choice> choose(const LitPoint& point, double u) const;
-    // With which choose() picks that light.
+    // The probability with which choose() picks that light.
     double probability(const LitPoint& point, std::size_t light) const;
 
     std::uint64_t bytes() const { return nodes_.size() * sizeof(Node) + leaf_of_.size() * sizeof(std::uint32_t); }

@@ -21,7 +21,7 @@ Surroundings::Surroundings(Scene scene, std::vector<LightSettings> lights, std::
       pictures_(std::move(pictures)),
       intersector_(scene_),
       emitters_(scene_, lights_, pointers_to(pictures_)) {
-    // Before many threads ask for them at once.
+    // Computes the tables now, before threads use them concurrently.
     for (const SceneMaterial& material : scene_.materials)
         if (needs_energy_tables(material.surface))
             energy_tables(material.surface.ior);

@@ -1,4 +1,4 @@
-// A frame's set: surfaces, the hierarchy that rays find them by, and all that shines but the fire.
+// The surroundings of a frame: surfaces, their ray-tracing hierarchy, and all light sources except the fire.
 #pragma once
 
 #include "emitters/emitters.h"
@@ -9,7 +9,7 @@ namespace brisance {
 
 class Surroundings {
 public:
-    // `pictures`: per light, of environments that have one; else empty. Makes what the materials need.
+    // `pictures`: per light, of environments that have one; else empty. Computes the tables of the materials.
     Surroundings(Scene scene, std::vector<LightSettings> lights, std::vector<Texture> pictures = {});
 
     const Scene& scene() const { return scene_; }

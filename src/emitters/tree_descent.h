@@ -1,7 +1,7 @@
-// From the root of a binary tree of lights to one of them, and back: by shares that importances decide at every branch.
+// Descends from the root of a binary tree of lights to one of them, and back, by probabilities at every branch.
 //
-// Nodes have `parent`, `left` and `right`; left == 0 is a leaf. `share_of_left(node)`: the left branch's chance, below
-// 0 where neither branch has any.
+// Nodes have `parent`, `left` and `right`; left == 0 is a leaf. `share_of_left(node)`: probability of the left branch,
+// below 0 where neither branch has any.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace brisance {
 struct TreeDescent {
     std::uint32_t leaf = 0;
     double probability = 1.0;
-    int branches = 0;  // decided on the way
+    int branches = 0;  // visited
 };
 
 // `u` in [0, 1): neighbouring numbers find neighbouring leaves.

@@ -1,13 +1,13 @@
-// Who lights a glossy surface: places on ray lights, or rays drawn from the lobe.
+// Shares the light of a glossy surface between points on ray lights and rays sampled from the lobe.
 //
-// Light that scatters at v in the smoke, goes on to u, scatters there and comes to the surface is found in two ways: by
-// a place u on the ray light that set out at v, and by a ray drawn from the lobe that comes to u and asks the ray
-// lights through v. A place is hardly ever where a sharp lobe looks; a ray of a wide lobe rarely comes by where the
-// light is, and has to find two places at once. Every direction is shared between them by the balance heuristic (Veach
-// and Guibas, Optimally Combining Sampling Techniques for Monte Carlo Rendering, SIGGRAPH 1995). Of places the density
-// over directions is not known, as a tree and a roulette chose their lights; it is taken to be even over the
-// hemisphere. As the two parts of a direction add up to 1 whatever they are, this guess costs variance, never bias.
-// Light that comes to u straight from fire, emitters or surfaces is for rays alone: there it is known without noise.
+// Light that scatters at v in the smoke, travels to u, scatters there and reaches the surface is found by two
+// techniques: a point u on the ray light that starts at v, and a ray sampled from the lobe that reaches u and samples
+// the ray lights through v. A point on a light rarely lies in a sharp lobe. A ray of a wide lobe rarely passes near the
+// light, and has to find two points at once. The balance heuristic shares every direction between them (Veach and
+// Guibas, Optimally Combining Sampling Techniques for Monte Carlo Rendering, SIGGRAPH 1995). The density of points on
+// lights over directions is unknown, as a tree and a roulette chose the lights; it is taken to be uniform over the
+// hemisphere. As the two shares of a direction always add up to 1, this approximation costs variance and adds no bias.
+// Light that reaches u directly from fire, emitters or surfaces is left to rays alone, which find it without noise.
 #pragma once
 
 #include "core/vec.h"
@@ -18,26 +18,26 @@ namespace brisance {
 
 class GlossSplit {
 public:
-    // Keeps references. `gloss`: the lobes that are shared; `places`: as many as are asked for each ray that is drawn.
-    GlossSplit(const SurfacePoint& point, const Bsdf& gloss, const dvec3& toward_viewer, double places);
+    // Keeps references. `gloss`: the shared lobes; `light_samples`: samples of lights for each ray that is sampled.
+    GlossSplit(const SurfacePoint& point, const Bsdf& gloss, const dvec3& toward_viewer, double light_samples);
 
-    // The part of light from there (unit) that is left to rays [1]: all of it where the surface lets light through.
+    // Share [1] of rays in the light from that direction (unit); 1 where the surface transmits the light.
     double of_rays(const dvec3& to_light) const;
-    // BSDF times cosine [1/sr] for the rest.
-    Rgb of_places(const dvec3& to_light) const;
+    // BSDF times cosine [1/sr] times the share of the lights.
+    Rgb of_lights(const dvec3& to_light) const;
 
 private:
     const SurfacePoint& point_;
     const Bsdf& gloss_;
     dvec3 toward_viewer_;
-    double density_;  // of places, over directions [1/sr]
+    double density_;  // of points on lights, over directions [1/sr]
 };
 
-// The lobes of a surface that lights are asked for: `whole` by all of them and, where it is given, what `shared` leaves
-// to places by those that set out in smoke.
-struct AskedLobes {
-    // NOLINTNEXTLINE(google-explicit-constructor): lobes that nobody shares are asked for as they are
-    AskedLobes(const Bsdf& all_lobes, const GlossSplit* split = nullptr) : whole(all_lobes), shared(split) {}
+// The lobes of a surface that lights are evaluated with: all lights use `whole`; lights that start in smoke add, if
+// `shared` is given, their share of its lobes.
+struct ReceiverLobes {
+    // NOLINTNEXTLINE(google-explicit-constructor): lobes that are not shared need no wrapping
+    ReceiverLobes(const Bsdf& all_lobes, const GlossSplit* split = nullptr) : whole(all_lobes), shared(split) {}
     const Bsdf& whole;
     const GlossSplit* shared;
 };

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kMostlySeen = 0.99;
 
-// A phase function's mean cosine once it is blurred over a ball of that sine, about.
+// Approximate mean cosine of a phase function blurred over a ball of that angular sine.
 double blurred(double g, double sine) {
     const double a = 1.0 - std::min(1.0, std::hypot(1.0 - std::abs(g), sine));
     return g < 0.0 ? -a : a;
@@ -26,12 +26,12 @@ LightReceiver receiver_along(const RayMedium& seen) {
     return LightReceiver::along(part);
 }
 
-double shown_along(const RayMedium& seen, const ShiningPlace& light, double g) {
+double shown_along(const RayMedium& seen, const LightPoint& light, double g) {
     constexpr int kAngles = 4;
     const Segment& ray = seen.segment();
-    const dvec3 way = ray.start - light.place;
-    const double begin = glm::dot(way, ray.direction);
-    const dvec3 across = way - begin * ray.direction;
+    const dvec3 offset = ray.start - light.position;
+    const double begin = glm::dot(offset, ray.direction);
+    const dvec3 across = offset - begin * ray.direction;
     const double height = std::max({glm::length(across), 1e-9 * ray.length, 0.5 * light.radius}),
                  first = std::atan2(begin, height);
     const double angle = std::atan2(height * ray.length, height * height + begin * (begin + ray.length));

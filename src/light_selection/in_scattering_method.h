@@ -1,5 +1,5 @@
-// What a scattering method is given, and what it makes: an estimator of the light that the medium scattered before its
-// last scattering, the ledger's cells MM and SM.
+// Input and output of a scattering method: an estimator of light that scattered in the medium before its last
+// scattering, the ledger's cells MM and SM.
 #pragma once
 
 #include <memory>
@@ -15,12 +15,12 @@ namespace brisance {
 class DirectLight;
 
 struct InScatteringRequest {
-    const DirectLight& scene;  // must outlive what is made
+    const DirectLight& scene;  // must outlive the estimator
     int bounces = -1;          // the most scatterings of a path; -1: all
     dvec3 eye{0.0};            // of the camera, local [m]
-    // What stands for all that the camera sees, where the method thins its lights out for it; else empty.
+    // Receivers that represent all that the camera sees, if the method thins out its lights; else empty.
     std::span<const LightReceiver> receivers;
-    int pass = 0;               // of several pictures that are averaged
+    int pass = 0;               // index among averaged pictures
     double first_radius = 0.0;  // MadeInScattering::radius of pass 0 [m]
 };
 

@@ -10,15 +10,15 @@ namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
-// Points and lines closer than this part of a segment's length are kept apart, in the density only: touching lines have
-// an integral that is infinite, and no density that could be normalised.
+// Points and lines closer than this fraction of a segment's length are kept apart, in the density only: the integral
+// over touching lines is infinite, and no density could be normalised.
 constexpr double kClosest = 1e-9;
 
 // Below this range of asinh the inverse distance varies by less than a thousandth over the ray, and the difference of
 // two asinh would lose its digits.
 constexpr double kUniformRange = 1e-3;
 
-// How near to a beam distances still count, over its radius.
+// Least distance from a beam in the density, relative to its radius.
 constexpr double kFlat = 0.5;
 
 }  // namespace
@@ -47,12 +47,12 @@ AngularDensity::AngularDensity(const dvec3& apex, const Segment& segment, std::i
             continue;
         const dvec3 axis = l.mean_cosine < 0.0 ? -l.axis : l.axis;
         const double along = glm::dot(axis, segment.direction), up = glm::dot(axis, toward);
-        // 1 - the projection's length, from what is lost and not as a difference.
+        // 1 - the length of the projection, computed from the lost part to avoid cancellation.
         const dvec3 lost = axis - along * segment.direction - up * toward;
         const double in_plane = std::hypot(along, up), out2 = glm::dot(lost, lost);
         Lobe& lobe = lobes_[count_++];
         lobe.middle = std::atan2(along, up);
-        // a - b cos x is a - b + g x^2 near the peak: as wide as a ball that is seen there.
+        // a - b cos x is a - b + g x^2 near the peak, which is widened by the angle of the ball.
         const double at_peak = before_ + distance_at(std::clamp(lobe.middle - begin_, 0.0, angle_));
         const double ball = std::min(1.0, radius / std::hypot(height_, at_peak));
         lobe.a_minus_b = (1.0 - g) * (1.0 - g) + 2.0 * g * out2 / (1.0 + in_plane) + g * ball * ball;
@@ -85,7 +85,7 @@ double AngularDensity::angle_of(double t) const {
     return std::atan2(before_ + t, height_);
 }
 
-// tan(begin + angle) without going through either tangent.
+// tan(begin + angle) without evaluating either tangent.
 double AngularDensity::distance_at(double angle) const {
     const double sine = std::sin(angle), cosine = std::cos(angle);
     const double t = sine * (height_ * height_ + before_ * before_) / (height_ * cosine - before_ * sine);
@@ -128,7 +128,7 @@ InverseDistanceDensity::InverseDistanceDensity(const Segment& ray, const Segment
     uniform_ = !(range_ >= kUniformRange);
 }
 
-double InverseDistanceDensity::place(double xi) const {
+double InverseDistanceDensity::quantile(double xi) const {
     if (uniform_)
         return xi * length_;
     return std::clamp(closest_ + height_ * std::sinh(begin_ + xi * range_) / sine_, 0.0, length_);
@@ -145,7 +145,7 @@ AngularDensity PairDensity::on_camera(double v) const {
     return {light_.at(v), camera_, {{light_.direction, g_}, {-camera_.direction, g_}}, radius_};
 }
 
-// Seen from u light comes against the direction from the apex.
+// Seen from u, light travels against the direction from the apex.
 AngularDensity PairDensity::on_light(double u) const {
     return {camera_.at(u), light_, {{-light_.direction, g_}, {camera_.direction, g_}}, radius_};
 }

@@ -1,7 +1,7 @@
-// Pairs of points, one on each of two line segments, drawn for integrals that hold the inverse square of their distance
+// Samples pairs of points, one on each of two line segments, for integrals that contain their inverse squared distance
 // and a phase function at either end (Novak, Nowrouzezahrai, Dachsbacher, Jarosz, Virtual Ray Lights for Rendering
 // Scenes with Participating Media, SIGGRAPH 2012). The densities here are derived from that integrand, as the comments
-// say.
+// describe.
 #pragma once
 
 #include <optional>
@@ -66,8 +66,8 @@ private:
 class InverseDistanceDensity {
 public:
     InverseDistanceDensity(const Segment& ray, const Segment& other, double radius = 0.0);
-    double place(double xi) const;  // where that part of the density lies before [m]
-    double sample(Rng& rng) const { return place(rng.next_double()); }
+    double quantile(double xi) const;  // inverse of the distribution function [m]
+    double sample(Rng& rng) const { return quantile(rng.next_double()); }
     double pdf(double t) const;
 
 private:

@@ -14,26 +14,26 @@ dvec3 middle(const MediumLightBounds& b) {
     return 0.5 * (b.low + b.high);
 }
 
-// Lights below the horizon of the box's middle may still be above that of the surface: they keep a part.
+// Least cosine factor of a box: lights below the horizon of its centre may still be above that of the surface.
 constexpr double kBelowHorizon = 0.05;
-// Phase functions are no sharper than this, so that none of a box is left out that might shine after all.
+// Largest |g| of the phase functions, so that no box that may contribute is left out.
 constexpr double kSharpest = 0.8;
-// Of all choices, by power alone: where boxes hold lights of many headings, one that shines straight at the camera may
-// look to the tree as if it were a million times weaker than it is, and then outshines all others when it is found.
+// Fraction of choices by power alone. Where boxes hold lights of many directions, the tree may underestimate a light
+// that shines straight at the camera by a factor of a million; when chosen, that light would outshine all others.
 constexpr double kByPower = 0.125;
-// Directions from a box to a ray at which the phase functions are asked.
+// Directions from a box to a ray at which the phase functions are evaluated.
 constexpr int kDirections = 2;
 
-// A box as it is seen from a place: the angle around the direction to its middle.
+// The angular radius of a box as seen from a point, about the direction to its centre.
 struct Width {
     double sine, cosine;
     Width(double radius, double distance)
         : sine(distance > radius ? radius / distance : 1.0), cosine(std::sqrt((1.0 - sine) * (1.0 + sine))) {}
 };
 
-// The phase function for the angle nearest to its peak among all directions within the width; where the box holds the
-// place itself, its peak. A box that is near has lights that shine at the place and others that shine away from it,
-// and an underestimate costs more than the opposite.
+// The largest phase function among all directions within the angular radius; its peak where the box contains the point.
+// A near box has lights that shine at the point and others that shine away from it, and an underestimate costs more
+// than an overestimate.
 double phase_within(double cosine, double g, const Width& width) {
     const double a = std::min(std::abs(g), kSharpest), c = std::clamp(g < 0.0 ? -cosine : cosine, -1.0, 1.0);
     double nearest = 1.0;
@@ -43,7 +43,7 @@ double phase_within(double cosine, double g, const Width& width) {
     return (1.0 - a) * (1.0 + a) / (4.0 * std::numbers::pi * d * std::sqrt(d));
 }
 
-// For lights of several headings: the mean cosine of light that was turned twice is the product of both.
+// For lights of several directions: the mean cosine after two deflections is the product of both.
 double phase_of(const MediumLightBounds& box, const dvec3& toward, double g, const Width& width) {
     const double length = glm::length(box.heading);
     const double cosine = length > 0.0 ? glm::dot(box.heading, toward) / length : 0.0;
@@ -51,14 +51,14 @@ double phase_of(const MediumLightBounds& box, const dvec3& toward, double g, con
 }
 
 double along_ray(const MediumLightBounds& box, const Segment& ray, double g) {
-    const dvec3 from = middle(box), way = ray.start - from;
-    const double radius = 0.5 * glm::length(box.high - box.low), begin = glm::dot(way, ray.direction);
-    const dvec3 across = way - begin * ray.direction;
+    const dvec3 from = middle(box), offset = ray.start - from;
+    const double radius = 0.5 * glm::length(box.high - box.low), begin = glm::dot(offset, ray.direction);
+    const dvec3 across = offset - begin * ray.direction;
     const double floor = 1e-12 * std::max(ray.length, 1e-280);
     const double height = std::max(std::sqrt(glm::dot(across, across) + 0.25 * radius * radius), floor);
     // The integral of 1 / (distance^2 + radius^2 / 4) is an angle over the height.
     const double angle = std::atan2(height * ray.length, height * height + begin * (begin + ray.length));
-    const double nearest = glm::length(way + std::clamp(-begin, 0.0, ray.length) * ray.direction);
+    const double nearest = glm::length(offset + std::clamp(-begin, 0.0, ray.length) * ray.direction);
     const double seen = guessed_transmittance(box.extinction * std::max(0.0, nearest - radius)) * angle / height;
     if (g == 0.0)
         return seen;
@@ -76,11 +76,11 @@ double along_ray(const MediumLightBounds& box, const Segment& ray, double g) {
 }
 
 double at_point(const MediumLightBounds& box, const dvec3& point, const dvec3& normal, double g) {
-    const dvec3 way = middle(box) - point;
-    const double radius = 0.5 * glm::length(box.high - box.low), distance = glm::length(way);
+    const dvec3 offset = middle(box) - point;
+    const double radius = 0.5 * glm::length(box.high - box.low), distance = glm::length(offset);
     const double softened2 = std::max(distance * distance + 0.25 * radius * radius, 1e-280);
-    const double cosine = std::clamp((glm::dot(way, normal) + radius) / std::sqrt(softened2), kBelowHorizon, 1.0);
-    const dvec3 toward = distance > 0.0 ? -way / distance : normal;
+    const double cosine = std::clamp((glm::dot(offset, normal) + radius) / std::sqrt(softened2), kBelowHorizon, 1.0);
+    const dvec3 toward = distance > 0.0 ? -offset / distance : normal;
     const double phase = g != 0.0 ? phase_of(box, toward, g, Width(radius, distance)) : 1.0;
     return guessed_transmittance(box.extinction * std::max(0.0, distance - radius)) * phase * cosine / softened2;
 }
@@ -111,7 +111,7 @@ MediumLightTree::MediumLightTree(std::span<const MediumLightBounds> lights, doub
     build(lights, order, 0);
 }
 
-// Halves by number along the longest side of the middles' box: no path is longer than the logarithm.
+// Halves by number along the longest side of the box around the centres: depth is at most the logarithm of the number.
 std::uint32_t MediumLightTree::build(std::span<const MediumLightBounds> lights, std::span<std::uint32_t> order,
                                      std::uint32_t parent) {
     const auto node = static_cast<std::uint32_t>(nodes_.size());
@@ -143,7 +143,7 @@ std::uint32_t MediumLightTree::build(std::span<const MediumLightBounds> lights, 
     return node;
 }
 
-// Below 0: there is no light.
+// Probability of the left branch; below 0 if there is no light.
 double MediumLightTree::share_of_left(const Node& node, const LightReceiver& receiver) const {
     const double left = importance(nodes_[node.left].bounds, receiver, mean_cosine_);
     const double right = importance(nodes_[node.right].bounds, receiver, mean_cosine_);

@@ -1,5 +1,5 @@
-// A binary tree over ray lights, or other lights in boxes, that picks one of them for a camera ray or a surface point,
-// about in proportion to what it may send there, at a cost that grows like the logarithm of their number.
+// A binary tree over ray lights, or other lights in boxes. It picks one light for a camera ray or a surface point with
+// a probability about proportional to the light's contribution, at a cost logarithmic in the number of lights.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,15 @@
 
 namespace brisance {
 
-// A box of ray lights, the power that scatters in it, and where it goes.
+// A box of ray lights, the power that scatters in it, and its mean direction.
 struct MediumLightBounds {
     dvec3 low{0.0}, high{0.0};
     double scattered = 0.0;
     double extinction = 0.0;  // mean around the lights, by power [1/m]
-    dvec3 heading{0.0};       // mean of the lights' directions by power, between 0 (all over) and 1 long
+    // Power-weighted mean of the lights' directions; its length is between 0 (all directions) and 1.
+    dvec3 heading{0.0};
 };
-// Of each of some lights.
+// The boxes of all lights.
 template <class Lights>
 std::vector<MediumLightBounds> boxes_of(const Lights& lights) {
     std::vector<MediumLightBounds> boxes;
@@ -27,16 +28,16 @@ std::vector<MediumLightBounds> boxes_of(const Lights& lights) {
         boxes.push_back(bounds_of(light));
     return boxes;
 }
-// What is left of light after an optical depth that is only guessed: more than exp(-depth), as guesses may be wrong.
+// Approximate transmittance of an estimated optical depth: more than exp(-depth), as the estimate may be wrong.
 inline double guessed_transmittance(double depth) {
     return 1.0 / (1.0 + depth * (1.0 + 0.5 * depth));
 }
 MediumLightBounds united(const MediumLightBounds& a, const MediumLightBounds& b);
 
-// About what the lights in the box send to the receiver: above zero wherever their power is. The ray's part is the
-// integral of the inverse square distance along it, kept finite by the size of the box. Phase functions count by their
-// largest value for the mean heading and any place in the box, smoke as if it were everywhere as it is around the
-// lights.
+// Approximate contribution of the lights in the box to the receiver; above zero wherever they have power. For a ray it
+// is the integral of the inverse square distance along it, kept finite by the size of the box. Phase functions take
+// their largest value for the mean direction and any point in the box. The extinction is taken to be that around the
+// lights everywhere.
 double importance(const MediumLightBounds& box, const LightReceiver& receiver, double mean_cosine);
 
 class MediumLightTree {
@@ -47,11 +48,11 @@ public:
     struct Choice {
         std::size_t light;
         double probability;
-        int visited;  // nodes whose importance was asked
+        int visited;  // nodes whose importance was evaluated
     };
-    // From a number in [0, 1): neighbouring numbers choose neighbouring lights, so that they may be stratified.
+    // Chooses by a number in [0, 1). Neighbouring numbers choose neighbouring lights, so that they can be stratified.
     std::optional<Choice> choose(const LightReceiver& receiver, double u) const;
-    // With which choose() picks that light.
+    // The probability with which choose() picks that light.
     double probability(const LightReceiver& receiver, std::size_t light) const;
 
     std::uint64_t bytes() const { return nodes_.size() * sizeof(Node) + leaf_of_.size() * sizeof(std::uint32_t); }

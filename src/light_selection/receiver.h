@@ -1,4 +1,4 @@
-// Who is lit by lights in the medium.
+// Receivers of light from the medium.
 #pragma once
 
 #include "tracking/segment.h"
@@ -11,9 +11,9 @@ struct LightReceiver {
     Segment ray;  // the part that is mostly seen
     dvec3 point{0.0}, normal{0.0};
     static LightReceiver along(const Segment& seen) { return {true, seen, {}, {}}; }
-    // A point of the medium that is seen along `direction` (unit). `short_way`: against all it sees [m].
-    static LightReceiver in_smoke(const dvec3& point, const dvec3& direction, double short_way) {
-        return along({point, direction, short_way});
+    // A point of the medium on a ray along `direction` (unit). `length`: short against all distances to lights [m].
+    static LightReceiver in_smoke(const dvec3& point, const dvec3& direction, double length) {
+        return along({point, direction, length});
     }
     static LightReceiver at(const dvec3& point, const dvec3& normal) { return {false, {}, point, normal}; }
 };

@@ -9,13 +9,13 @@ namespace {
 constexpr std::size_t kBlock = 256;
 constexpr double kByPowerAlone = 0.1;
 
-// The factor on all weights with which the probabilities min(1, factor * weight) add up to `count`.
+// The common factor on all weights with which the probabilities min(1, factor * weight) add up to `count`.
 double factor_for(std::vector<double> weights, double count) {
     std::sort(weights.begin(), weights.end(), std::greater<>());
     double rest = 0.0;
     for (const double w : weights)
         rest += w;
-    // The largest are certain, one after another, until none is any more.
+    // The largest weights become certain, one after another, until no more do.
     for (std::size_t certain = 0; certain < weights.size(); ++certain) {
         const double left = count - double(certain);
         if (left <= 0.0 || weights[certain] * left <= rest)

@@ -1,4 +1,4 @@
-// Many lights to fewer: those that the camera will ask for.
+// Reduces the lights to those that matter to the camera.
 #pragma once
 
 #include <algorithm>
@@ -10,15 +10,15 @@
 
 namespace brisance {
 
-// With which probability every light stays, so that about `count` do: by its share of what arrives at the receivers
-// (Georgiev and Slusallek, Simple and Robust Iterative Importance Sampling of Virtual Point Lights, Eurographics 2010).
-// A tenth of it is by power alone, for what no receiver stands for.
+// Survival probability of every light, such that about `count` survive: proportional to its share of the light at the
+// receivers (Georgiev and Slusallek, Simple and Robust Iterative Importance Sampling of Virtual Point Lights,
+// Eurographics 2010). A tenth is by power alone, for points that no receiver represents.
 std::vector<double> survival_probabilities(std::span<const MediumLightBounds> lights,
                                            std::span<const LightReceiver> receivers, std::size_t count,
                                            double mean_cosine);
 
-// Keeps about `count` of the lights, by Russian roulette with those probabilities; those that stay carry the light of
-// those that go. Nothing to do where there are no more than `count`.
+// Keeps about `count` of the lights by Russian roulette with those probabilities, weighted so that the expected power
+// is unchanged. Keeps all lights if there are no more than `count`.
 template <class Light>
 std::vector<Light> thin_lights(std::vector<Light> lights, std::span<const LightReceiver> receivers, std::size_t count,
                                double mean_cosine, Stream stream, std::uint32_t seed) {

@@ -1,4 +1,4 @@
-// What the lighting of a medium is computed from.
+// Input of the lighting of a medium.
 #pragma once
 
 #include "emitters/surroundings.h"
@@ -10,7 +10,7 @@
 
 namespace brisance {
 
-// What surfaces send into the medium.
+// Light that surfaces send into the medium.
 struct ReflectedLight {
     const PointsOfSides* lights = nullptr;  // null: none
     const SpecularPhotons* cast = nullptr;  // null: none
@@ -25,13 +25,13 @@ struct MediumLightingInput {
     const Surroundings* surroundings = nullptr;  // null: none
     ReflectedLight reflected = {};
 
-    // Which light is wanted.
+    // Light to be computed.
     bool fire = false;                // something emits: the source of MV, MM and SV
     bool single = false;              // MV
     bool multiple = false;            // MM
     bool surfaces_on_medium = false;  // MS
     bool emitters_on_medium = false;  // MA, or its share of MM
-    bool emitters_at_nodes = true;    // MA is left at the nodes; false: the camera's rays find it themselves
+    bool emitters_at_nodes = true;    // MA is computed at the nodes; false: along the camera's rays
     bool surfaces_lit = false;        // SV or SM: lights are kept for receivers on surfaces
     bool directional = false;         // anisotropic phase function: light keeps its direction
     bool orders_apart = false;        // orders of scattering are kept for layers of their own

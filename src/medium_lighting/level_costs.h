@@ -1,4 +1,4 @@
-// What the levels of a hierarchy cost, for a frame's statistics.
+// Costs of the levels of a hierarchy, for a frame's statistics.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@
 namespace brisance {
 
 nlohmann::ordered_json level_table(const std::vector<LevelCost>& costs);
-// Of all levels, the most memory that one held at once.
+// The largest memory that one level held at a time.
 std::uint64_t most_held(const std::vector<LevelCost>& costs);
 
 }  // namespace brisance

@@ -36,9 +36,9 @@ std::vector<vec3> directions_to(const Medium& medium, const vec3& eye) {
         directions.size(),
         [&](std::size_t i) {
             const vec3 p = medium.local_of_node(medium.lattice.node(i));
-            const vec3 way = eye - p;
-            const float d = glm::length(way);
-            directions[i] = d > 0.0f ? way / d : vec3(0.0f, 0.0f, 1.0f);
+            const vec3 offset = eye - p;
+            const float d = glm::length(offset);
+            directions[i] = d > 0.0f ? offset / d : vec3(0.0f, 0.0f, 1.0f);
         },
         4096);
     return directions;

@@ -1,5 +1,5 @@
-// The lattice on which a medium is lit, and what all stages of the lighting share: which nodes receive light, what is
-// wanted there, optical depths, thin media, and surfaces in between.
+// The lattice on which a medium is lit, and the data shared by all stages of the lighting: the nodes that receive
+// light, the quantities needed there, optical depths, thin media, and occluding surfaces.
 #pragma once
 
 #include <memory>
@@ -24,7 +24,7 @@ public:
     const PointDepths& depths() const { return depths_; }  // of coarse rays toward lights seen from outside
     const ThinMedium& thin_medium() const { return thin_medium_; }
     const Occluders* surfaces() const { return surfaces_.get(); }        // null: none
-    const std::vector<std::uint8_t>& needed() const { return needed_; }  // per node: whether light is wanted there
+    const std::vector<std::uint8_t>& needed() const { return needed_; }  // per node: whether light is needed there
     std::size_t node_count() const { return needed_.size(); }
 
     // Of a flight after which light scatters on, with the moments that needs, and of the last one before the camera.

@@ -12,7 +12,7 @@ namespace brisance {
 
 namespace {
 
-// Of each kind, for the mean over a cone: they cost little beside the way through the smoke.
+// Samples per density for the mean over a cone; they cost little compared with the transmittance.
 constexpr int kDirections = 4;
 
 }  // namespace
@@ -45,8 +45,9 @@ dvec3 BallCone::sample(Rng& rng) const {
 
 double mean_phases(const BallCone& cone, const dvec3& arriving, const dvec3& leaving, double mean_cosine, Rng& rng) {
     const double solid_angle = cone.solid_angle();
-    const auto share = [&](const dvec3& way) {
-        const double first = phase_about(arriving, way, mean_cosine), second = phase_about(way, leaving, mean_cosine);
+    const auto share = [&](const dvec3& direction) {
+        const double first = phase_about(arriving, direction, mean_cosine),
+                     second = phase_about(direction, leaving, mean_cosine);
         return first * second / (1.0 + solid_angle * (first + second));
     };
     if (cone.thin() || mean_cosine == 0.0)
@@ -55,9 +56,9 @@ double mean_phases(const BallCone& cone, const dvec3& arriving, const dvec3& lea
     for (int i = 0; i < kDirections; ++i) {
         sum += share(cone.sample(rng));
         for (const dvec3& peak : {arriving, leaving}) {
-            const dvec3 way = sample_henyey_greenstein(peak, static_cast<float>(mean_cosine), rng);
-            if (cone.holds(way))
-                sum += share(way);
+            const dvec3 direction = sample_henyey_greenstein(peak, static_cast<float>(mean_cosine), rng);
+            if (cone.holds(direction))
+                sum += share(direction);
         }
     }
     return sum / kDirections;
@@ -65,11 +66,11 @@ double mean_phases(const BallCone& cone, const dvec3& arriving, const dvec3& lea
 
 namespace {
 
-// What a surface scatters to the viewer of light from a direction, and how often the cone holds that direction, folded
-// up where it dips under the surface.
+// Light that a surface scatters to the viewer from a direction, and how often the cone, folded up where it dips below
+// the surface, covers that direction.
 class FoldedCone {
 public:
-    FoldedCone(const BallCone& cone, const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer)
+    FoldedCone(const BallCone& cone, const SurfacePoint& point, const ReceiverLobes& lobes, const dvec3& toward_viewer)
         : cone_(cone), point_(point), lobes_(lobes), toward_viewer_(toward_viewer) {
         const dvec3& n = point.geometric_normal;
         up_ = glm::dot(n, cone.axis()) < 0.0 ? -n : n;
@@ -87,7 +88,7 @@ public:
         if (point_.leaks(toward_viewer_, direction))
             return Rgb(0.0f);
         const Rgb whole = lobes_.whole.evaluate(toward_viewer_, direction);
-        return lobes_.shared ? whole + lobes_.shared->of_places(direction) : whole;
+        return lobes_.shared ? whole + lobes_.shared->of_lights(direction) : whole;
     }
 
 private:
@@ -95,14 +96,14 @@ private:
 
     const BallCone& cone_;
     const SurfacePoint& point_;
-    const AskedLobes& lobes_;
+    const ReceiverLobes& lobes_;
     dvec3 toward_viewer_, up_;
 };
 
 }  // namespace
 
 Rgb mean_reflected(const BallCone& cone, const dvec3& arriving, double mean_cosine, const SurfacePoint& point,
-                   const AskedLobes& lobes, const dvec3& toward_viewer, Rng& rng) {
+                   const ReceiverLobes& lobes, const dvec3& toward_viewer, Rng& rng) {
     const FoldedCone folded(cone, point, lobes, toward_viewer);
     const auto phase = [&](const dvec3& to_light) { return phase_about(arriving, -to_light, mean_cosine); };
     if (cone.thin())
@@ -119,7 +120,7 @@ Rgb mean_reflected(const BallCone& cone, const dvec3& arriving, double mean_cosi
             sum += share(to_light, times);
     };
     for (int i = 0; i < kDirections; ++i) {
-        // At least once, though rounding may put it past the edge.
+        // Counted at least once, as rounding may put it outside the cone.
         const dvec3 within = folded.folded(cone.sample(rng));
         sum += share(within, std::max(1, folded.times(within)));
         const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();

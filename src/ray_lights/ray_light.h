@@ -1,4 +1,4 @@
-// A virtual ray light: a flight of a particle through the medium, or a piece of one, whose light scatters all along it.
+// A virtual ray light: a flight of a particle through the medium, or a piece of one, along which its light scatters.
 #pragma once
 
 #include "light_selection/medium_light_tree.h"
@@ -9,10 +9,10 @@ namespace brisance {
 struct RayLight {
     Segment segment;
     Rgb power{0.0f};          // that arrives at its start, over the number of particles [W]
-    bool from_smoke = false;  // its particle set out where it had collided
-    bool dimmed = false;      // of a long flight: what arrives at v passed the smoke from the start to there
+    bool from_smoke = false;  // its flight starts at a collision
+    bool dimmed = false;      // of a long flight: light at v is attenuated by the smoke from the start to v
     double extinction = 0.0;  // mean along it [1/m]
-    double scattered = 0.0;   // luminance [W] that scatters along it, about: the optical depth times its power
+    double scattered = 0.0;   // approximate luminance [W] that scatters along it: optical depth times power
     double radius = 0.0;      // of a beam [m] (beam.h)
 };
 

@@ -11,11 +11,12 @@ namespace brisance {
 
 namespace {
 
-// What its few places may miss, a light is wanted for by its box.
+// Weight of the importance of a light's box in the target function along rays: a floor, as a few points may miss the
+// light.
 constexpr double kByItsBox = 0.1;
 
-// How far it is to the nearest light from anywhere in the smoke, on average, were they strewn evenly: lines of a total
-// length l in a volume V are as many to an area as l / V, whatever their directions.
+// The mean distance to the nearest light from a random point in the smoke, if the lights were distributed uniformly:
+// lines of total length l in a volume V cross a unit area perpendicular to them l / V times, whatever their directions.
 double automatic_radius(std::span<const RayLight> lights, const TrackingField& field) {
     double length = 0.0;
     for (const RayLight& light : lights)
@@ -30,8 +31,8 @@ std::vector<RayLight> thickened(std::vector<RayLight> lights, double radius, con
     return lights;
 }
 
-AskedLobes asked_of(const RayLight& light, const AskedLobes& lobes) {
-    return light.from_smoke ? lobes : AskedLobes(lobes.whole);
+ReceiverLobes lobes_for(const RayLight& light, const ReceiverLobes& lobes) {
+    return light.from_smoke ? lobes : ReceiverLobes(lobes.whole);
 }
 
 }  // namespace
@@ -88,11 +89,11 @@ Rgb RayLights::pair(const RayMedium& seen, const RayLight& light, Rng& rng) cons
     const Coefficients at_v = RayProbe(scene_.field(), {light.segment.start, light.segment.direction}).at(s.v);
     if (at_u.scattering == Rgb(0.0f) || at_v.scattering == Rgb(0.0f))
         return Rgb(0.0f);
-    const dvec3 from = light.segment.at(s.v), way = camera.at(s.u) - from;
-    const double w = glm::length(way);
+    const dvec3 from = light.segment.at(s.v), offset = camera.at(s.u) - from;
+    const double w = glm::length(offset);
     if (!(w > 0.0) || !(s.pdf > 0.0))
         return Rgb(0.0f);
-    const Ray between{from, way / w};
+    const Ray between{from, offset / w};
     if (occluded(between, w))
         return Rgb(0.0f);
     const BallCone cone(between.direction, w, light.radius);
@@ -102,7 +103,7 @@ Rgb RayLights::pair(const RayMedium& seen, const RayLight& light, Rng& rng) cons
     return light.power * at_u.scattering * at_v.scattering * float(phases * through * cone.kernel() / s.pdf);
 }
 
-Rgb RayLights::to_surface(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer,
+Rgb RayLights::to_surface(const SurfacePoint& point, const ReceiverLobes& lobes, const dvec3& toward_viewer,
                           const RayLight& light, Rng& rng) const {
     const double g = scene_.field().mean_cosine();
     const AngularDensity density(point.position, light.segment, {{-light.segment.direction, g}}, light.radius);
@@ -110,37 +111,37 @@ Rgb RayLights::to_surface(const SurfacePoint& point, const AskedLobes& lobes, co
     const Coefficients at_v = RayProbe(scene_.field(), {light.segment.start, light.segment.direction}).at(v);
     if (at_v.scattering == Rgb(0.0f))
         return Rgb(0.0f);
-    const dvec3 place = light.segment.at(v), start = point.start_toward(place), way = place - start;
-    const double w = glm::length(way);
+    const dvec3 source = light.segment.at(v), start = point.start_toward(source), offset = source - start;
+    const double w = glm::length(offset);
     if (!(w > 0.0))
         return Rgb(0.0f);
-    const Ray ray{start, way / w};
+    const Ray ray{start, offset / w};
     const BallCone cone(ray.direction, w, light.radius);
     const Rgb scattered =
-        mean_reflected(cone, light.segment.direction, g, point, asked_of(light, lobes), toward_viewer, rng);
+        mean_reflected(cone, light.segment.direction, g, point, lobes_for(light, lobes), toward_viewer, rng);
     if (scattered == Rgb(0.0f) || occluded(ray, w))
         return Rgb(0.0f);
     const double through = reaches_along(light, v, rng) * scene_.lines().transmittance(ray, w, rng);
     return light.power * at_v.scattering * scattered * float(through * cone.kernel() / density.pdf(v));
 }
 
-// The double integral of a pair by a few of its places.
-double RayLights::wanted_along(const RayMedium& seen, const RayLight& light) const {
-    constexpr int kPlaces = 3;
+// The double integral of a pair, approximated with a few points on the light.
+double RayLights::target_along(const RayMedium& seen, const RayLight& light) const {
+    constexpr int kSamples = 3;
     const double g = scene_.field().mean_cosine();
     const InverseDistanceDensity near(light.segment, seen.segment(), light.radius);
     double sum = 0.0;
-    for (int i = 0; i < kPlaces; ++i) {
-        const double v = near.place((i + 0.5) / kPlaces);
+    for (int i = 0; i < kSamples; ++i) {
+        const double v = near.quantile((i + 0.5) / kSamples);
         sum +=
             shown_along(seen, {light.segment.at(v), light.segment.direction, light.extinction, 0.0, light.radius}, g) /
             near.pdf(v);
     }
-    return sum * light.scattered / (kPlaces * light.segment.length);
+    return sum * light.scattered / (kSamples * light.segment.length);
 }
 
-// By its middle, as the tree sees it.
-double RayLights::wanted_at(const dvec3& point, const dvec3& normal, const RayLight& light) const {
+// Importance of its box, as for the tree.
+double RayLights::target_at(const dvec3& point, const dvec3& normal, const RayLight& light) const {
     return importance(bounds_of(light), LightReceiver::at(point, normal), scene_.field().mean_cosine());
 }
 
@@ -150,26 +151,26 @@ Rgb RayLights::along_ray(const RayMedium& seen, Rng& rng, SelectionCost* cost) c
         return Rgb(0.0f);
     const LightReceiver receiver = receiver_along(seen);
     const double g = scene_.field().mean_cosine();
-    const auto wanted = [&](const RayLight& light) {
-        return wanted_along(seen, light) + kByItsBox * importance(bounds_of(light), receiver, g);
+    const auto target = [&](const RayLight& light) {
+        return target_along(seen, light) + kByItsBox * importance(bounds_of(light), receiver, g);
     };
-    resample_lights<RayLight>(tree_, lights_, receiver, settings_.samples, wanted, rng, cost, choices);
+    resample_lights<RayLight>(tree_, lights_, receiver, settings_.samples, target, rng, cost, choices);
     Rgb sum(0.0f);
     for (const LightChoice<RayLight>& c : choices)
         sum += float(c.weight) * pair(seen, *c.light, rng);
     return sum;
 }
 
-Rgb RayLights::at_surface(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer, Rng& rng,
+Rgb RayLights::at_surface(const SurfacePoint& point, const ReceiverLobes& lobes, const dvec3& toward_viewer, Rng& rng,
                           SelectionCost* cost) const {
     thread_local std::vector<LightChoice<RayLight>> choices;
     const bool above = glm::dot(point.frame.normal, toward_viewer) >= 0.0;
     const dvec3 normal = above ? point.frame.normal : -point.frame.normal;
     const bool from_all = !lobes.shared || lobes.whole.base_albedo(toward_viewer) != Rgb(0.0f);
-    const auto wanted = [&](const RayLight& light) {
-        return from_all || light.from_smoke ? wanted_at(point.position, normal, light) : 0.0;
+    const auto target = [&](const RayLight& light) {
+        return from_all || light.from_smoke ? target_at(point.position, normal, light) : 0.0;
     };
-    resample_lights<RayLight>(tree_, lights_, LightReceiver::at(point.position, normal), settings_.samples, wanted, rng,
+    resample_lights<RayLight>(tree_, lights_, LightReceiver::at(point.position, normal), settings_.samples, target, rng,
                               cost, choices);
     Rgb sum(0.0f);
     for (const LightChoice<RayLight>& c : choices)
@@ -185,7 +186,7 @@ Rgb RayLights::along_ray_from_all(const RayMedium& seen, Rng& rng) const {
     return sum;
 }
 
-Rgb RayLights::at_surface_from_all(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer,
+Rgb RayLights::at_surface_from_all(const SurfacePoint& point, const ReceiverLobes& lobes, const dvec3& toward_viewer,
                                    Rng& rng) const {
     Rgb sum(0.0f);
     for (const RayLight& light : lights_)

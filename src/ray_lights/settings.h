@@ -1,4 +1,4 @@
-// Virtual ray lights: how many, how many of them a camera ray asks, and how thick they are.
+// Settings of virtual ray lights: their number, how many are evaluated per camera ray, and their radius.
 #pragma once
 
 #include <cstdint>
@@ -6,14 +6,14 @@
 namespace brisance {
 
 enum class RayLength {
-    Short,  // to the particle's next collision: shines alike all along
-    Long    // to the end of the medium or a surface, dimmed by the smoke on the way: less noise per light, dearer
+    Short,  // to the particle's next collision: uniform along its length
+    Long    // to the end of the medium or a surface, attenuated by the smoke: less noise per light, more time
 };
 
 struct RayLightSettings {
     int paths = 16384;   // particles that are followed
-    int count = 131072;  // pieces of rays that are kept, on average
-    int samples = 4;     // lights that a camera ray, or a point of a surface, asks
+    int count = 131072;  // mean number of pieces of rays that are kept
+    int samples = 4;     // lights evaluated per camera ray and per point of a surface
     RayLength length = RayLength::Short;
     std::uint32_t seed = 0;
     double radius = 0.0;            // of the first pass [m]; 0: rays, without bias; above: beams (beam.h)
@@ -21,7 +21,8 @@ struct RayLightSettings {
     double radius_reduction = 0.7;  // alpha of radius_shrunk(): near 1 the radius stays
 };
 
-// Of RayLightSettings::radius: from the lights of the first pass, RayLights::radius().
+// A value of RayLightSettings::radius: the radius is derived from the lights of the first pass, see
+// RayLights::radius().
 constexpr double kAutomaticRadius = -1.0;
 
 }  // namespace brisance

@@ -7,8 +7,8 @@ namespace brisance {
 
 namespace {
 
-// Lights are cut into pieces of this part of the medium's diagonal: a long one would be near every receiver, and the
-// tree could not tell who asks for which of its ends. Pieces of a ray light are ray lights.
+// Lights are cut into pieces of this fraction of the medium's diagonal. A longer one would be near every receiver, and
+// the tree could not distinguish its ends. Pieces of a ray light are ray lights.
 constexpr double kLongestPiece = 1.0 / 24.0;
 
 class Flights {
@@ -18,7 +18,7 @@ public:
         const dvec3 nodes(scene.field().bricks().brick_extent() * BrickLattice::kSize);
         longest_ = kLongestPiece * glm::length(dmat3(medium.world_from_index) * nodes);
     }
-    // The light of a flight, where there is smoke.
+    // Leaves the light of a flight where there is smoke.
     void leave_light(const ParticleFlight& flight, std::vector<RayLight>& lights) const {
         const Ray& ray = flight.ray();
         const double end = flight.collision && !long_ ? flight.collision->distance : flight.segment.end;
@@ -66,7 +66,7 @@ private:
 
 }  // namespace
 
-// There are two scatterings more after a flight than before it.
+// A path has two scatterings more than its particle had before the flight.
 std::vector<RayLight> trace_ray_lights(const DirectLight& scene, const RayLightSettings& settings, int bounces,
                                        RayLightReport& report) {
     std::vector<RayLight> lights;

@@ -1,9 +1,9 @@
-// Particles of fire and emitters on their way through medium and surfaces: every flight through the medium becomes a
-// ray light.
+// Traces particles of fire and emitters through medium and surfaces. Every flight through the medium becomes a ray
+// light.
 //
-// Whose path is whose: light of a ray scatters at v on it, then at u on the camera's ray, or at a point of a surface.
-// Its cell is therefore MM or SM whatever happened before v; the first flight of a particle brings paths of two
-// scatterings. Light that comes to u straight from fire, emitters or surfaces (MV, MA, MS) is not in any ray light.
+// Ledger cells: light of a ray light scatters at v on it, then at u on the camera ray or at a point of a surface. Its
+// cell is therefore MM or SM, whatever happened before v; the first flight of a particle yields paths of two
+// scatterings. Light that reaches u directly from fire, emitters or surfaces (MV, MA, MS) is not in any ray light.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,10 @@
 namespace brisance {
 
 struct RayLightReport : FlightReport {
-    std::uint64_t pieces = 0, lights = 0;  // ray lights that flights were cut into, and those kept
+    std::uint64_t pieces = 0, lights = 0;  // pieces that flights were cut into, and those kept
 };
 
-// `bounces`: the most scatterings of a path, the one where the ray's light arrives among them; -1: all.
+// `bounces`: the most scatterings of a path, including the one where the light arrives; -1: no limit.
 std::vector<RayLight> trace_ray_lights(const DirectLight& scene, const RayLightSettings& settings, int bounces,
                                        RayLightReport& report);
 

@@ -1,4 +1,4 @@
-// What a checkpoint of the path tracer belongs to.
+// Identifies the render that a checkpoint of the path tracer belongs to.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 
 namespace brisance {
 
-// Everything that decides a path tracer's bits, but for when it stops and what becomes of them. `volume`: the frame's
-// file; empty where the shot has none.
+// Everything that determines the bits of a path tracer, except when it stops and how its result is used. `volume`: the
+// frame's file; empty where the shot has none.
 std::string checkpoint_key(const Shot& shot, const std::filesystem::path& volume, int frame);
 
 }  // namespace brisance

@@ -13,7 +13,7 @@
 
 namespace brisance {
 
-// What is drawn, by reference.
+// Input of a picture, by reference.
 struct DrawInput {
     const Shot& shot;
     const Plan& plan;
@@ -24,14 +24,14 @@ struct DrawInput {
 
 struct Drawn {
     Image image;
-    std::optional<LightPictures> light_pictures;  // where output.virtual_lights wants them and there are lights
+    std::optional<LightPictures> light_pictures;  // if output.virtual_lights is set and there are lights
     double samples_per_pixel = 0.0;
 };
 
-// Builds the lights, draws the picture, adds its layers. Throws Error Usage for settings that do not go together.
+// Builds the lights, renders the picture and adds its layers. Throws Error Usage for settings that are incompatible.
 Drawn draw_by_many_lights(const DrawInput& input, Statistics& statistics, Progress& progress);
 
-// Why a shot has no virtual lights to make pictures of, as half a sentence; nothing where it has some.
+// The reason why a shot has no virtual lights to make pictures of, as half a sentence; none if it has some.
 std::optional<std::string> why_no_virtual_lights(const Shot& shot, const Plan& plan);
 
 inline constexpr const char* kNoLightPictures = "no pictures of virtual lights are written: ";

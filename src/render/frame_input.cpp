@@ -40,7 +40,7 @@ CameraSettings with_file_camera(CameraSettings settings, const SceneCamera& came
     return settings;
 }
 
-// A medium of nothing, whose local space begins at `origin`.
+// An empty medium whose local space begins at `origin`.
 Medium empty_medium(const dvec3& origin) {
     Medium medium;
     medium.world_from_index[3] = glm::dvec4(origin, 1.0);

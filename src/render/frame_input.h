@@ -1,4 +1,4 @@
-// What one frame is rendered from: its medium, its surroundings, its camera.
+// The input of one frame: its medium, its surroundings, its camera.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// From the volume's file to the frame's medium.
+// Loads the volume files of a frame as its medium.
 #pragma once
 
 #include <filesystem>
@@ -11,12 +11,11 @@
 
 namespace brisance {
 
-// Where the shot's further volumes are for a frame, in their order; empty for boxes. Throws Error MissingInput for a
+// Paths of the shot's further volumes for a frame, in their order; empty for boxes. Throws Error MissingInput for a
 // missing frame.
 std::vector<std::filesystem::path> further_files(const Shot& shot, int frame);
 
-// Reads the grids that the shot needs, and no others; `volume` may be empty, then there are only further volumes.
-// Throws Error.
+// Reads only the grids that the shot needs. `volume` may be empty, if there are only further volumes. Throws Error.
 Medium load_medium(const Shot& shot, const std::filesystem::path& volume, int frame, Statistics& statistics,
                    Progress& progress);
 

@@ -54,7 +54,7 @@ bool lights_medium(const Plan& plan) {
     return plan.single || plan.needs(Cell::SV) || plan.needs(Cell::MA) || plan.needs(Cell::MS);
 }
 
-// Whether MV and MA of the lighting hold light that scattered more than once, and a layer wants it apart.
+// Whether MV and MA of the lighting hold light that scattered more than once, and a layer needs it separately.
 bool wants_single_scattering_apart(const DrawInput& input) {
     const Plan& plan = input.plan;
     return plan.multiple && !plan.scattering_method && input.shot.scattering.bounces < 0 &&

@@ -1,5 +1,5 @@
-// Everything that one frame is lit by, built in the order in which it depends on each other: paths for surfaces,
-// virtual lights on them, then the lighting of the medium.
+// All lights of one frame, built in order of dependence: paths for surfaces, virtual lights on them, then the lighting
+// of the medium.
 #pragma once
 
 #include <memory>
@@ -13,22 +13,22 @@
 
 namespace brisance {
 
-// `plan`: which light is wanted; `medium`: through which it is followed.
+// `plan`: the light to compute; `medium`: the medium through which it is traced.
 MediumLightingInput medium_lighting_input(const DrawInput& input, const Plan& plan, const Medium& medium,
                                           const ReflectedLight& reflected = {}, bool orders_apart = false);
 
-// The medium's lighting, and what the camera samples of it.
+// The lighting of the medium, and the field that the camera samples.
 class LitMedium {
 public:
-    // `plan`: which light is wanted of it. `bounces`: scatterings that it follows, -1: all. `orders_apart`: keeps
-    // orders of scattering for layers.
+    // `plan`: the light to compute; `bounces`: the most scatterings, -1: no limit; `orders_apart`: keeps orders of
+    // scattering for layers.
     LitMedium(const DrawInput& input, const Plan& plan, int bounces, const ReflectedLight& reflected, bool orders_apart,
               Statistics& statistics, Progress& progress);
     LitMedium(const LitMedium&) = delete;
     LitMedium& operator=(const LitMedium&) = delete;
 
     const SourceField& field() const { return *field_; }
-    const MediumLighting* lighting() const { return lighting_.get(); }  // null: nothing shines
+    const MediumLighting* lighting() const { return lighting_.get(); }  // null: there is no light
     const Medium* similar() const { return similar_ ? &*similar_ : nullptr; }
 
 private:
@@ -46,9 +46,9 @@ public:
     const PathTracer* paths() const { return paths_ ? &*paths_ : nullptr; }  // null: no surfaces
     // What paths and estimators along rays look up; null where nothing does.
     const DirectLight* direct() const { return paths_ ? &paths_->direct() : own_direct_ ? &*own_direct_ : nullptr; }
-    const VirtualLights* virtual_lights() const { return virtual_lights_.get(); }  // null: the shot wants none
+    const VirtualLights* virtual_lights() const { return virtual_lights_.get(); }  // null: the shot uses none
     const LitMedium& medium() const { return *medium_; }
-    // Of light that scattered once, where MV and MA of medium() hold more (PictureSettings::once); null: not so.
+    // Field of single scattering, where MV and MA of medium() hold more (PictureSettings::once); else null.
     const LitMedium* once() const { return once_.get(); }
 
 private:

@@ -44,14 +44,14 @@ void decide(Plan& plan, bool scatters, bool visible, int bounces) {
     plan.multiple = plan.needs(Cell::MM);
 }
 
-// No smoke but boxes of it.
+// Whether all smoke is in boxes, none from files.
 bool haze_alone(const Shot& shot) {
     return shot.volume.file.empty() && !shot.volumes.empty() &&
            std::all_of(shot.volumes.begin(), shot.volumes.end(),
                        [](const FurtherVolume& v) { return v.volume.box.has_value(); });
 }
 
-// Phase functions that spherical harmonics of degree 2, by which lights know directions, are too blunt for.
+// Whether the phase function is too sharp for spherical harmonics of degree 2, which store the directions of light.
 bool scatters_sharply(const Medium& medium) {
     return std::abs(medium.mean_cosine) > 0.5f;
 }
@@ -62,9 +62,9 @@ struct Choice {
 };
 
 Choice choose_scattering(const Shot& shot, const Medium& medium) {
-    const std::string& wanted = shot.scattering_methods.method;
-    if (wanted != kAutomaticMethod)
-        return {wanted, "scattering.method is " + wanted};
+    const std::string& method = shot.scattering_methods.method;
+    if (method != kAutomaticMethod)
+        return {method, "scattering.method is " + method};
     if (!haze_alone(shot))
         return {kLightingGridMethod, "scattering.method is auto: smoke from files is the grid's"};
     if (!scatters_sharply(medium))
@@ -72,7 +72,7 @@ Choice choose_scattering(const Shot& shot, const Medium& medium) {
     return {VolumetricPhotonsMethod::kName, "scattering.method is auto, and haze alone has a mean cosine above 0.5"};
 }
 
-// Names of all methods but the grid, for what is left out.
+// Names of all methods but the grid, to report those that are skipped.
 std::string other_methods() {
     std::string names;
     for (const ScatteringMethod& method : scattering_methods())
@@ -82,7 +82,7 @@ std::string other_methods() {
 
 using Skip = std::function<void(const std::string& part, const std::string& reason)>;
 
-// Who owns MM and SM, and how MA and MS are found beside them.
+// Chooses the method of MM and SM, and how MA and MS are computed beside them.
 std::string choose_owners(Plan& plan, const Shot& shot, const Medium& medium, const Skip& skip) {
     const Choice choice = choose_scattering(shot, medium);
     plan.scattering_choice = choice.method;

@@ -1,12 +1,13 @@
-// Which ledger cells a frame needs, and who owns those that have a choice, decided before anything is built.
+// Decides, before anything is built, which ledger cells a frame needs and which method computes those that have a
+// choice.
 //
-// scattering.method auto looks at the shot and not at the frame, so that no sequence changes its method half way. Boxes
-// of haze without any smoke from files are thin and even. If they scatter forward, hierarchies, which keep directions
-// to degree 2 only, lose a part of MM and SM (a tenth at g = 0.8) where volumetric photons keep the phase function as
-// it is; ray lights do too, and without blur, but in the same time with a hundred times the noise. If haze scatters
-// alike to all sides hierarchies are right to a percent, and free of noise. Smoke from files is finer and larger than
-// photons can fill: there hierarchies are better by far whatever the phase function. MA of haze alone is estimated on
-// the camera's rays too: beams of light are narrower than the voxels of a box.
+// scattering.method auto depends on the shot and not on the frame, so that no sequence changes its method half way.
+// Boxes of haze without smoke from files are thin and homogeneous. If they scatter forward, hierarchies, which keep
+// directions to degree 2 only, lose a part of MM and SM (a tenth at g = 0.8), whereas volumetric photons use the exact
+// phase function. Ray lights do, too, and without blur, but have a hundred times the noise in the same time. If haze
+// scatters almost isotropically, hierarchies are right to a percent and free of noise. Smoke from files is finer and
+// larger than photons can resolve: there hierarchies are far better whatever the phase function. MA of haze alone is
+// also estimated along the camera's rays, as beams of light are narrower than the voxels of a box.
 #pragma once
 
 #include <string>
@@ -26,9 +27,10 @@ struct Plan {
     bool single = false;       // MV
     bool multiple = false;     // MM
     bool directional = false;  // anisotropic phase function: directional storage
-    // Who owns MM and SM of a picture by many lights; null: the lighting grid, or nothing scatters twice.
+    // The method that computes MM and SM of a picture by many lights; null: the lighting grid, or nothing scatters
+    // twice.
     const ScatteringMethod* scattering_method = nullptr;
-    std::string scattering_choice;        // the name that scattering.method came to
+    std::string scattering_choice;        // the method that scattering.method resolved to
     bool emitters_by_rays = false;        // MA on the camera's rays, not at the medium's nodes
     bool reflected_by_particles = false;  // MS by particles alone, without virtual lights
     bool surfaces = false;                // there are some

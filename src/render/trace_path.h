@@ -1,4 +1,4 @@
-// One path of a picture, to see what it did.
+// One path of a picture, for inspection.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace brisance {
 
 struct TracedPath {
     Ray ray;                             // of the camera, through the pixel; world space [m]
-    PathSum orders{};                    // what it brings, by the number of scatterings [W/(m^2 sr)]
+    PathSum orders{};                    // its radiance by number of scatterings [W/(m^2 sr)]
     bool has_cells = false;              // the same by cell, in `orders.cells`: there are surroundings
     std::uint64_t scatterings = 0;       // followed; more than orders may hold
     std::vector<TracedVertex> vertices;  // in the order they were followed; positions in world space [m]

@@ -1,9 +1,9 @@
-// The table of scattering methods: who may own light that was scattered in the medium before its last scattering, the
-// ledger's cells MM and SM. A method is one row: its type says its name, keys, presets, what it needs, and how it is
-// made. What reads the table: the plan, `scattering.method` and the sections of the schema, `--help`, `brisance report`
-// and `brisance stability`.
+// The table of scattering methods, which may compute light that scattered in the medium before its last scattering, the
+// ledger's cells MM and SM. A method is one row: its type defines its name, keys, presets, requirements and
+// construction. The table is read by the plan, `scattering.method` and the sections of the schema, `--help`, `brisance
+// report` and `brisance stability`.
 //
-// The lighting grid, which keeps these cells at the medium's nodes, is no row: it is what every other method replaces.
+// The lighting grid, which stores these cells at the medium's nodes, is not a row: every other method replaces it.
 #pragma once
 
 #include <tuple>

@@ -1,4 +1,4 @@
-// The table of scattering methods, for those who choose by name.
+// The table of scattering methods, by name.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace brisance {
 constexpr const char* kAutomaticMethod = "auto";
 constexpr const char* kLightingGridMethod = "lighting_grid";
 
-// Settings of all methods, and which of them is wanted.
+// Settings of all methods, and the choice among them.
 struct ScatteringMethodSettings {
     template <class Method>
     struct Of;
@@ -37,7 +37,7 @@ struct ScatteringMethod {
     std::string name;     // as scattering.method and as the section of its keys
     std::string product;  // what it makes, as users read it: "ray lights"
     std::string help;
-    bool thins_lights;  // for what the camera sees: InScatteringRequest::receivers is wanted
+    bool thins_lights;  // by what the camera sees: needs InScatteringRequest::receivers
     std::vector<MethodPreset> presets;
     int (*passes)(const ScatteringMethodSettings& settings);
     MadeInScattering (*make)(const InScatteringRequest& request, const ScatteringMethodSettings& settings);

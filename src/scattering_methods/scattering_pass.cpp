@@ -12,7 +12,7 @@ namespace brisance {
 
 namespace {
 
-// Rays of the camera that stand for all of them when lights are thinned out, along a side of the picture.
+// Camera rays, along a side of the picture, that represent all of them when lights are thinned out.
 constexpr int kReceivers = 12;
 
 // Points on every ray of the camera at which emitters are sampled.

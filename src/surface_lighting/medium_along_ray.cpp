@@ -7,8 +7,8 @@ namespace brisance {
 
 namespace {
 
-// Points on such a ray at which emitters are sampled.
-constexpr int kEmitterPlaces = 4;
+// Points on a ray at which emitters are sampled.
+constexpr int kEmitterSamples = 4;
 
 }  // namespace
 
@@ -21,7 +21,7 @@ RaySum MediumAlongRay::look(const Ray& ray, double end, Rng& rng) const {
     if (in_scattering_)
         sum.cells.at(Cell::MM) += in_scattering_->along_ray(medium, rng);
     if (emitters_by_rays_)
-        sum.cells.at(Cell::MA) += emitters_along_ray(scene_, medium, ray, kEmitterPlaces, rng);
+        sum.cells.at(Cell::MA) += emitters_along_ray(scene_, medium, ray, kEmitterSamples, rng);
     return sum;
 }
 

@@ -1,4 +1,4 @@
-// What a ray that leaves a surface sees of the medium.
+// The light of the medium along a ray that leaves a surface.
 #pragma once
 
 #include "camera_rays/ray_sum.h"
@@ -10,8 +10,8 @@ namespace brisance {
 
 class MediumAlongRay {
 public:
-    // Keeps references. `parts`: as of PictureSettings. `in_scattering`: null where it does not own MM.
-    // `emitters_by_rays`: MA is estimated along the ray, as the field holds none.
+    // Keeps references. `parts` is that of PictureSettings. `in_scattering` is null where it does not own MM.
+    // `emitters_by_rays`: MA is estimated along the ray, as the field does not hold it.
     MediumAlongRay(const SourceField& field, const DirectLight& scene, int parts, const InScattering* in_scattering,
                    bool emitters_by_rays)
         : field_(field),
@@ -20,7 +20,7 @@ public:
           in_scattering_(in_scattering),
           emitters_by_rays_(emitters_by_rays) {}
 
-    // Up to `end` metres: V and the row M, as a ray of the camera has them.
+    // V and the row M up to `end` metres, as for a ray of the camera.
     RaySum look(const Ray& ray, double end, Rng& rng) const;
 
 private:

@@ -8,7 +8,7 @@ namespace brisance {
 
 namespace {
 
-void add_way(const RaySum& seen, const Rgb& emitted, const Rgb& throughput, bool first, CellSum& light) {
+void add_segment(const RaySum& seen, const Rgb& emitted, const Rgb& throughput, bool first, CellSum& light) {
     const Rgb glow = throughput * seen.cells.at(Cell::V), scattered = throughput * scattered_by_medium(seen.cells);
     light.at(first ? Cell::SV : Cell::SS) += glow;
     light.at(first ? Cell::SM : Cell::SS) += scattered;
@@ -22,20 +22,20 @@ BehindMirrors Mirrors::follow(const SurfaceSample& sample, const SurfacePoint& p
     BehindMirrors at{point, sample.ray.direction};
     Rng rng(Stream::Mirror, sample.pixel, sample.number);
     for (;; ++at.mirrors) {
-        const PathVertex place(at.point, at.arriving);
-        if (!place.only_delta())
+        const PathVertex vertex(at.point, at.arriving);
+        if (!vertex.only_delta())
             return at;
         at.lost = true;
         const bool first = at.mirrors == 0;
-        const std::optional<PathVertex::Sample> turn = place.sample(rng);
+        const std::optional<PathVertex::Sample> turn = vertex.sample(rng);
         if (!turn)
             return at;
         at.throughput *= turn->weight;
         if (!survives(at.throughput, 1.0f, at.mirrors > kManyScatterings, rng))
             return at;
-        const RaySegment segment = scene_.segment_along(place.leaving(turn->wi));
+        const RaySegment segment = scene_.segment_along(vertex.leaving(turn->wi));
         const RaySum seen = medium_.look(segment.ray, segment.end, medium_rng);
-        add_way(seen, scene_.at_end(segment, turn->pdf, turn->delta, &place), at.throughput, first, light);
+        add_segment(seen, scene_.at_end(segment, turn->pdf, turn->delta, &vertex), at.throughput, first, light);
         at.throughput *= std::exp(-seen.depth);
         if (!segment.point || !beyond_ || seen.depth > kOpaqueDepth)
             return at;

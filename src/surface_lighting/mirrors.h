@@ -1,7 +1,7 @@
-// Through mirrors and clear glass, to the first surface that scatters.
+// Follows rays through mirrors and clear glass to the first surface that scatters.
 //
-// What stands there is lit as if the camera saw it itself, by grids and virtual lights, and so is the smoke on the way:
-// a path that goes on from a mirror would draw one line toward the fire for all of that.
+// That surface is lit by grids and virtual lights, as if the camera saw it directly, and so is the smoke along the ray.
+// A path continued from the mirror would instead sample a single line toward the fire for all of that light.
 #pragma once
 
 #include "camera_rays/picture.h"
@@ -9,24 +9,24 @@
 
 namespace brisance {
 
-// Whom to light in the place of what a ray of the camera met.
+// The surface point to shade instead of the one that the camera ray hit.
 struct BehindMirrors {
     SurfacePoint point;
-    dvec3 arriving{0.0};  // unit: the direction in which the ray meets it
+    dvec3 arriving{0.0};  // unit: direction of the ray that reaches the point
     Rgb throughput{1.0f};
-    int mirrors = 0;    // on the way
-    bool lost = false;  // nothing stands there, or nothing of it arrives
+    int mirrors = 0;    // along the path
+    bool lost = false;  // no surface was found, or none of its light arrives
 };
 
 class Mirrors {
 public:
-    // Keeps references. `beyond`: whether anything is wanted of surfaces behind mirrors (cell SS).
+    // Keeps references. `beyond`: light of surfaces behind mirrors (cell SS) is needed.
     Mirrors(const DirectLight& scene, const MediumAlongRay& medium, bool beyond)
         : scene_(scene), medium_(medium), beyond_(beyond) {}
 
-    // From a surface that `sample` met. What the first mirror shows of the medium (SV, SM) and of emitters (SA), and
-    // what later ones show of both (SS), is added to `light`; what the last surface scatters is SS, too. At each
-    // mirror one way is drawn.
+    // Starts at a surface that `sample` hit. Adds to `light` the medium (SV, SM) and the emitters (SA) seen in the
+    // first mirror; those seen in later mirrors count as SS, as does the light that the last surface scatters. One
+    // direction is sampled at each mirror.
     BehindMirrors follow(const SurfaceSample& sample, const SurfacePoint& point, Rng& medium_rng, CellSum& light) const;
 
 private:

@@ -6,7 +6,7 @@ namespace brisance {
 
 namespace {
 
-// Against `toward`, over what arrives.
+// Fraction transmitted in the direction opposite to `toward`.
 Rgb straight_weight(const SurfaceMaterial& m, const ShadingFrame& frame, const dvec3& toward) {
     return m.transmission > 0.0f ? Bsdf(m, frame).straight_on(toward) : Rgb(0.0f);
 }

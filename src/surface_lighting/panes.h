@@ -1,7 +1,7 @@
-// Straight lines through panes: sheets of glass, which do not bend light.
+// Straight lines through panes: sheets of glass that do not bend light.
 //
-// A path finds fire behind a window only where the ray that it draws happens to meet both. A line toward the fire need
-// not end at the pane: it goes on, dimmed, as through a window it does.
+// A path finds fire behind a window only if the ray that it samples happens to meet both. A shadow ray toward the fire
+// can pass through the pane instead, attenuated by the glass.
 #pragma once
 
 #include "emitters/surroundings.h"
@@ -15,12 +15,12 @@ public:
     bool any() const { return any_; }
 
     struct Passage {
-        Rgb weight{1.0f};  // that panes let through
-        int panes = 0;     // on the way
+        Rgb weight{1.0f};  // transmittance of the panes
+        int panes = 0;     // along the line
         bool blocked = false;
     };
     Passage along(Ray ray, double end) const;
-    // What of the light along `direction` goes straight on at that place.
+    // The fraction of the light along `direction` that the surface transmits undeflected at the point.
     static Rgb straight_on(const SurfacePoint& point, const dvec3& direction);
 
 private:

@@ -1,4 +1,4 @@
-// How long the paths are that end at virtual lights, pixel by pixel.
+// Lengths of the paths that end at virtual lights, per pixel.
 #pragma once
 
 #include <cstdint>
@@ -6,18 +6,18 @@
 
 namespace brisance {
 
-// Not for several threads at once.
+// Not thread-safe.
 class PathLengths {
 public:
     explicit PathLengths(std::size_t pixels) : paths_(pixels, 0), vertices_(pixels, 0) {}
 
-    // One path that was scattered `vertices` times, at the pixel's first surface to begin with; 0: there was none.
+    // Adds one path with `vertices` scatterings, counted from the first surface of the pixel; 0: there was no path.
     void add(std::uint32_t pixel, int vertices) {
         paths_[pixel] += vertices > 0 ? 1 : 0;
         vertices_[pixel] += static_cast<std::uint32_t>(vertices);
     }
 
-    // Mean number of vertices of each pixel's paths; 0 where there were none.
+    // Mean number of vertices of the paths of each pixel; 0 where there were none.
     std::vector<float> means() const {
         std::vector<float> out(paths_.size(), 0.0f);
         for (std::size_t p = 0; p < out.size(); ++p)

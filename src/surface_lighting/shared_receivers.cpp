@@ -6,10 +6,11 @@ namespace brisance {
 
 namespace {
 
-// How far apart, over the distance from the smoke; and over a voxel, where that is more.
+// Largest distance between samples, relative to the distance from the smoke, and relative to a voxel where that is
+// more.
 constexpr float kOfDistance = 0.05f, kOfVoxel = 0.25f;
-// Cosine between normals of samples that face the same way.
-constexpr float kSameWay = 0.999f;
+// Least cosine between normals of samples that share a receiver.
+constexpr float kSameFacing = 0.999f;
 
 }  // namespace
 
@@ -22,8 +23,8 @@ void SharedReceivers::add(std::uint32_t pixel, const vec3& local, const vec3& no
         first_of_pixel_ = groups_.size();
     pixel_ = pixel;
     const auto joins = [&](const Group& g) {
-        const vec3 way = local - g.first;
-        return glm::dot(way, way) <= g.reach * g.reach && glm::dot(normal, g.facing) > kSameWay;
+        const vec3 offset = local - g.first;
+        return glm::dot(offset, offset) <= g.reach * g.reach && glm::dot(normal, g.facing) > kSameFacing;
     };
     const auto group = std::find_if(groups_.begin() + std::ptrdiff_t(first_of_pixel_), groups_.end(), joins);
     const auto number = static_cast<std::size_t>(group - groups_.begin());

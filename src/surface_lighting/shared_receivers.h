@@ -1,6 +1,6 @@
-// Receivers that a pixel's surface samples share. What arrives past no surface changes slowly from place to place, as
-// the distance from the smoke does: samples that lie close together and face the same way ask once, from their middle.
-// What they find is right to the second order of how far they are apart.
+// Receivers shared by surface samples of one pixel. Unoccluded irradiance changes slowly with position, on the scale of
+// the distance from the smoke. Samples that lie close together and have nearly the same normal therefore share one
+// receiver at their mean position. The error is of second order in their distance.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +15,16 @@ class SharedReceivers {
 public:
     explicit SharedReceivers(const Medium& medium) : bounds_(local_bounds(medium)), voxel_(medium.spacing) {}
 
-    // A sample after those before it; samples of one pixel come one after another. `normal`: unit.
+    // Adds the next sample; samples of one pixel must be consecutive. `normal`: unit.
     void add(std::uint32_t pixel, const vec3& local, const vec3& normal);
-    // To be lit, once all samples are there.
+    // The receivers to light, to be called after all samples are added.
     std::vector<SurfaceReceiver>& receivers();
     const SurfaceReceiver& of_sample(std::size_t sample) const { return receivers_[receiver_of_[sample]]; }
 
 private:
     struct Group {
-        vec3 first, facing;  // its first sample
-        float reach;         // of others from there [m]
+        vec3 first, facing;  // of its first sample
+        float reach;         // largest distance of other samples from it [m]
         int samples;
     };
     float reach_at(const vec3& local) const;
@@ -34,7 +34,7 @@ private:
     std::uint32_t pixel_ = 0;
     std::size_t first_of_pixel_ = 0;
     std::vector<Group> groups_;
-    std::vector<SurfaceReceiver> receivers_;  // of each group: sums, until all samples are there
+    std::vector<SurfaceReceiver> receivers_;  // of each group: sums, until all samples are added
     std::vector<std::uint32_t> receiver_of_;
 };
 

@@ -85,7 +85,7 @@ void drop_hidden_lights(HierarchyLights& lights, const Medium& medium, const Nod
 void place_for_exterior(HierarchyLights& lights, const Medium& medium, const NodeWeights& escape) {
     move_to_skin(lights, medium, escape);
     drop_hidden_lights(lights, medium, escape);
-    drop_coarse_levels(lights.grid, kLeastLightsForHaze);
+    drop_coarse_levels(lights.grid, kLeastLightsForThinMedium);
 }
 
 void drop_coarse_levels(LightingGrid& grid, std::size_t least) {

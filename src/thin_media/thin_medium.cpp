@@ -11,14 +11,14 @@ namespace brisance {
 
 namespace {
 
-// Extinction over the mean that light meets in the smoke (by extinction): above the first a node is smoke proper,
-// below the second thin.
+// Extinction relative to the mean that light meets in the smoke (weighted by extinction): above the first a node is
+// dense, below the second thin.
 constexpr float kSmoke = 0.15f, kThin = kThinSmoke;
-// Thin nodes over all: haze begins to count, and counts in full.
+// Fraction of thin nodes at which the thin medium begins to count, and counts in full.
 constexpr float kFewNodes = kFringes, kManyNodes = 0.6f;
-// Mean transmittance to the outside: hollows in the smoke see less, and are no haze.
+// Mean transmittance to the outside: hollows in the smoke have less, and are not thin media.
 constexpr float kHollow = 0.02f, kOpen = 0.1f;
-// From the camera, in bricks: nearer, the direction to it turns too fast to be interpolated.
+// Distance from the camera, in bricks, below which the direction to it turns too fast to be interpolated.
 constexpr float kAroundCamera = 4.0f;
 
 float ramp(float from, float to, float x) {
@@ -55,15 +55,15 @@ static_assert(LightPoints::kCount <= 2 * Receivers::kGroup);
 std::vector<float> thinness(const Medium& medium, const std::vector<std::uint8_t>& needed) {
     const float typical = float(extinction_met(medium.extinction));
     std::vector<float> thin(needed.size(), 0.0f);
-    double of_haze = 0.0, all = 0.0;
+    double of_thin = 0.0, all = 0.0;
     for (std::size_t i = 0; i < needed.size(); ++i) {
         if (!needed[i])
             continue;
         thin[i] = ramp(kSmoke * typical, kThin * typical, medium.extinction[i]);
-        of_haze += medium.extinction[i] > 0.0f ? thin[i] : 0.0f;
+        of_thin += medium.extinction[i] > 0.0f ? thin[i] : 0.0f;
         all += medium.extinction[i] > 0.0f;
     }
-    const float counts = ramp(kFewNodes, kManyNodes, all > 0.0 ? float(of_haze / all) : 0.0f);
+    const float counts = ramp(kFewNodes, kManyNodes, all > 0.0 ? float(of_thin / all) : 0.0f);
     if (counts == 0.0f)
         return {};
     for (float& t : thin)
@@ -92,7 +92,7 @@ ThinMedium::ThinMedium(const Medium& medium, const PointDepths& depths, const st
         std::fill_n(single_.begin() + std::ptrdiff_t(b) * BrickLattice::kNodes, BrickLattice::kNodes, 0);
 }
 
-// Bricks in which, and around which, nothing is smoke proper.
+// Finds the bricks that contain no dense smoke and have none around them.
 void ThinMedium::find_even_bricks(const Medium& medium, const std::vector<float>& thin) {
     const BrickLattice& lattice = medium.lattice;
     const float fullest = *std::max_element(thin.begin(), thin.end());
@@ -149,14 +149,14 @@ std::size_t ThinMedium::point_count() const {
            static_cast<std::size_t>(std::count(single_.begin(), single_.end(), std::uint8_t{1}));
 }
 
-Gathered ThinMedium::gather(const LightField& field, const GridLevel& bottom, const LightField* of_haze,
+Gathered ThinMedium::gather(const LightField& field, const GridLevel& bottom, const LightField* of_thin,
                             const LatticeRequest& request, std::vector<LevelCost>& costs, Progress& progress) const {
     const Medium& medium = field.pyramid->medium();
     LatticeRequest single = request;
     single.needed = &single_;
     Gathered out = gather_at_nodes(field, single, costs, progress);
-    if (of_haze)
-        out.add(gather_from_outside(*of_haze, single, costs, progress));
+    if (of_thin)
+        out.add(gather_from_outside(*of_thin, single, costs, progress));
     Receivers receivers;
     for (const std::uint32_t b : even_) {
         std::vector<vec3> points, directions;
@@ -169,17 +169,17 @@ Gathered ThinMedium::gather(const LightField& field, const GridLevel& bottom, co
     }
     Gathered few = gather_at_points(field, bottom, receivers, request.mean_cosine, costs, progress,
                                     ReceiverKind::Medium, request.moments);
-    if (of_haze)
-        few.add(gather_at_points(*of_haze, {}, receivers, request.mean_cosine, costs, progress, ReceiverKind::Medium,
+    if (of_thin)
+        few.add(gather_at_points(*of_thin, {}, receivers, request.mean_cosine, costs, progress, ReceiverKind::Medium,
                                  request.moments));
-    const std::size_t nodes = nodes_.size(), asked = receivers.size();
+    const std::size_t nodes = nodes_.size(), receiver_count = receivers.size();
     const auto spread = [&](const std::vector<float>& from, std::vector<float>& to) {
         parallel_for(even_.size(), [&](std::size_t k) {
-            const std::size_t place = receivers.blocks()[k].first_group * Receivers::kGroup;
+            const std::size_t first_point = receivers.blocks()[k].first_group * Receivers::kGroup;
             const std::size_t first = std::size_t(even_[k]) * BrickLattice::kNodes;
             for (std::size_t plane = 0; plane * nodes < to.size(); ++plane)
                 for (int n = 0; n < BrickLattice::kNodes; ++n)
-                    to[plane * nodes + first + n] = LightPoints::at(&from[plane * asked + place], n);
+                    to[plane * nodes + first + n] = LightPoints::at(&from[plane * receiver_count + first_point], n);
         });
     };
     spread(few.fluence, out.fluence);
@@ -188,7 +188,7 @@ Gathered ThinMedium::gather(const LightField& field, const GridLevel& bottom, co
     return out;
 }
 
-void ThinMedium::mix(const Gathered& of_haze, Gathered& all) const {
+void ThinMedium::mix(const Gathered& of_thin, Gathered& all) const {
     const std::size_t n = weight_.size();
     const auto mix_planes = [&](const std::vector<float>& from, std::vector<float>& to) {
         parallel_for(to.size() / n, [&](std::size_t plane) {
@@ -196,9 +196,9 @@ void ThinMedium::mix(const Gathered& of_haze, Gathered& all) const {
                 to[k] += weight_[i] * (from[k] - to[k]);
         });
     };
-    mix_planes(of_haze.fluence, all.fluence);
-    mix_planes(of_haze.scattered, all.scattered);
-    mix_planes(of_haze.moments, all.moments);
+    mix_planes(of_thin.fluence, all.fluence);
+    mix_planes(of_thin.scattered, all.scattered);
+    mix_planes(of_thin.moments, all.moments);
 }
 
 }  // namespace brisance

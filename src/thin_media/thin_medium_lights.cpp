@@ -8,7 +8,7 @@ namespace brisance {
 
 namespace {
 
-// Optical depth across the finest lights, above which what their neighbourhood adds is more than a correction.
+// Largest optical depth across the finest lights; above it the light of their neighbourhood is more than a correction.
 constexpr float kMostAcross = 0.1f;
 
 bool thin_enough(const Medium& medium, const std::vector<std::uint32_t>& bricks) {
@@ -17,7 +17,7 @@ bool thin_enough(const Medium& medium, const std::vector<std::uint32_t>& bricks)
         const auto first = medium.extinction.begin() + std::ptrdiff_t(b) * BrickLattice::kNodes;
         most = std::max(most, *std::max_element(first, first + BrickLattice::kNodes));
     }
-    return most * medium.spacing * float(1 << kFinestHazeLights) <= kMostAcross;
+    return most * medium.spacing * float(1 << kFinestThinLights) <= kMostAcross;
 }
 
 // `width` values per node.
@@ -45,7 +45,7 @@ std::unique_ptr<ThinMediumLights> take_thin_medium_lights(const Medium& medium,
                                                           const std::vector<std::uint32_t>& bricks,
                                                           HierarchyLights& from) {
     const int levels = static_cast<int>(from.grid.levels.size());
-    if (levels <= kFinestHazeLights || !thin_enough(medium, bricks))
+    if (levels <= kFinestThinLights || !thin_enough(medium, bricks))
         return nullptr;
     const bool dark = std::none_of(bricks.begin(), bricks.end(), [&](std::uint32_t b) {
         const auto first = from.weight.begin() + std::ptrdiff_t(b) * BrickLattice::kNodes;
@@ -55,11 +55,11 @@ std::unique_ptr<ThinMediumLights> take_thin_medium_lights(const Medium& medium,
         return nullptr;
     ScatteredLight taken{take_bricks(bricks, from.light.intensity, 1), take_bricks(bricks, from.light.directional, 24)};
     from = build_hierarchy(medium, std::move(from.light), levels);
-    auto haze = std::make_unique<ThinMediumLights>();
-    haze->lights = build_hierarchy(medium, std::move(taken), levels);
-    auto& grid = haze->lights.grid.levels;
-    grid.erase(grid.begin(), grid.begin() + kFinestHazeLights - 1);
-    return haze;
+    auto thin = std::make_unique<ThinMediumLights>();
+    thin->lights = build_hierarchy(medium, std::move(taken), levels);
+    auto& grid = thin->lights.grid.levels;
+    grid.erase(grid.begin(), grid.begin() + kFinestThinLights - 1);
+    return thin;
 }
 
 void give_back(const ThinMediumLights& taken, const std::vector<std::uint32_t>& bricks, ScatteredLight& light) {

@@ -1,10 +1,10 @@
-// Lights of even haze: what thin smoke far from dense smoke scatters.
+// Lights of homogeneous thin media: light scattered by thin smoke far from dense smoke.
 //
-// It is most of the nodes and little of the light, and changes slowly from one node to the next. Its lights therefore
-// begin at a coarser level of the hierarchy, of which every light is a ball of its own spacing and asks its shadow map
-// from close by on, and are spared the care that dense smoke's skin needs (exterior_hierarchy.h): a light's rays start
-// at its centre, and the coarsest level is as coarse as haze bears. In a room full of haze they are a sixth as many,
-// each with an eighth of the rays.
+// These bricks hold most of the nodes and little of the light, which changes slowly from one node to the next. Their
+// lights therefore begin at a coarser level of the hierarchy, where every light is a ball of the size of its spacing
+// and uses its shadow map at short distances, too. They do not need the treatment of dense smoke's skin
+// (exterior_hierarchy.h): the shadow rays of a light start at its centre, and the coarsest level is as coarse as thin
+// media allow. In a room full of haze there are a sixth as many lights, each with an eighth of the rays.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,9 @@
 
 namespace brisance {
 
-// Of even haze's finest lights: bricks ask at points as far apart (thin_smoke.h).
-constexpr int kFinestHazeLights = 2;
+// Level of the finest lights of homogeneous thin media; their bricks gather at points of the same spacing
+// (thin_smoke.h).
+constexpr int kFinestThinLights = 2;
 
 struct ThinMediumLights {
     HierarchyLights lights;
@@ -24,13 +25,13 @@ struct ThinMediumLights {
     ShadowMapCache maps{{}, true};
 };
 
-// Takes the light of `bricks` out of `from`, which becomes a hierarchy of the rest. Null where they send none, or where
-// they are too dense for it; then `from` stays as it is.
+// Moves the light of `bricks` out of `from`, which becomes the hierarchy of the remaining light. Returns null and
+// leaves `from` unchanged if the bricks send no light or are too dense.
 std::unique_ptr<ThinMediumLights> take_thin_medium_lights(const Medium& medium,
                                                           const std::vector<std::uint32_t>& bricks,
                                                           HierarchyLights& from);
 
-// What was taken shines again in `light`.
+// Adds the light that was taken back to `light`.
 void give_back(const ThinMediumLights& taken, const std::vector<std::uint32_t>& bricks, ScatteredLight& light);
 
 }  // namespace brisance

@@ -188,15 +188,15 @@ LineResult LineTracker::follow_path(const Ray& ray, Rng& rng, double end) const 
 }
 
 Rgb LineTracker::follow_line(const Ray& ray, Rng& rng, double end) const {
-    LatticeRay way = field_.enter(ray, end);
-    way.end = end_of_fire(way);
+    LatticeRay path = field_.enter(ray, end);
+    path.end = end_of_fire(path);
     if (settings_.transmittance != TransmittanceEstimator::Exact)
-        return radiance_by_estimates(way, rng);
+        return radiance_by_estimates(path, rng);
     Rgb radiance(0.0f);
     Visibility visibility(kRouletteDepth);
     Positions positions(rng);
     double depth = 0.0;
-    walk_bricks(field_.bricks(), way, [&](const VoxelSegment& brick) {
+    walk_bricks(field_.bricks(), path, [&](const VoxelSegment& brick) {
         const bool burns = field_.burns(brick.brick);
         return walk_cubes<1>(brick, [&](const VoxelSegment& cell) {
             const Cubic sigma = field_.extinction_along(cell);

@@ -199,16 +199,16 @@ double unbiased_ray_march(const TrackingField& field, const LatticeRay& ray, Rng
     if (absorbers.segments.empty())
         return 1.0;
     const double depth = absorbers.majorant_depth;
-    const double wanted = std::cbrt((0.015 + depth) * (0.65 + depth) * (60.3 + depth));
+    const double target = std::cbrt((0.015 + depth) * (0.65 + depth) * (60.3 + depth));
     // Cells need no more than two samples each for their exact depth.
     const double cells = absorbers.metres * glm::length(ray.direction);
-    if (wanted > 3.0 * cells + 8.0) {
+    if (target > 3.0 * cells + 8.0) {
         double exact = 0.0;
         for (const VoxelSegment& s : absorbers.segments)
             exact += depth_of_brick(field, s);
         return std::exp(-exact);
     }
-    const int teeth = std::max(1, static_cast<int>(std::lround(std::ceil(wanted) / (kMeanOrder + 1.0))));
+    const int teeth = std::max(1, static_cast<int>(std::lround(std::ceil(target) / (kMeanOrder + 1.0))));
     thread_local std::vector<double> estimates;
     estimates.resize(sample_order(rng) + 1);
     for (double& e : estimates)

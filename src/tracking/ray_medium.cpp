@@ -11,8 +11,8 @@ constexpr double kUnseenDepth = 64.0;
 
 }  // namespace
 
-std::optional<Collision> RayProbe::place(double t) const {
-    const dvec3 nodes = way_.origin + t * way_.direction;
+std::optional<Collision> RayProbe::collision_at(double t) const {
+    const dvec3 nodes = path_.origin + t * path_.direction;
     const dvec3 brick = glm::floor(nodes / double(BrickLattice::kSize));
     const dvec3 bound = dvec3(field_->bricks().brick_extent());
     for (int a = 0; a < 3; ++a)
@@ -27,7 +27,7 @@ std::optional<Collision> RayProbe::place(double t) const {
 }
 
 Coefficients RayProbe::at(double t) const {
-    const std::optional<Collision> c = place(t);
+    const std::optional<Collision> c = collision_at(t);
     if (!c)
         return {};
     const float extinction = field_->extinction(c->brick, c->position);

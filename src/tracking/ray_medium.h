@@ -14,25 +14,25 @@ struct Coefficients {
     Rgb scattering{0.0f};     // [1/m]
 };
 
-// Looks the medium up at points of one ray.
+// Coefficients of the medium at points of one ray.
 class RayProbe {
 public:
-    RayProbe(const TrackingField& field, const Ray& ray) : field_(&field), way_(field.enter(ray)) {}
-    // At a distance [m]; nothing scatters outside the medium.
+    RayProbe(const TrackingField& field, const Ray& ray) : field_(&field), path_(field.enter(ray)) {}
+    // The coefficients at a distance [m]; zero scattering outside the medium.
     Coefficients at(double t) const;
-    // As a place where a flight might collide; none outside the medium.
-    std::optional<Collision> place(double t) const;
+    // The point as a collision; none outside the medium.
+    std::optional<Collision> collision_at(double t) const;
 
 private:
     const TrackingField* field_;
-    LatticeRay way_;
+    LatticeRay path_;
 };
 
-// A ray of the camera with all cells on it: its transmittance is known everywhere, and points can be drawn where a
-// flight would collide. Beyond an optical depth of 64 nothing is seen (e^-64 is below single precision).
+// A ray of the camera with all cells on it. Its transmittance is known everywhere, and collisions of free flights can
+// be sampled. Nothing beyond an optical depth of 64 contributes (e^-64 is below single precision).
 class RayMedium {
 public:
-    // Overwrites what was there: keep the object for its memory. `end`: of the ray [m], where a surface is.
+    // Overwrites the previous ray; reuse the object to keep its memory. `end`: of the ray [m], where a surface is.
     void look(const TrackingField& field, const Ray& ray, double end);
 
     bool empty() const { return cells_.empty(); }
@@ -41,7 +41,7 @@ public:
     double transmittance(double t) const;  // from the ray's origin to t along the segment
     Coefficients coefficients(double t) const { return probe_->at(begin_ + t); }
     // Its distance is from the ray's origin.
-    std::optional<Collision> place(double t) const { return probe_->place(begin_ + t); }
+    std::optional<Collision> collision_at(double t) const { return probe_->collision_at(begin_ + t); }
     double opacity() const;                        // of the whole segment
     double sample_flight(double xi) const;         // t along the segment, of a flight that collides on it
     double pdf_of_flight(double t) const;          // [1/m]

@@ -24,7 +24,7 @@ public:
     const FireDirections& fire() const { return fire_; }
     const LineTracker& lines() const { return lines_; }
     bool has_emitters() const { return surroundings_ && !surroundings_->emitters().empty(); }
-    // There are surfaces, and something shines.
+    // Whether there are surfaces and lights.
     bool lights_surfaces() const {
         return surroundings_ && surroundings_->has_surfaces() && (has_emitters() || !fire_.empty());
     }

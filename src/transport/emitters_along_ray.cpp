@@ -33,19 +33,19 @@ struct Lit {
 Lit lit_part(const PointEmitter& lamp, const Segment& ray) {
     if (lamp.cosine <= 0.0)  // no convex cone
         return {0.0, ray.length};
-    const dvec3 way = ray.start - lamp.position;
-    const double along = glm::dot(lamp.axis, ray.direction), before = glm::dot(lamp.axis, way);
+    const dvec3 offset = ray.start - lamp.position;
+    const double along = glm::dot(lamp.axis, ray.direction), before = glm::dot(lamp.axis, offset);
     const double c2 = lamp.cosine * lamp.cosine;
     // Where (axis . w)^2 = cosine^2 w^2 on the line: a t^2 + 2 b t + c = 0.
-    const double a = along * along - c2, b = along * before - c2 * glm::dot(ray.direction, way),
-                 c = before * before - c2 * glm::dot(way, way), root = std::sqrt(std::max(0.0, b * b - a * c));
+    const double a = along * along - c2, b = along * before - c2 * glm::dot(ray.direction, offset),
+                 c = before * before - c2 * glm::dot(offset, offset), root = std::sqrt(std::max(0.0, b * b - a * c));
     std::array<double, 4> cut = {0.0, (-b - root) / a, (-b + root) / a, ray.length};
     for (double& t : cut)
         t = t > 0.0 ? std::min(t, ray.length) : 0.0;  // so for what is not a number
     std::sort(cut.begin(), cut.end());
     Lit part;
     for (int i = 0; i < 3; ++i) {
-        const dvec3 middle = way + 0.5 * (cut[i] + cut[i + 1]) * ray.direction;
+        const dvec3 middle = offset + 0.5 * (cut[i] + cut[i + 1]) * ray.direction;
         if (!(cut[i + 1] > cut[i]) || glm::dot(lamp.axis, middle) < lamp.cosine * glm::length(middle))
             continue;
         if (part.end == 0.0)
@@ -67,9 +67,9 @@ public:
             if (!(part.length > 1e-9 * ray.length))
                 continue;
             const AngularDensity plain(lamp.position, part, {});
-            const dvec3 way = part.at(0.5 * part.length) - lamp.position;
+            const dvec3 offset = part.at(0.5 * part.length) - lamp.position;
             // Uniform in the angle: its inverse is the integral of 1 / distance^2.
-            const double seen = 1.0 / (plain.pdf(0.5 * part.length) * glm::dot(way, way));
+            const double seen = 1.0 / (plain.pdf(0.5 * part.length) * glm::dot(offset, offset));
             if (!(seen > 0.0) || !std::isfinite(seen))
                 continue;
             all_ += lamp.intensity * seen;
@@ -121,7 +121,7 @@ Rgb emitters_along_ray(const DirectLight& scene, const RayMedium& seen, const Ra
         const double xi = (i + shift) / points;
         const double t = xi < by_flights ? seen.sample_flight(xi / by_flights)
                                          : lamps.sample((xi - by_flights) / (1.0 - by_flights), rng);
-        const std::optional<Collision> c = seen.place(t);
+        const std::optional<Collision> c = seen.collision_at(t);
         if (!c)
             continue;
         double weight = seen.opacity();

@@ -74,10 +74,10 @@ FireDirections::Drawn FireDirections::draw(Rng& rng) const {
 
 dvec3 FireDirections::sample(const dvec3& point, Rng& rng) const {
     for (;;) {
-        const dvec3 way = draw(rng).position - point;
-        const double distance = glm::length(way);
+        const dvec3 offset = draw(rng).position - point;
+        const double distance = glm::length(offset);
         if (distance > 0.0)
-            return way / distance;
+            return offset / distance;
     }
 }
 

@@ -1,6 +1,6 @@
-// Directions toward the fire, by solid angle: a point is drawn in proportion to what glows there, and only its
-// direction is kept, because the whole line is integrated (Simon, Hanika, Zirr, Dachsbacher, Line Integration for
-// Rendering Heterogeneous Emissive Volumes, EGSR 2017).
+// Directions toward the fire, by solid angle: a point is sampled in proportion to emission, and only its direction is
+// kept, because the whole line is integrated (Simon, Hanika, Zirr, Dachsbacher, Line Integration for Rendering
+// Heterogeneous Emissive Volumes, EGSR 2017).
 #pragma once
 
 #include <vector>
@@ -19,16 +19,17 @@ public:
     // A unit vector from `point` [local, m].
     dvec3 sample(const dvec3& point, Rng& rng) const;
 
-    // Of a ray's direction, [1/sr]: the integral of the points' density times distance squared along the whole ray.
+    // The pdf of a ray's direction [1/sr]: the integral of the points' density times distance squared along the whole
+    // ray.
     double pdf(const Ray& ray) const;
 
-    // A particle that leaves a point of the fire in any direction, and the power that it stands for, 4 pi j over the
-    // density of points [W]. There must be a fire.
+    // A particle that leaves a point of the fire in any direction, and its power over pdf, 4 pi j over the density of
+    // points [W]. There must be a fire.
     EmittedParticle emit(Rng& rng) const;
-    // All power that emit() draws, luminance [W]; by the cells' middles, good to share particles out by.
+    // Total power of emit(), luminance [W]; evaluated at the centres of cells, which is enough to distribute particles.
     double power() const { return power_; }
 
-    // Half the diagonal of the box of all that burns [m].
+    // Half the diagonal of the box around all emission [m].
     float radius() const { return radius_; }
 
     std::uint64_t bytes() const { return (cumulative_.size() + density_.size()) * sizeof(double); }

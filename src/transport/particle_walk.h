@@ -17,7 +17,7 @@ namespace brisance {
 struct ParticleFlight {
     const RaySegment& segment;           // up to the surface
     std::optional<Collision> collision;  // before the surface
-    Rgb power;                           // of the particle as it sets out [W]
+    Rgb power;                           // of the particle at the start of the flight [W]
     std::uint64_t particle;              // its number
     int before;                          // scatterings before this flight
     bool from_medium;                    // the last of them was in the medium
@@ -34,8 +34,8 @@ struct WalkRules {
     Transport transport = Transport::Importance;
     // Scatterings before the last flight; -1: no limit.
     int most_before = -1;
-    // False: the particle's power is 1 throughout, and only the density of its flights tells what they are worth:
-    // each scattering survives with the probability of its greatest weight.
+    // False: the particle's power is 1 throughout, and only the density of its flights carries information: each
+    // scattering survives with the probability of its greatest weight.
     bool carries_colour = true;
 };
 
@@ -88,8 +88,8 @@ struct ParticleSource {
     std::uint32_t seed;
 };
 
-// What leave(flight, lights) appends for all flights: lights, or whatever else, in the order of the particles whatever
-// the number of threads. `most_before` as in WalkRules.
+// The objects that leave(flight, lights) appends for all flights, in the order of the particles, whatever the number of
+// threads. `most_before` as in WalkRules.
 template <class Light, class Leave>
 std::vector<Light> lights_of_flights(const DirectLight& scene, const ParticleSource& source, int most_before,
                                      const Leave& leave, FlightReport& report) {

@@ -1,4 +1,4 @@
-// Particles of light: where they start, and the power that each of them carries.
+// Particles of light: their starts and their powers.
 #pragma once
 
 #include <cstdint>
@@ -8,17 +8,17 @@
 
 namespace brisance {
 
-// The target of particles from infinity.
+// The ball that particles from infinity aim at.
 struct BoundingBall {
     dvec3 centre{0.0};
     double radius = 0.0;
 };
 BoundingBall ball_around(const DirectLight& scene);
 
-// Power that particles carry, luminance [W].
+// Total power of the particles, luminance [W].
 double emitted_power(const DirectLight& scene, const BoundingBall& ball);
 
-// A number of particles that share the power of fire and emitters. Those of the fire come first.
+// A set of particles that share the power of fire and emitters. Those of the fire come first.
 class Particles {
 public:
     // Keeps a reference.

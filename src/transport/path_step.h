@@ -133,7 +133,7 @@ PathStep step_from(const DirectLight& scene, const PathState& state, Reader& rea
 // The vertex at the end of the step; none where the path leaves the scene or is absorbed.
 std::optional<PathState> next_state(const DirectLight& scene, const PathState& state, const PathStep& step);
 
-// The path from `state` on. Russian roulette ends it by the throughput that it has lost on the way.
+// The path after `state`. Russian roulette ends it by the throughput that it has lost since then.
 template <PathReader Reader>
 void walk_path(const DirectLight& scene, PathState state, Reader& reader, Rng& rng) {
     const float begin = largest(state.throughput);

@@ -55,9 +55,9 @@ Ray PathVertex::leaving(const dvec3& direction) const {
 
 Ray PathVertex::toward(const dvec3& target, double& distance) const {
     const dvec3 from = on_surface() ? surface_->point.start_toward(target) : lit_.position;
-    const dvec3 way = target - from;
-    distance = glm::length(way);
-    return {from, distance > 0.0 ? way / distance : dvec3(0.0, 0.0, 1.0)};
+    const dvec3 offset = target - from;
+    distance = glm::length(offset);
+    return {from, distance > 0.0 ? offset / distance : dvec3(0.0, 0.0, 1.0)};
 }
 
 PathVertex::Value PathVertex::at(const dvec3& wi) const {

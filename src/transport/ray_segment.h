@@ -1,4 +1,4 @@
-// A ray up to the first surface on it.
+// A ray up to the first surface.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@ struct RaySegment {
     Ray ray;
     double end = kNoEnd;                // distance of the surface [m]
     std::optional<SurfaceHit> hit;      // none: the ray leaves the scene
-    std::optional<SurfacePoint> point;  // where it hits; set whenever `hit` is
+    std::optional<SurfacePoint> point;  // the surface point; set whenever `hit` is
 };
 
 }  // namespace brisance

@@ -1,4 +1,4 @@
-// Russian roulette: which paths end.
+// Russian roulette: termination of paths.
 #pragma once
 
 #include <algorithm>
@@ -8,10 +8,11 @@
 
 namespace brisance {
 
-// Paths that carry less than this part of what they began with may be ended.
+// Paths whose throughput falls below this fraction of its initial value may be terminated.
 constexpr float kRouletteBelow = 0.5f;
 
-// Paths between surfaces that lose nothing must end, too; smoke lets them out.
+// Number of scatterings after which paths between surfaces may be terminated although they lose nothing; smoke lets
+// them out.
 constexpr int kManyScatterings = 64;
 constexpr float kGoesOn = 0.95f;
 
@@ -19,8 +20,8 @@ inline float largest(const Rgb& c) {
     return std::max({c.x, c.y, c.z});
 }
 
-// Ends the path, or makes up for those that ended. False: ended. `begin`: what it began with; `endless`: nothing else
-// may end it.
+// Terminates the path, or compensates for the terminated ones. False: terminated. `begin`: initial throughput;
+// `endless`: nothing else may end the path.
 inline bool survives(Rgb& throughput, float begin, bool endless, Rng& rng) {
     float part = largest(throughput) / begin;
     if (endless)

@@ -14,7 +14,7 @@ std::vector<SettingKey<VolumetricPhotonSettings>> VolumetricPhotonsMethod::keys(
 }
 
 MadeInScattering VolumetricPhotonsMethod::make(const InScatteringRequest& request, const Settings& settings) {
-    // Glossy surfaces look along rays that do not lead to the camera.
+    // Glossy surfaces trace rays that do not lead to the camera.
     const Surroundings* const surroundings = request.scene.surroundings();
     const bool other_rays = surroundings && surroundings->scene().is_glossy();
     auto photons =

@@ -14,7 +14,7 @@ struct VolumetricPhotonsMethod {
     static constexpr const char* kName = "volumetric_photons";
     static constexpr const char* kProduct = "volumetric photons";
     static constexpr const char* kHelp = "photons counted along their tracks and where they land, blurred over a voxel";
-    static constexpr bool kThinsLights = false;  // it has none
+    static constexpr bool kThinsLights = false;  // it has no lights
     static std::vector<SettingKey<Settings>> keys();
     static std::vector<MethodPreset> presets() { return {{kName, {}}}; }
     static int passes(const Settings&) { return 1; }

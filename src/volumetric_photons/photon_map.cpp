@@ -10,12 +10,11 @@ namespace brisance {
 
 namespace {
 
-// Least cosine between the normals of a point and of what lands around it.
-constexpr float kSameWay = 0.7f;
-// How far out of the point's plane it may land, over how far away.
+// Least cosine between the normals of the point and of a photon.
+constexpr float kSameFacing = 0.7f;
+// Largest distance of a photon from the tangent plane of the point, relative to its distance from the point.
 constexpr float kOutOfPlane = 0.3f;
-// BSDF times cosine is divided by the cosine, which is not less than this: light along a surface is not counted as more
-// than it is.
+// The BSDF times cosine is divided by at least this cosine, so that light at grazing incidence is not overestimated.
 constexpr float kLeastCosine = 1e-2f;
 
 struct Points {
@@ -31,13 +30,13 @@ struct Points {
 struct Near {
     float distance2;
     std::uint32_t landing;
-    // Of two as far away the one of lower number is nearer, whatever the order of visits.
+    // Ties in distance are broken by the lower index, so that the order of visits does not matter.
     bool operator<(const Near& other) const {
         return distance2 != other.distance2 ? distance2 < other.distance2 : landing < other.landing;
     }
 };
 
-// The nearest that count: what nanoflann asks of a set of results.
+// The nearest photons that are accepted: a nanoflann result set.
 class Nearest {
 public:
     using DistanceType = float;
@@ -66,7 +65,7 @@ public:
 private:
     bool counts(const SurfacePhoton& l, float distance2) const {
         const float above = glm::dot(l.position - point_, normal_);
-        return glm::dot(l.normal, normal_) > kSameWay && above * above <= kOutOfPlane * kOutOfPlane * distance2;
+        return glm::dot(l.normal, normal_) > kSameFacing && above * above <= kOutOfPlane * kOutOfPlane * distance2;
     }
 
     std::span<const SurfacePhoton> landings_;
@@ -103,7 +102,7 @@ Rgb PhotonMap::scattered(const SurfacePoint& point, const Bsdf& bsdf, const dvec
         return Rgb(0.0f);
     const bool above = glm::dot(point.frame.normal, toward_viewer) >= 0.0;
     const vec3 position(point.position), normal(above ? point.frame.normal : -point.frame.normal);
-    // One more, which tells how far the others may be away.
+    // One photon more, whose distance is the radius of the disc.
     Nearest nearest(landings_, position, normal, static_cast<std::size_t>(neighbours) + 1, near);
     tree_->find(nearest, position);
     if (near.size() < 2)

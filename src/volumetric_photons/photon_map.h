@@ -1,4 +1,4 @@
-// Particles where they land on surfaces, and what arrives around a point, told by its nearest ones: photon maps
+// Photons that land on surfaces, and the light arriving around a point, estimated from its nearest photons: photon maps
 // (Jensen, Global Illumination using Photon Maps, EGWR 1996).
 #pragma once
 
@@ -25,9 +25,9 @@ public:
     PhotonMap& operator=(const PhotonMap&) = delete;
 
     std::size_t size() const { return landings_.size(); }
-    // What of the light arriving around the point these lobes scatter to the viewer (unit) [W/(m^2 sr)], by that many
-    // of the nearest landings on surfaces that face about the same way and lie in the same plane: a blur over the disc
-    // in which they are.
+    // Light [W/(m^2 sr)] that these lobes scatter to the viewer (unit), estimated from the `neighbours` photons nearest
+    // to the point that lie on surfaces of similar normal and in the same plane: a blur over the disc that contains
+    // them.
     Rgb scattered(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer, int neighbours) const;
 
     std::uint64_t bytes() const { return landings_.size() * (sizeof(SurfacePhoton) + sizeof(std::uint32_t)); }

@@ -1,4 +1,4 @@
-// Light that smoke scattered, counted along the tracks of particles: how many, and how many of them make an estimate.
+// Settings of volumetric photons: how many particles are traced, and how many make an estimate on a surface.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@ namespace brisance {
 
 struct VolumetricPhotonSettings {
     int paths = 2000000;   // particles that are followed
-    int neighbours = 128;  // of them that land around a point of a surface tell how much arrives there
+    int neighbours = 128;  // photons around a point of a surface that estimate the light arriving there
     std::uint32_t seed = 0;
 };
 

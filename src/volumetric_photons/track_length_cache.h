@@ -1,9 +1,9 @@
-// Light on its way through the medium, as particles laid it down around the medium's nodes: what of it scatters toward
-// the eye is summed up at once, by the phase function as it is, however sharp; for all other directions every node
-// keeps a few ways, drawn by their weight so that all that they stand for adds up (Duffield, Lund, Thorup, Priority
+// Deposits of particle tracks around the nodes of the medium (track-length estimator). The light that scatters toward
+// the eye is summed directly with the exact phase function, however sharp. For all other directions every node keeps a
+// few tracks, sampled by their weight so that they represent all of them without bias (Duffield, Lund, Thorup, Priority
 // Sampling for Estimation of Arbitrary Subset Sums, J. ACM 54(6), 2007).
 //
-// Unbiased up to the size of voxels. Sums and draws are the same in whatever order ways are laid down.
+// Unbiased up to the size of voxels. Sums and samples do not depend on the order of the deposits.
 #pragma once
 
 #include <atomic>
@@ -18,44 +18,45 @@ namespace brisance {
 
 class TrackLengthCache {
 public:
-    static constexpr int kWays = 16;  // that a node keeps for other directions
+    static constexpr int kTracks = 16;  // kept by a node for other directions
 
-    // Keeps a reference. `eye`: local [m]; `power`: of all particles [W].
+    // Keeps a reference. `eye`: local [m]; `power`: of all particles [W]; `other_directions`: toward() will be called.
     TrackLengthCache(const Medium& medium, const dvec3& eye, double power, bool other_directions);
 
-    // A way up to `end` [m] of a particle of that power [W]. From any thread; `rng` is the particle's own.
+    // Deposits a track up to `end` [m] of a particle of that power [W]. Thread-safe; `rng` is the particle's own.
     void add(const Ray& ray, double end, const Rgb& power, Rng& rng);
-    // Once all ways are laid down, and before anyone asks.
+    // To be called after all deposits and before any query.
     void finish();
 
-    // In-scattered radiance [W/(m^2 sr)] at a place, counted in nodes: between the nodes around, toward the eye; or at
-    // one of them, drawn by `xi`, in a direction (unit).
-    Rgb toward_eye(const dvec3& place) const;
-    Rgb toward(const vec3& direction, const dvec3& place, float xi) const;
+    // In-scattered radiance [W/(m^2 sr)] at a position in units of nodes. toward_eye() interpolates between the
+    // surrounding nodes; toward() takes one of them, chosen by `xi`, for a direction (unit).
+    Rgb toward_eye(const dvec3& position) const;
+    Rgb toward(const vec3& direction, const dvec3& position, float xi) const;
 
     std::uint64_t bytes() const;
 
 private:
-    struct Way {
+    struct Track {
         float priority;
         vec3 direction;
-        Rgb track;  // [W m]
-        // Of two that are worth as much, whatever was laid down first.
-        bool goes_before(const Way& other) const;
+        Rgb power_length;  // [W m]
+        // Ties are broken independently of the order of the deposits.
+        bool precedes(const Track& other) const;
     };
-    void keep(std::size_t list, const Way& way);
+    void keep(std::size_t list, const Track& track);
     float volume_around(std::int64_t node) const { return volume_[node] * medium_.voxel_volume; }
 
     const Medium& medium_;
-    TrackLengths ways_;
+    TrackLengths track_lengths_;
     float mean_cosine_;
     std::vector<vec3> toward_eye_;  // per node, unit
     FixedSums sums_;                // [W m / sr]
-    std::vector<Rgb> radiance_;     // toward the eye, times the volume around the node over a voxel's
-    std::vector<float> volume_;     // around each node and in the medium's cells, over a voxel's
-    // Per node with extinction a list of up to kWays + 1, by falling priority; none: nobody asks for other directions.
+    std::vector<Rgb> radiance_;     // toward the eye, times the volume around the node in voxels
+    std::vector<float> volume_;     // around each node, within the medium's cells, in voxels
+    // Each node with extinction has a list of up to kTracks + 1 tracks by decreasing priority; no lists unless
+    // `other_directions`.
     std::vector<std::int32_t> list_of_;  // of each node, or -1
-    std::vector<Way> kept_;
+    std::vector<Track> kept_;
     std::vector<std::uint8_t> count_;  // of each list
     std::unique_ptr<std::atomic_flag[]> busy_;
 };

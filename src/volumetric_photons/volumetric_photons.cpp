@@ -6,12 +6,12 @@ namespace brisance {
 
 namespace {
 
-// Of a ray, where its light is asked for.
-constexpr int kPlaces = 8;
-// A ray whose line passes the eye nearer than this part of how far it is away comes from there.
+// Points of a ray at which the cache is evaluated.
+constexpr int kSamples = 8;
+// A ray starts at the eye if its line passes the eye within this fraction of its distance.
 constexpr double kSameLine = 1e-5;
 
-// Where a flight lands after it was scattered in smoke.
+// Stores the landing of a flight that was scattered in smoke.
 void leave_landing(const ParticleFlight& flight, std::vector<SurfacePhoton>& landings) {
     const SurfacePoint* point = flight.landing();
     if (!point)
@@ -29,9 +29,9 @@ VolumetricPhotons::VolumetricPhotons(const DirectLight& scene, const VolumetricP
       scene_(scene),
       settings_(settings),
       eye_(eye),
-      laid_(scene.field().medium(), eye, emitted_power(scene, ball_around(scene)), other_rays),
+      cache_(scene.field().medium(), eye, emitted_power(scene, ball_around(scene)), other_rays),
       landings_(follow(bounces < 0 ? -1 : bounces - 1)) {
-    laid_.finish();
+    cache_.finish();
     report_.landings = landings_.size();
 }
 
@@ -42,16 +42,16 @@ std::vector<SurfacePhoton> VolumetricPhotons::follow(int most_before) {
             if (!flight.from_medium)
                 return;
             Rng keep_rng(Stream::StoredTrack, flight.particle, settings_.seed | std::uint64_t(flight.before) << 32);
-            laid_.add(flight.ray(), flight.segment.end, flight.power, keep_rng);
+            cache_.add(flight.ray(), flight.segment.end, flight.power, keep_rng);
             leave_landing(flight, landings);
         },
         report_);
 }
 
 bool VolumetricPhotons::from_eye(const Segment& ray) const {
-    const dvec3 way = ray.start - eye_;
-    const double along = glm::dot(way, ray.direction);
-    return along >= 0.0 && glm::length(way - along * ray.direction) <= kSameLine * along;
+    const dvec3 offset = ray.start - eye_;
+    const double along = glm::dot(offset, ray.direction);
+    return along >= 0.0 && glm::length(offset - along * ray.direction) <= kSameLine * along;
 }
 
 Rgb VolumetricPhotons::along_ray(const RayMedium& seen, Rng& rng, SelectionCost*) const {
@@ -61,21 +61,21 @@ Rgb VolumetricPhotons::along_ray(const RayMedium& seen, Rng& rng, SelectionCost*
     const vec3 backward(-seen.segment().direction);
     const double shift = rng.next_double();
     Rgb sum(0.0f);
-    for (int i = 0; i < kPlaces; ++i) {
-        const double t = seen.sample_flight((i + shift) / kPlaces);
+    for (int i = 0; i < kSamples; ++i) {
+        const double t = seen.sample_flight((i + shift) / kSamples);
         const Coefficients at = seen.coefficients(t);
-        const std::optional<Collision> place = seen.place(t);
-        if (!place || !(at.extinction > 0.0f))
+        const std::optional<Collision> collision = seen.collision_at(t);
+        if (!collision || !(at.extinction > 0.0f))
             continue;
-        const dvec3 node = dvec3(scene_.field().bricks().first_node(place->brick)) + dvec3(place->position);
+        const dvec3 node = dvec3(scene_.field().bricks().first_node(collision->brick)) + dvec3(collision->position);
         sum += at.scattering / at.extinction *
-               (to_eye ? laid_.toward_eye(node) : laid_.toward(backward, node, rng.next()));
+               (to_eye ? cache_.toward_eye(node) : cache_.toward(backward, node, rng.next()));
     }
-    return sum * float(seen.opacity() / kPlaces);
+    return sum * float(seen.opacity() / kSamples);
 }
 
-Rgb VolumetricPhotons::at_surface(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer, Rng&,
-                                  SelectionCost*) const {
+Rgb VolumetricPhotons::at_surface(const SurfacePoint& point, const ReceiverLobes& lobes, const dvec3& toward_viewer,
+                                  Rng&, SelectionCost*) const {
     return landings_.scattered(point, lobes.whole, toward_viewer, settings_.neighbours);
 }
 

@@ -1,7 +1,7 @@
-// Light that the medium scattered, by particles: along their ways through the medium, for the camera and for rays that
-// leave surfaces (track_length_cache.h), and where they land on surfaces (photon_map.h). The cells MM and SM without
-// any noise that changes from one camera ray to the next; what they blur is a voxel, and on surfaces a disc of
-// `neighbours` landings.
+// Light scattered by the medium, estimated by photons: along their tracks through the medium, for the camera and for
+// rays that leave surfaces (track_length_cache.h), and where they land on surfaces (photon_map.h). The cells MM and SM
+// without noise that varies between camera rays. The estimates are blurred over a voxel in the medium and over a disc
+// of `neighbours` landings on surfaces.
 #pragma once
 
 #include "light_selection/in_scattering.h"
@@ -18,17 +18,17 @@ struct VolumetricPhotonReport : FlightReport {
 
 class VolumetricPhotons : public InScattering {
 public:
-    // Follows the particles. Keeps a reference to the scene. `bounces`: scatterings to follow, -1: all; `eye`: local
-    // [m]; `other_rays`: along_ray() is asked for rays that do not come from the eye.
+    // Traces the particles. Keeps a reference to the scene. `bounces`: the most scatterings, -1: no limit; `eye`: local
+    // [m]; `other_rays`: along_ray() will be called for rays that do not start at the eye.
     VolumetricPhotons(const DirectLight& scene, const VolumetricPhotonSettings& settings, int bounces, const dvec3& eye,
                       bool other_rays);
 
     Rgb along_ray(const RayMedium& seen, Rng& rng, SelectionCost* cost = nullptr) const override;
-    Rgb at_surface(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer, Rng& rng,
+    Rgb at_surface(const SurfacePoint& point, const ReceiverLobes& lobes, const dvec3& toward_viewer, Rng& rng,
                    SelectionCost* cost = nullptr) const override;
 
     const VolumetricPhotonReport& report() const { return report_; }
-    std::uint64_t bytes() const { return laid_.bytes() + landings_.bytes(); }
+    std::uint64_t bytes() const { return cache_.bytes() + landings_.bytes(); }
 
 private:
     std::vector<SurfacePhoton> follow(int most_before);
@@ -38,7 +38,7 @@ private:
     VolumetricPhotonSettings settings_;
     dvec3 eye_;
     VolumetricPhotonReport report_;
-    TrackLengthCache laid_;
+    TrackLengthCache cache_;
     PhotonMap landings_;
 };
 

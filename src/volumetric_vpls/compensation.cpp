@@ -14,8 +14,8 @@ constexpr int kLightsAtVertex = 1;
 
 }  // namespace
 
-// The path from a collision v on. It gathers S: direct light, one of the bounded lights, and what their bound leaves
-// out at later collisions.
+// The path after a collision v. It gathers S: direct light, one of the bounded lights, and what their bound removes at
+// later collisions.
 class Compensation::LostPath : public PlainPath {
 public:
     explicit LostPath(const Compensation& of) : PlainPath(of.scene_), lights_(of.lights_), bounces_(of.bounces_) {}
@@ -37,7 +37,7 @@ public:
         sum_ += state.throughput * gathered;
     }
 
-    // Collisions count by the part that the bound leaves out. The lights do not shine into delta lobes.
+    // Collisions are weighted by the fraction that the bound removes. The lights do not reach delta lobes.
     bool arrive(const PathState&, const PathStep& step, PathState& next) const {
         if (!step.medium.collision || step.sample->delta)
             return true;
@@ -62,18 +62,18 @@ Compensation::Compensation(const DirectLight& scene, const VplSum& lights, const
       samples_(settings.compensation_samples),
       bounces_(bounces) {}
 
-bool Compensation::wanted() const {
+bool Compensation::enabled() const {
     return how_ != BiasCompensation::None && lights_.bound().limits() && (bounces_ < 0 || bounces_ >= 2);
 }
 
 Rgb Compensation::along_ray(const RayMedium& seen, Rng& rng) const {
     Rgb sum(0.0f);
-    if (!wanted() || seen.empty())
+    if (!enabled() || seen.empty())
         return sum;
     const Segment& camera = seen.segment();
     for (int i = 0; i < samples_; ++i) {
         const double u = seen.sample_flight((i + rng.next_double()) / samples_);
-        const std::optional<Collision> smoke = seen.place(u);
+        const std::optional<Collision> smoke = seen.collision_at(u);
         if (!smoke)
             continue;
         const PathVertex vertex(camera.at(u), camera.direction, scene_.field().mean_cosine());
@@ -85,9 +85,10 @@ Rgb Compensation::along_ray(const RayMedium& seen, Rng& rng) const {
 
 Rgb Compensation::at_surface(const PathVertex& vertex, Rng& rng) const {
     Rgb sum(0.0f);
-    if (!wanted())
+    if (!enabled())
         return sum;
-    const std::optional<Collision> smoke = RayProbe(scene_.field(), {vertex.position(), vertex.arriving()}).place(0.0);
+    const std::optional<Collision> smoke =
+        RayProbe(scene_.field(), {vertex.position(), vertex.arriving()}).collision_at(0.0);
     for (int i = 0; i < samples_; ++i) {
         if (how_ == BiasCompensation::Exact)
             sum += lost_exactly(vertex, rng);
@@ -107,7 +108,7 @@ Rgb Compensation::lost_exactly(const PathVertex& vertex, Rng& rng) const {
     near.look(scene_.field(), ray, std::min(scene_.segment_along(ray).end, lights_.bound().radius()));
     if (near.empty())
         return Rgb(0.0f);
-    const std::optional<Collision> c = near.place(near.sample_flight(rng.next_double()));
+    const std::optional<Collision> c = near.collision_at(near.sample_flight(rng.next_double()));
     if (!c)
         return Rgb(0.0f);
     const double part = near.opacity() * lights_.bound().part_left_out(c->distance);

@@ -1,24 +1,24 @@
 // Bias compensation: the light that the bound of point lights removes, along a ray of the camera and at a surface
 // point.
 //
-// At a vertex u the bounded lights leave out, of all light from the medium at v at a distance w below r = 1 / sqrt(b),
-// the part 1 - b w^2:
+// At a vertex u the bounded lights omit the fraction 1 - b w^2 of the light from the medium at v, where the distance w
+// is below r = 1 / sqrt(b):
 //   integral over directions and w of  p(u) sigma_s(v) T(u, v) (1 - b w^2) S(v -> u)      [W/(m^2 sr)]
-// S is all light scattered at v: direct light of fire and emitters, light of surfaces, and light of the medium
-// elsewhere, which is that of the bounded lights and what they leave out at v in turn.
+// S is all light scattered at v: direct light of fire and emitters, light of surfaces, and light of the rest of the
+// medium, which is that of the bounded lights plus what they omit at v.
 //
 // Exact [1, 2]: a path that samples the phase function or the BSDF at u and collides at v. There it gathers direct
-// light (transport/path_step.h) and one of the bounded lights, and continues. A collision within r counts by the part
-// left out there, and none beyond r counts, as the bounded lights hold that light; surfaces, fire and emitters count in
-// full, as the lights hold none of theirs. After a delta lobe, which the lights do not reach, every collision counts in
-// full. Unbiased, except for what paths from the camera cannot find: a point lamp in a mirror. Where r is many mean
-// free paths this is a path tracer.
+// light (transport/path_step.h) and one of the bounded lights, and continues. A collision within r is weighted by the
+// fraction omitted there. Collisions beyond r do not count, as the bounded lights hold their light. Surfaces, fire and
+// emitters count in full, as the lights hold none of theirs. After a delta lobe, which the lights do not reach, every
+// collision counts in full. Unbiased, except for what paths from the camera cannot find: a point lamp in a mirror.
+// Where r is many mean free paths this is a path tracer.
 //
 // Local (after the idea of [3], whose formulas are not public; these are this program's own): the medium within r is
 // taken to be homogeneous, with the extinction and albedo at u and transmittance in closed form, and without surfaces
 // between u and v. v is sampled from this model, and S is estimated there from fire, emitters and one bounded light.
-// The part k = albedo * Bound::share_left_out(extinction) that is left out at v in turn is taken to be the same
-// throughout r, which gives S / (1 - k). Its bias: too bright or too dark where the medium changes within r, above all
+// The fraction k = albedo * Bound::share_left_out(extinction) that is omitted at v is taken to be constant within r,
+// which gives S / (1 - k). Its bias: too bright or too dark where the medium changes within r, above all
 // at its edge and behind walls thinner than r; light of surfaces that scatters at v is missing; S / (1 - k) is wrong
 // where the light changes within r, the more so the denser the medium and the higher its albedo, as k nears 1.
 //
@@ -41,11 +41,11 @@ public:
     Compensation(const DirectLight& scene, const VplSum& lights, const VolumetricVplSettings& settings, int bounces);
 
     Rgb along_ray(const RayMedium& seen, Rng& rng) const;      // [W/(m^2 sr)]
-    Rgb at_surface(const PathVertex& vertex, Rng& rng) const;  // of its lobes without delta [W/(m^2 sr)]
+    Rgb at_surface(const PathVertex& vertex, Rng& rng) const;  // of its lobes other than deltas [W/(m^2 sr)]
 
 private:
     class LostPath;
-    bool wanted() const;
+    bool enabled() const;
     Rgb lost_exactly(const PathVertex& vertex, Rng& rng) const;
     Rgb lost_locally(const PathVertex& vertex, const Collision& smoke, Rng& rng) const;
     Rgb follow(PathState first, Rng& rng) const;

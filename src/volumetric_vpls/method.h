@@ -14,7 +14,7 @@ struct VolumetricVplsMethod {
     static constexpr const char* kName = "volumetric_vpls";
     static constexpr const char* kProduct = "volumetric virtual point lights";
     static constexpr const char* kHelp = "virtual point lights where particles collide, bounded and compensated";
-    static constexpr bool kThinsLights = true;  // for what the camera sees
+    static constexpr bool kThinsLights = true;  // by what the camera sees
     static std::vector<SettingKey<Settings>> keys();
     static std::vector<MethodPreset> presets();
     static int passes(const Settings&) { return 1; }

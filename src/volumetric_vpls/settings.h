@@ -1,4 +1,4 @@
-// Volumetric virtual point lights: how many, how near they may shine, and what makes up for that.
+// Settings of volumetric virtual point lights: their number, the bound, and its compensation.
 #pragma once
 
 #include <cstdint>
@@ -6,20 +6,20 @@
 namespace brisance {
 
 enum class BiasCompensation {
-    None,   // what the bound takes away is lost: too dark
+    None,   // light removed by the bound is lost: too dark
     Exact,  // found by paths: unbiased
-    Local   // guessed as if the smoke around every place were alike
+    Local   // estimated as if the smoke around every point were homogeneous
 };
 
 constexpr double kAutomaticBound = -1.0;
 
 struct VolumetricVplSettings {
     int paths = 65536;               // particles that are followed
-    int count = 131072;              // of their collisions that are kept as lights, on average
-    int samples = 4;                 // lights that a camera ray, or a point of a surface, asks
+    int count = 131072;              // mean number of collisions kept as lights
+    int samples = 4;                 // lights evaluated per camera ray and per point of a surface
     double bound = kAutomaticBound;  // of 1 / distance^2 [1/m^2]; 0: unbounded
     BiasCompensation compensation = BiasCompensation::Exact;
-    int compensation_samples = 1;  // paths, or guesses, on a camera ray and at a point of a surface
+    int compensation_samples = 1;  // paths or local estimates per camera ray and per point of a surface
     std::uint32_t seed = 0;
 };
 

@@ -22,11 +22,11 @@ Rgb VolumetricVpls::along_ray(const RayMedium& seen, Rng& rng, SelectionCost* co
     return sent + compensation_.along_ray(seen, rng);
 }
 
-Rgb VolumetricVpls::at_surface(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer, Rng& rng,
-                               SelectionCost* cost) const {
-    const PathVertex place(point, lobes.whole, -toward_viewer);
-    const Rgb sent = sum_.at(place, 1, samples_, rng, cost);
-    return sent + compensation_.at_surface(place, rng);
+Rgb VolumetricVpls::at_surface(const SurfacePoint& point, const ReceiverLobes& lobes, const dvec3& toward_viewer,
+                               Rng& rng, SelectionCost* cost) const {
+    const PathVertex vertex(point, lobes.whole, -toward_viewer);
+    const Rgb sent = sum_.at(vertex, 1, samples_, rng, cost);
+    return sent + compensation_.at_surface(vertex, rng);
 }
 
 Rgb VolumetricVpls::along_ray_from_all(const RayMedium& seen, Rng& rng) const {
@@ -34,11 +34,11 @@ Rgb VolumetricVpls::along_ray_from_all(const RayMedium& seen, Rng& rng) const {
     return sent + compensation_.along_ray(seen, rng);
 }
 
-Rgb VolumetricVpls::at_surface_from_all(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer,
-                                        Rng& rng) const {
-    const PathVertex place(point, lobes.whole, -toward_viewer);
-    const Rgb sent = sum_.at_from_all(place, 1, rng);
-    return sent + compensation_.at_surface(place, rng);
+Rgb VolumetricVpls::at_surface_from_all(const SurfacePoint& point, const ReceiverLobes& lobes,
+                                        const dvec3& toward_viewer, Rng& rng) const {
+    const PathVertex vertex(point, lobes.whole, -toward_viewer);
+    const Rgb sent = sum_.at_from_all(vertex, 1, rng);
+    return sent + compensation_.at_surface(vertex, rng);
 }
 
 }  // namespace brisance

@@ -1,7 +1,7 @@
-// Volumetric virtual point lights of a frame, and what they send along a ray of the camera and to a point of a surface:
-// the cells MM and SM, of surfaces what their BSDFs without delta lobes scatter. Unbounded, or bounded with exact
-// compensation, they are unbiased; unbounded their variance is infinite, as 1 / distance^2 is.
-// Which lights are asked: resample_lights.h.
+// The volumetric virtual point lights of a frame, and their light along a ray of the camera and at a point of a
+// surface: the cells MM and SM; surfaces scatter it by their BSDFs without delta lobes. Unbounded lights, and bounded
+// ones with exact compensation, are unbiased. Unbounded lights have infinite variance, because of 1 / distance^2.
+// Lights are selected by resample_lights.h.
 #pragma once
 
 #include <span>
@@ -15,19 +15,19 @@ namespace brisance {
 
 class VolumetricVpls : public InScattering {
 public:
-    // Traces, thins out and sorts the lights. Keeps a reference to the scene. `receivers`: what stands for all that the
-    // camera sees, for the roulette. `bounces` as of trace_vpls().
+    // Traces, thins out and sorts the lights. Keeps a reference to the scene. `receivers`: represent all that the
+    // camera sees, for the roulette. `bounces` as in trace_vpls().
     VolumetricVpls(const DirectLight& scene, const VolumetricVplSettings& settings, int bounces,
                    std::span<const LightReceiver> receivers);
     VolumetricVpls(const VolumetricVpls&) = delete;
     VolumetricVpls& operator=(const VolumetricVpls&) = delete;
 
     Rgb along_ray(const RayMedium& seen, Rng& rng, SelectionCost* cost = nullptr) const override;
-    Rgb at_surface(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer, Rng& rng,
+    Rgb at_surface(const SurfacePoint& point, const ReceiverLobes& lobes, const dvec3& toward_viewer, Rng& rng,
                    SelectionCost* cost = nullptr) const override;
     // With the same compensation.
     Rgb along_ray_from_all(const RayMedium& seen, Rng& rng) const override;
-    Rgb at_surface_from_all(const SurfacePoint& point, const AskedLobes& lobes, const dvec3& toward_viewer,
+    Rgb at_surface_from_all(const SurfacePoint& point, const ReceiverLobes& lobes, const dvec3& toward_viewer,
                             Rng& rng) const override;
 
     std::span<const VolumetricVpl> lights() const { return sum_.lights(); }

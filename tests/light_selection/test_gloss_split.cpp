@@ -30,7 +30,7 @@ double reflected(const DirectLight& scene, const RayLights& lights, const Surfac
     const dvec3 viewer = glm::normalize(dvec3(0.0, -1.0, 0.8));
     const Bsdf base(point.material, point.frame, Lobes::Base), gloss(point.material, point.frame, Lobes::Specular);
     const GlossSplit split(point, gloss, viewer, places);
-    double sum = lights.at_surface(point, AskedLobes(base, &split), viewer, rng).x;
+    double sum = lights.at_surface(point, ReceiverLobes(base, &split), viewer, rng).x;
     const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
     const std::optional<BsdfSample> drawn = gloss.sample(viewer, {x, y, z});
     const double left = drawn ? split.of_rays(drawn->wi) : 0.0;
@@ -99,9 +99,9 @@ TEST(GlossSplit, PartsOfADirectionAddUp) {
             const double of_rays = split.of_rays(to);
             EXPECT_GE(of_rays, 0.0);
             EXPECT_LE(of_rays, 1.0);
-            EXPECT_NEAR(split.of_places(to).x + of_rays * whole.x, whole.x, 1e-5 * whole.x);
+            EXPECT_NEAR(split.of_lights(to).x + of_rays * whole.x, whole.x, 1e-5 * whole.x);
             // What makes a place bright is bounded, however sharp the lobe.
-            EXPECT_LE(split.of_places(to).x, 1.0001 * kPlaces / (2.0 * std::numbers::pi));
+            EXPECT_LE(split.of_lights(to).x, 1.0001 * kPlaces / (2.0 * std::numbers::pi));
         }
         EXPECT_EQ(split.of_rays({0.0, 0.6, -0.8}), 1.0);
     }

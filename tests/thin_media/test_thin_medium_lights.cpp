@@ -73,7 +73,7 @@ TEST(ThinMediumLights, StandForAllNodes) {
     ASSERT_TRUE(taken);
     EXPECT_EQ(luminance(Rgb(total(lights.light.intensity))), 0.0f);
     LightField field = taken->lights.field(pyramid, 1.5f, settings, nullptr);
-    field.bottom = kFinestHazeLights;
+    field.bottom = kFinestThinLights;
     const std::vector<float> few = fluence(field, {});
     double error = 0.0, sum = 0.0, square = 0.0;
     for (std::size_t i = 0; i < truth.size(); ++i) {

@@ -79,9 +79,9 @@ void ExteriorLights::part_thin_medium(float alpha) {
     thin_ = take_thin_medium_lights(lattice_.medium(), lattice_.thin_medium().even_bricks(), lights_);
     if (!thin_)
         return;
-    drop_coarse_levels(thin_->lights.grid, kLeastLightsForHaze);
+    drop_coarse_levels(thin_->lights.grid, kLeastLightsForThinMedium);
     thin_->field = thin_->lights.field(lattice_.pyramid(), alpha, lattice_.input().lighting, &thin_->maps);
-    thin_->field.bottom = kFinestHazeLights;
+    thin_->field.bottom = kFinestThinLights;
     thin_->field.occluders = nullptr;
 }
 

@@ -1,6 +1,6 @@
-// The lights of fire or smoke as they are seen from outside of dense smoke: by surfaces, and by nodes of thin media.
+// The lights of fire or smoke as seen from outside of dense smoke: by surfaces, and by nodes of thin media.
 //
-// What passes through a sphere around the medium is balanced against rays that say how much of the light escapes.
+// The flux through a sphere around the medium is balanced against rays that measure how much of the light escapes.
 #pragma once
 
 #include <array>
@@ -15,8 +15,8 @@
 
 namespace brisance {
 
-// What surfaces draw positions from to learn how much of the light other surfaces hide: of dense smoke, and of thin
-// media. Null where there is no such light.
+// Distributions from which surfaces sample points to find how much of the light other surfaces occlude: of dense smoke,
+// and of thin media. Null where there is no such light.
 using VisibilityRatios = std::array<const VisibilityRatio*, 2>;
 
 class ExteriorLights {
@@ -26,8 +26,7 @@ public:
     ExteriorLights(const ExteriorLights&) = delete;
     ExteriorLights& operator=(const ExteriorLights&) = delete;
 
-    // At nodes of thin media takes the place of what was gathered there from the lattice itself. `request`: of that
-    // gather.
+    // Replaces the light gathered from the lattice itself at nodes of thin media. `request`: of that gather.
     void light_thin_medium(const LatticeRequest& request, Gathered& gathered, Statistics& statistics,
                            Progress& progress) const;
 

@@ -14,7 +14,7 @@ struct ReceiverPoint {
     vec3 toward;  // unit: the normal of a surface, or the direction toward the viewer
 };
 
-// The points sorted into blocks of neighbours, as gathers want them; `order` becomes the point of each receiver, where
+// The points sorted into blocks of neighbours, as required by gathers. `order` becomes the point of each receiver;
 // blocks are padded with their last point.
 Receivers point_receivers(const Medium& medium, const std::vector<ReceiverPoint>& points,
                           std::vector<std::uint32_t>& order);

@@ -7,8 +7,8 @@
 
 namespace brisance {
 
-// The light that a white Lambert surface there would reflect if no surface stood in its way [W/(m^2 sr)]: of dense
-// smoke, and of thin media apart from it, as surfaces may hide the one, however bright, and not the other.
+// Light that a white Lambert surface there would reflect without occlusion by other surfaces [W/(m^2 sr)]. Dense smoke
+// and thin media are separate, as surfaces may hide one of them, however bright, and not the other.
 struct SurfaceReceiver {
     vec3 local;   // [m]
     vec3 normal;  // unit

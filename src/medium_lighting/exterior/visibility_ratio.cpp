@@ -57,7 +57,7 @@ std::size_t VisibilityRatio::voxel_in(std::size_t cell, Rng& rng) const {
     return static_cast<std::size_t>(found - passed_.begin());
 }
 
-vec3 VisibilityRatio::place_in(std::size_t voxel, Rng& rng) const {
+vec3 VisibilityRatio::point_in(std::size_t voxel, Rng& rng) const {
     const float x = rng.next(), y = rng.next(), z = rng.next();
     return medium_.local_of_node(medium_.lattice.node(nodes_[voxel])) +
            medium_.local_from_index * (vec3(x, y, z) - 0.5f);
@@ -66,27 +66,27 @@ vec3 VisibilityRatio::place_in(std::size_t voxel, Rng& rng) const {
 bool VisibilityRatio::draw(const LitPoint& point, Rng& rng, std::array<Draw, kDraws>& draws) const {
     if (tree_.empty())
         return false;
-    std::array<vec3, kDraws> places;
+    std::array<vec3, kDraws> points;
     std::array<float, kDraws> share{};
     const double shift = rng.next_double();
     for (int k = 0; k < kDraws; ++k) {
         const auto choice = tree_.choose(point, (k + shift) / kDraws);
-        places[k] = vec3(point.position);
+        points[k] = vec3(point.position);
         if (!choice)
             continue;
         const std::size_t voxel = voxel_in(choice->light, rng);
-        places[k] = place_in(voxel, rng);
+        points[k] = point_in(voxel, rng);
         share[k] = cells_[choice->light].sum * per_weight_[voxel] / float(choice->probability);
     }
     const vec3 from(point.position);
     std::array<float, kDraws> depth;
-    depths_.between(from, places.data(), depth.data());
+    depths_.between(from, points.data(), depth.data());
     for (int k = 0; k < kDraws; ++k) {
-        const vec3 way = places[k] - from;
-        const float square = std::max(glm::dot(way, way), 1e-30f);
-        const vec3 direction = way / std::sqrt(square);
+        const vec3 offset = points[k] - from;
+        const float square = std::max(glm::dot(offset, offset), 1e-30f);
+        const vec3 direction = offset / std::sqrt(square);
         const float cosine = std::max(0.0f, glm::dot(vec3(point.normal), direction));
-        draws[k] = {places[k], direction, share[k] * cosine / square * std::exp(-depth[k])};
+        draws[k] = {points[k], direction, share[k] * cosine / square * std::exp(-depth[k])};
     }
     return true;
 }

@@ -1,9 +1,10 @@
-// A glowing volume as something to aim at: which of its voxels a surface point sees past other surfaces.
+// A glowing volume as a target of shadow rays: which of its voxels a surface point sees past other surfaces.
 //
-// The lighting grid sums all lights without noise, but knows nothing of what stands between them and a surface point.
-// A few places are therefore drawn in proportion to what they send to the point, and a ray toward each says whether it
-// arrives. Their mean, a ratio of two estimates with the same draws, multiplies the sum (Lin and Yuksel, Real-Time
-// Rendering with Lighting Grid Hierarchy, I3D 2019): exact where all is seen or nothing, with noise in penumbrae only.
+// The lighting grid sums all lights without noise, but without occlusion between them and a surface point. A few points
+// of the volume are therefore sampled in proportion to the light they send to the surface point, and a shadow ray
+// toward each tests visibility. The ratio of two estimates with the same samples, visible over all light, multiplies
+// the sum (Lin and Yuksel, Real-Time Rendering with Lighting Grid Hierarchy, I3D 2019). It is exact where everything or
+// nothing is visible, and noisy in penumbrae only.
 #pragma once
 
 #include <array>
@@ -21,19 +22,19 @@ class VisibilityRatio {
 public:
     static constexpr int kDraws = PointDepths::kRays;
 
-    // `intensity`: of the voxels, per node of the medium's lattice [W/sr]; `escape`: how likely their light is to leave
-    // the medium (gathering/escape_probability.h), so that in dense smoke the voxels of its skin are drawn. Keeps
-    // references to medium and depths.
+    // `intensity`: of the voxels, per node of the medium's lattice [W/sr]; `escape`: probability that their light
+    // leaves the medium (gathering/escape_probability.h), so that in dense smoke the voxels of its skin are sampled.
+    // Keeps references to medium and depths.
     VisibilityRatio(const Medium& medium, const PointDepths& depths, const std::vector<Rgb>& intensity,
                     const NodeWeights& escape);
     bool empty() const { return tree_.empty(); }
 
     struct Draw {
-        vec3 place;           // local [m]
+        vec3 point;           // local [m]
         vec3 direction;       // unit, from the point
-        float weight = 0.0f;  // what arrives from there over the density of drawing it, without surfaces; luminance
+        float weight = 0.0f;  // luminance of the light from there over its pdf, without occlusion by surfaces
     };
-    // None where nothing can be drawn.
+    // Returns false where nothing can be sampled.
     bool draw(const LitPoint& point, Rng& rng, std::array<Draw, kDraws>& draws) const;
 
     std::uint64_t bytes() const;
@@ -44,7 +45,7 @@ private:
         float sum = 0.0f;         // of their weights
     };
     std::size_t voxel_in(std::size_t cell, Rng& rng) const;
-    vec3 place_in(std::size_t voxel, Rng& rng) const;
+    vec3 point_in(std::size_t voxel, Rng& rng) const;
 
     const Medium& medium_;
     const PointDepths& depths_;

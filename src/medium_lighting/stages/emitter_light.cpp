@@ -16,7 +16,7 @@ namespace {
 constexpr int kRays = PointDepths::kRays;
 constexpr int kBatches = 2;  // of kRays each
 
-// What kRays places on the emitters send to one node: irradiances perpendicular to their directions [W/m^2].
+// Light of kRays points on the emitters at one node: irradiances perpendicular to their directions [W/m^2].
 struct Arriving {
     std::array<vec3, kRays> direction;  // of travel
     std::array<Rgb, kRays> light;
@@ -26,16 +26,16 @@ class NodeGather {
 public:
     NodeGather(const Surroundings& surroundings, const ExtinctionPyramid& pyramid)
         : surroundings_(surroundings), depths_(pyramid, 0) {
-        // Farther than anything in the medium from anywhere in it.
+        // Larger than any distance within the medium.
         beyond_ = 2.0f * local_bounds(pyramid.medium()).diagonal();
     }
 
-    Arriving ask(std::size_t node, const vec3& p, int batch) const {
+    Arriving sample_batch(std::size_t node, const vec3& p, int batch) const {
         Arriving out;
         std::array<vec3, kRays> ends;
         std::array<float, kRays> depth;
         for (int k = 0; k < kRays; ++k)
-            ends[k] = place(node, p, batch * kRays + k, out.direction[k], out.light[k]);
+            ends[k] = end_of_ray(node, p, batch * kRays + k, out.direction[k], out.light[k]);
         depths_.between(p, ends.data(), depth.data());
         for (int k = 0; k < kRays; ++k)
             out.light[k] *= std::exp(-depth[k]) / float(kRays * kBatches);
@@ -43,8 +43,8 @@ public:
     }
 
 private:
-    // Where ray `number` of a node ends; its light before any smoke.
-    vec3 place(std::size_t node, const vec3& p, int number, vec3& direction, Rgb& light) const {
+    // The end of ray `number` of a node; sets its direction of travel, and its light before any smoke.
+    vec3 end_of_ray(std::size_t node, const vec3& p, int number, vec3& direction, Rgb& light) const {
         Rng rng(Stream::NodeEmitter, node, static_cast<std::uint64_t>(number));
         const auto sample = surroundings_.emitters().sample({dvec3(p), dvec3(0.0), LitPoint::Kind::Medium},
                                                             (number + 0.5) / (kRays * kBatches), rng);
@@ -58,8 +58,8 @@ private:
         const double distance = near ? glm::distance(end, dvec3(p)) : sample->distance;
         if (!(distance > 0.0))
             return p;
-        const dvec3 way = near ? (end - dvec3(p)) / distance : sample->direction;
-        if (!surroundings_.intersector().occluded({dvec3(p), way}, distance))
+        const dvec3 direction_to_end = near ? (end - dvec3(p)) / distance : sample->direction;
+        if (!surroundings_.intersector().occluded({dvec3(p), direction_to_end}, distance))
             light = sample->weight;
         return vec3(end);
     }
@@ -99,7 +99,7 @@ Gathered gather_from_emitters(const Surroundings& surroundings, const Extinction
                 return;
             const vec3 p = medium.local_of_node(medium.lattice.node(node));
             for (int batch = 0; batch < kBatches; ++batch) {
-                const Arriving a = gather.ask(node, p, batch);
+                const Arriving a = gather.sample_batch(node, p, batch);
                 for (int k = 0; k < kRays; ++k)
                     if (a.light[k] != Rgb(0.0f))
                         add(node, a.direction[k], a.light[k]);

@@ -6,9 +6,9 @@
 
 namespace brisance {
 
-// Every node asks a few places on the emitters, each node others: the few would be wrong by a tenth for all nodes
-// alike, while independent noise is averaged along the camera's rays. Point lights and suns are exact but for the march
-// of half a voxel.
+// Every node samples a few points on the emitters, different ones for each node. With the same points, all nodes would
+// have the same error of about a tenth; independent noise is averaged along the camera rays. Point lights and suns are
+// exact except for the ray march, by half a voxel.
 Gathered gather_from_emitters(const Surroundings& surroundings, const ExtinctionPyramid& pyramid,
                               const LatticeRequest& request);
 

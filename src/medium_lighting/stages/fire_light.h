@@ -8,8 +8,8 @@
 namespace brisance {
 
 struct FireLight {
-    Gathered arriving;                         // at the nodes; dark where single scattering is not wanted
-    std::vector<Rgb> single;                   // source function of MV per node; empty where it is not wanted
+    Gathered arriving;                         // at the nodes; zero where single scattering is not needed
+    std::vector<Rgb> single;                   // source function of MV per node; empty if not needed
     std::unique_ptr<ExteriorLights> exterior;  // where LitLattice::lights_exterior(), else null
 };
 

@@ -49,7 +49,7 @@ public:
         return build_hierarchy(lattice_.medium(), std::move(order), lattice_.input().lighting.levels);
     }
 
-    // At the nodes. Leaves the lights themselves, but not always their grid. `order`: its name in the balance.
+    // Light at the nodes. Keeps the lights themselves, but not always their grid. `order`: its name in the balance.
     Gathered gather(HierarchyLights& lights, const std::string& order) {
         std::vector<LevelCost> costs;
         Gathered g = gather_unbalanced(lights, costs);
@@ -88,7 +88,7 @@ private:
         if (!thin)
             return g;
         LightField of_thin = field(thin->lights);
-        of_thin.bottom = kFinestHazeLights;
+        of_thin.bottom = kFinestThinLights;
         g.add(gather_from_outside(of_thin, lattice_.last_request(), costs, progress_));
         give_back(*thin, thin_bricks, lights.light);
         return g;
@@ -101,9 +101,9 @@ private:
     nlohmann::ordered_json balances_ = nlohmann::ordered_json::array();
 };
 
-// The lights of all orders as they are seen from outside. What the camera sees is what lights the surroundings: all
+// The lights of all orders as seen from outside. Light that the camera sees also illuminates the surroundings: all
 // light that arrives at the nodes, scattered once more. Where light has a direction, or orders are counted, that is not
-// known, and the lights of the last flight stand in for it.
+// known, and the lights of the last flight replace it.
 HierarchyLights exterior_lights_of(const LitLattice& lattice, HierarchyLights last_flight, const Gathered& first,
                                    const Gathered& scattered) {
     const MediumLightingInput& input = lattice.input();

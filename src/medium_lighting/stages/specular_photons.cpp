@@ -21,19 +21,19 @@ constexpr double kUnsharedLeft = 0.01;
 
 }  // namespace
 
-// Light laid down along ways through the medium.
-class SpecularPhotons::Ways {
+// Deposits along tracks through the medium.
+class SpecularPhotons::Tracks {
 public:
-    Ways(const Medium& medium, const LatticeRequest& request, double power)
+    Tracks(const Medium& medium, const LatticeRequest& request, double power)
         : medium_(medium),
           request_(request),
-          ways_(medium),
+          track_lengths_(medium),
           kinds_(1 + (request.toward_camera ? 1 : 0) + (request.moments ? kShMoments : 0)),
           sums_(kinds_ * medium.lattice.node_count(), power * medium.spacing) {}
 
     void add(const Ray& ray, double end, const Rgb& power) {
         const auto basis = sh_basis(vec3(ray.direction));
-        ways_.along(ray, end, [&](std::int64_t node, float length) {
+        track_lengths_.along(ray, end, [&](std::int64_t node, float length) {
             if ((*request_.needed)[node])
                 add_to(node, power * length, vec3(ray.direction), basis);
         });
@@ -73,7 +73,7 @@ private:
 
     const Medium& medium_;
     const LatticeRequest& request_;
-    TrackLengths ways_;
+    TrackLengths track_lengths_;
     std::size_t kinds_;  // of sums at each node: fluence, toward the camera, moments
     FixedSums sums_;     // [W m]
 };
@@ -88,34 +88,35 @@ SpecularPhotons::SpecularPhotons(const DirectLight& scene, const VirtualLights* 
         particles_ = static_cast<std::size_t>(settings.photons);
 }
 
-// What the surface at the end of a particle's flight sends on and no light holds. Roulette: powers stay about equal.
-void SpecularPhotons::cast(const RaySegment& segment, const Rgb& power, Rng& rng, Ways& ways) const {
+// Light that the surface at the end of a flight sends on and no virtual light holds. Roulette keeps the powers about
+// equal.
+void SpecularPhotons::cast(const RaySegment& segment, const Rgb& power, Rng& rng, Tracks& tracks) const {
     const SurfacePoint& point = *segment.point;
     const bool held = lights_ && lights_->hold_base(*segment.hit, point);
     if (held && !needs_energy_tables(point.material))
         return;
-    const PathVertex place(point, Bsdf(point.material, point.frame, held ? Lobes::Specular : Lobes::All),
-                           segment.ray.direction);
-    const std::optional<PathVertex::Sample> next = place.sample(rng, Transport::Importance);
+    const PathVertex vertex(point, Bsdf(point.material, point.frame, held ? Lobes::Specular : Lobes::All),
+                            segment.ray.direction);
+    const std::optional<PathVertex::Sample> next = vertex.sample(rng, Transport::Importance);
     if (!next)
         return;
     const Rgb sent = power * next->weight;
     const float part = std::min(1.0f, largest(sent) / largest(power));
     if (!(rng.next() < part))
         return;
-    const Ray ray = place.leaving(next->wi);
+    const Ray ray = vertex.leaving(next->wi);
     const std::optional<SurfaceHit> hit = scene_.surroundings()->intersector().first_hit(ray);
-    ways.add(ray, hit ? hit->distance : kNoEnd, sent / part);
+    tracks.add(ray, hit ? hit->distance : kNoEnd, sent / part);
 }
 
-void SpecularPhotons::follow(std::uint64_t index, const Particles& particles, Ways& ways) const {
+void SpecularPhotons::follow(std::uint64_t index, const Particles& particles, Tracks& tracks) const {
     Rng rng(Stream::SpecularPhotons, index, seed_), cast_rng(Stream::SpecularPhotonRoulette, index, seed_);
     FlightReport report;
     const std::optional<EmittedParticle> particle = particles.emit(index, rng);
     if (counts(particle, report))
         walk_particle(scene_, *particle, index, {}, rng, [&](const ParticleFlight& flight) {
             if (flight.landing())
-                cast(flight.segment, flight.power, cast_rng, ways);
+                cast(flight.segment, flight.power, cast_rng, tracks);
             return true;
         });
 }
@@ -123,12 +124,12 @@ void SpecularPhotons::follow(std::uint64_t index, const Particles& particles, Wa
 Gathered SpecularPhotons::on(const Medium& medium, const LatticeRequest& request) const {
     const BoundingBall ball = ball_around(scene_);
     const Particles particles(scene_, ball, particles_);
-    Ways ways(medium, request, emitted_power(scene_, ball));
+    Tracks tracks(medium, request, emitted_power(scene_, ball));
     parallel_blocks(particles_, kParticlesAtOnce, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-            follow(i, particles, ways);
+            follow(i, particles, tracks);
     });
-    return ways.fluence();
+    return tracks.fluence();
 }
 
 }  // namespace brisance

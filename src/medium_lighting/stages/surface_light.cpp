@@ -15,7 +15,7 @@ void add_virtual_lights(const PointsOfSides& sides, const LitLattice& lattice, G
     const ExtinctionPyramid* const pyramid = &lattice.pyramid();
     std::vector<LevelCost> costs;
     std::size_t lights = 0;
-    // Lights outside of the lattice stand for themselves: no voxel has a share in them.
+    // Lights outside of the lattice represent themselves only: no voxel has a share in them.
     const std::vector<float> no_weight(lattice.node_count(), 0.0f);
     for (const PointLights& side : sides) {
         const LightingGrid grid = build_point_grid(lattice.medium(), side, settings.alpha);

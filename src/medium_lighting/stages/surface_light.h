@@ -6,7 +6,7 @@
 
 namespace brisance {
 
-// At the nodes: of the virtual lights as points, and of particles for what those do not hold.
+// Light at the nodes: of the virtual lights as points, and of particles for light that those do not hold.
 Gathered light_from_surfaces(const LitLattice& lattice, Statistics& statistics, Progress& progress);
 
 }  // namespace brisance

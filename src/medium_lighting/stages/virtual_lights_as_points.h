@@ -1,4 +1,4 @@
-// Virtual lights of surfaces as the lights of a medium: what the cell MS asks.
+// Virtual lights of surfaces as lights of a medium, from which the cell MS gathers.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace brisance {
 
-// Lights by the side of a fixed, oblique plane that their normals point to. The two faces of a wall have opposite
-// normals, so that no coarse light stands for both: it would stand in the wall, and shine through it.
+// The lights, split by the side of a fixed, oblique plane that their normals point to. The two faces of a wall have
+// opposite normals, so that no coarse light represents both: such a light would lie in the wall and shine through it.
 using PointsOfSides = std::array<PointLights, 2>;
 
 // Each shines by Lambert's cosine about its normal, in spherical harmonics of degree 2 (6 % too bright along the
