@@ -20,7 +20,7 @@ public:
     bool nearest = false;             // else bilinear
     bool srgb = false;                // rgb are stored by sRGB's curve, alpha is linear in any case
     std::vector<std::uint8_t> bytes;  // RGBA
-    std::vector<float> floats;        // RGBA, in place of bytes
+    std::vector<float> floats;        // RGBA, instead of bytes
 
     // Linear RGBA at uv, interpolated in linear light. Coordinates that are not finite count as 0.
     vec4 at(vec2 uv) const;

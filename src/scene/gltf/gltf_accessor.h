@@ -10,7 +10,7 @@
 namespace brisance {
 
 // Each function rejects the file in a line that says `what` was read, when the accessor, its bufferView or its buffer
-// does not exist or is too short, or its type is not what is asked for.
+// does not exist or is too short, or its type is not the expected one.
 
 // The number of elements, all of which are there. Allocates nothing, so that a file may claim any number.
 std::size_t element_count(const GltfFile& file, int accessor, const std::string& what);
