@@ -33,7 +33,7 @@ float forward_share(float mean_cosine);
 float forward_left_out(float mean_cosine, int bounces);
 
 // Empty where the medium will do. `bounces`: scatterings to follow, -1: all orders. With 1 the forward share of single
-// scattering is missing; with a number above, peaks stay as they are, since every order is asked for by itself.
+// scattering is missing; with a number above, peaks stay as they are, since every order is computed by itself.
 std::optional<Medium> similar_medium(const Medium& medium, int bounces);
 
 }  // namespace brisance

@@ -5,7 +5,7 @@
 
 namespace brisance {
 
-// Local [m], axes parallel to the world's; of all bricks, whatever way the lattice is turned or sheared.
+// Local [m], axes parallel to the world's; of all bricks, however the lattice is rotated or sheared.
 struct LocalBounds {
     vec3 low{1e30f}, high{-1e30f};
     // To a point; 0 inside.

@@ -15,9 +15,9 @@ public:
     virtual bool any_within(const vec3& centre, float radius) const = 0;
 
     bool visible(const vec3& from, const vec3& to) const {
-        const vec3 way = to - from;
-        const float distance = glm::length(way);
-        return !(distance > 0.0f) || first_hit(from, way / distance, distance) >= distance;
+        const vec3 offset = to - from;
+        const float distance = glm::length(offset);
+        return !(distance > 0.0f) || first_hit(from, offset / distance, distance) >= distance;
     }
 };
 
