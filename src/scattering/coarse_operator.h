@@ -56,7 +56,7 @@ private:
     std::vector<Rgb> unit_;            // light of a source function of 1: integral of hat * extinction [m^2]
     std::vector<float> weight_;        // the same as a scalar: centres do not depend on a bounce's light
     std::vector<float> least_weight_;  // what a source function is divided by at least
-    int collision_numbers_ = 1;        // per node of the next: directional light asks for moments
+    int collision_numbers_ = 1;        // per node of the next: directional light needs moments
     std::vector<float> collision_;     // per node: probability of a collision before leaving the medium
     std::vector<float> factor_;        // D
     LightingGrid grid_;
