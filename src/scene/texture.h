@@ -1,4 +1,4 @@
-// A picture on a surface, or around the scene.
+// An image on a surface or around the scene.
 #pragma once
 
 #include <cstdint>
