@@ -1,4 +1,4 @@
-// Rays against the triangles of a scene: the only door to Embree (3 or 4).
+// Intersects rays with the triangles of a scene. Only this module includes Embree (3 or 4).
 #pragma once
 
 #include <cstdint>
