@@ -1,4 +1,4 @@
-// Writing frames: each file appears whole or not at all. The only door to OpenEXR and OpenImageIO.
+// Writes frames; each file appears whole or not at all. Its header includes neither OpenEXR nor OpenImageIO.
 #pragma once
 
 #include <cstdint>
