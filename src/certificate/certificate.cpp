@@ -9,7 +9,7 @@ namespace brisance {
 namespace {
 
 nlohmann::ordered_json json_of(const CertifiedError& e) {
-    // What is infinite becomes null.
+    // Infinite values become null.
     return {{"error", e.error},
             {"error_square", e.square},
             {"error_interval", {e.error_interval.low, e.error_interval.high}},

@@ -1,4 +1,4 @@
-// How far a finished picture is from the truth, as far as that is known.
+// The estimated error of a finished picture against the truth.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,16 @@
 
 namespace brisance {
 
-// Of the picture, or of one of its ledger cells relative to that cell's own truth R. Infinite bounds: nothing is known.
+// The error of the picture, or of one of its ledger cells relative to that cell's own truth R. Infinite bounds mean
+// that nothing is known.
 struct CertifiedError {
-    std::string cell;     // of the ledger; empty: the picture
-    double square = 0.0;  // estimate of error^2 without bias: below 0 by chance, fit to be averaged over certificates
-    double error = 0.0;   // ||I - R|| / ||R||, over all pixels and channels: root of the square, or of 0
-    Interval error_interval;  // from 0 where an error of 0 cannot be excluded: then its end is an upper bound, no more
+    std::string cell;         // of the ledger; empty: the picture
+    double square = 0.0;      // unbiased estimate of error^2: may fall below 0 by chance; certificates may be averaged
+    double error = 0.0;       // ||I - R|| / ||R||, over all pixels and channels: root of the square, or of 0
+    Interval error_interval;  // from 0 where an error of 0 cannot be excluded; its end is then an upper bound
     double mean = 0.0;        // mean(I) / mean(R) - 1
     Interval mean_interval;
-    double largest_share = 0.0;  // of the squared error's variance that the most telling pair of pixels brings
+    double largest_share = 0.0;  // of the squared error's variance, from the pair of pixels that adds most
 };
 
 struct Certificate {

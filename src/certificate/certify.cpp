@@ -18,16 +18,17 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// How pixels are drawn: evenly, by what each target shows there, and by its square.
+// Shares of pixels that are drawn evenly, in proportion to each target's radiance, and in proportion to its square.
 constexpr double kEvenly = 0.2, kByRadiance = 0.2, kBySquare = 0.6;
 
-// A budget of B = n m samples, m at each of n draws, leaves the squared error with the variance
+// A budget of B = n m samples, m at each of n draws, gives the squared error the variance
 //     (m S + 4 C + 2 N / (m - 1)) / B,
-// S the spread of (I - R)^2 over the draws, C the mean of (I - R)^2 sigma^2, N that of sigma^4, sigma the noise of one
-// sample. It is least for m - 1 = sqrt(2 N / S): some ten samples when the picture is off by a third of the noise,
-// thousands when by a hundredth. The mean error's variance, (m S' + N') / B, and errors that are rare always ask for
-// many draws. With m = n / 16 the interval's width stays within 1.3 times the best that was measured, for errors from
-// 0.6 to 23 %. Larger budgets buy draws and samples so that the intervals of good and bad pictures shrink alike.
+// where S is the spread of (I - R)^2 over the draws, C the mean of (I - R)^2 sigma^2, N the mean of sigma^4, and sigma
+// the noise of one sample. It is least for m - 1 = sqrt(2 N / S): some ten samples when the picture is off by a third
+// of the noise, thousands when it is off by a hundredth. The mean error's variance, (m S' + N') / B, and rare errors
+// always need many draws. With m = n / 16 the interval's width stays within 1.3 times the best that was measured, for
+// errors from 0.6 to 23 %. Larger budgets buy draws and samples so that the intervals of good and bad pictures shrink
+// alike.
 std::size_t draws_of(int samples) {
     constexpr double usual = 1 << 19;
     const double share = samples / usual;
@@ -35,14 +36,14 @@ std::size_t draws_of(int samples) {
     return std::clamp<std::size_t>(std::lround(draws), 2, std::max(2, samples / 2));
 }
 
-// Pictures of one or several orders of scattering: the beauty, and its cells. With surroundings paths know the cells
-// themselves.
+// Pictures of one or several orders of scattering: the beauty, and its cells. With surroundings, paths are filed by
+// cell.
 constexpr std::size_t kMostTargets = 1 + kCells;
 
 struct Target {
     const Layer* layer;
     int first_order, end_order;
-    int cell = -1;  // in place of the orders
+    int cell = -1;  // instead of the orders
     dvec3 pixel(std::size_t p) const {
         const float* v = &layer->pixels[p * layer->channels.size()];
         return {v[0], v[1], v[2]};
@@ -71,15 +72,15 @@ double sum_of(const dvec3& c) {
     return c.x + c.y + c.z;
 }
 
-// What a draw tells of one target: channels summed, weighted as the survey asks.
-struct Told {
+// The estimates of one draw for one target, summed over channels and weighted by the survey.
+struct DrawEstimate {
     double square = 0.0;      // (I - R)^2
     double difference = 0.0;  // I - R
     double energy = 0.0;      // I^2 - R^2
 };
-using ToldOfAll = std::array<Told, kMostTargets>;
+using AllEstimates = std::array<DrawEstimate, kMostTargets>;
 
-Told told_by(const dvec3& image, const dvec3& sum, const dvec3& squares, int samples, double weight) {
+DrawEstimate estimate_of(const dvec3& image, const dvec3& sum, const dvec3& squares, int samples, double weight) {
     const double n = samples;
     const dvec3 mean = sum / n, square = (sum * sum - squares) / (n * (n - 1.0));
     return {weight * sum_of(square), weight * sum_of(mean), weight * sum_of(2.0 * image * mean - square)};
@@ -90,7 +91,7 @@ public:
     Sampler(const std::vector<Target>& targets, const PathTracer& tracer, const Camera& camera, int seed, int samples)
         : targets_(targets), tracer_(tracer), camera_(camera), seed_(seed), samples_(samples) {}
 
-    ToldOfAll ask(std::size_t number, const PixelSurvey::Draw& draw) {
+    AllEstimates sample(std::size_t number, const PixelSurvey::Draw& draw) {
         std::array<dvec3, kMostTargets> image{}, sum{}, squares{};
         for (std::size_t t = 0; t < targets_.size(); ++t)
             image[t] = targets_[t].pixel(draw.pixel);
@@ -102,10 +103,10 @@ public:
                 squares[t] += d * d;
             }
         }
-        ToldOfAll told{};
+        AllEstimates estimates{};
         for (std::size_t t = 0; t < targets_.size(); ++t)
-            told[t] = told_by(image[t], sum[t], squares[t], samples_, draw.weight);
-        return told;
+            estimates[t] = estimate_of(image[t], sum[t], squares[t], samples_, draw.weight);
+        return estimates;
     }
 
     std::uint64_t not_finite() const { return not_finite_; }
@@ -120,16 +121,16 @@ private:
         return sum;
     }
 
-    // Everything about it is random and independent of every other sample: no sequence, no stratification.
+    // Each sample is independent of every other: there is no sequence and no stratification.
     PathSum trace(std::size_t number, int k, std::size_t pixel) {
         const CameraSettings& s = camera_.settings();
         Rng rng(Stream::Certificate, std::uint64_t(seed_) << 32 | number, std::uint64_t(k) + 1);
-        const double x = rng.next_double() - 0.5, y = rng.next_double() - 0.5, place = rng.next_double();
+        const double x = rng.next_double() - 0.5, y = rng.next_double() - 0.5, position = rng.next_double();
         const double column = double(pixel % s.width) + 0.5 + x * s.filter_width_pixels;
         const double row = double(pixel / s.width) + 0.5 + y * s.filter_width_pixels;
         PathSum path{};
         PathStatistics ignored;
-        tracer_.trace(camera_.ray(column, row), place, rng, path, ignored);
+        tracer_.trace(camera_.ray(column, row), position, rng, path, ignored);
         if (!std::isfinite(sum_of(dvec3(std::accumulate(path.begin(), path.end(), Rgb(0.0f)))))) {
             ++not_finite_;
             return {};
@@ -148,7 +149,7 @@ private:
     std::atomic<std::uint64_t> not_finite_ = 0;
 };
 
-// The picture as a population of pixels: which can be asked, and how often each should be.
+// The picture as a population of pixels: which of them can be sampled, and how often each should be.
 class Population {
 public:
     Population(const Image& image, const std::vector<Target>& targets)
@@ -190,7 +191,7 @@ private:
             size[p] += usable_[p] * share * part[p] / sum;
     }
 
-    // Over three by three pixels: a dark pixel among bright ones is more likely wrong than a dark place.
+    // Averages over three by three pixels: a dark pixel among bright ones is more likely wrong than a dark region.
     template <class Value>
     std::vector<double> blurred(const Value& value) const {
         std::vector<double> out(usable_.size(), 0.0);
@@ -211,23 +212,24 @@ private:
 // Of sqrt(s.a / (norm - s.b)).
 void judge_error(CertifiedError& e, const SurveyedSums& s, double norm) {
     const double t = half_width(s.strata), t2 = t * t, below = norm - s.b;
-    // Beale's ratio, unbiased to first order: the plain one is too large by what the truth's own noise does.
+    // Beale's ratio is unbiased to first order. The plain ratio is too large because of the noise of the truth.
     e.square = below > 0.0 ? (s.a * below - s.ab) / (below * below + s.bb) : kInfinity;
     e.error = std::sqrt(std::max(0.0, e.square));
     e.error_interval = {0.0, kInfinity};
     e.largest_share = s.largest_share;
-    // Fieller: all q for which a - q below is within t of its standard errors, (a - q below)^2 <= t^2 var(a + q b).
+    // Fieller's interval holds all q for which a - q below is within t standard errors of 0:
+    // (a - q below)^2 <= t^2 var(a + q b).
     const double squared = below * below - t2 * s.bb, middle = s.a * below + t2 * s.ab, rest = s.a * s.a - t2 * s.aa;
     const double root = middle * middle - squared * rest;
     if (!(below > 0.0 && squared > 0.0 && root >= 0.0))
         return;
     e.error_interval.low = std::sqrt(std::max(0.0, (middle - std::sqrt(root)) / squared));
-    // Never below what chance alone makes of a perfect picture.
+    // The bound is never below the error that chance alone would give a perfect picture.
     const double chance = t * std::sqrt(s.aa) / below;
     e.error_interval.high = std::sqrt(std::max((middle + std::sqrt(root)) / squared, chance));
 }
 
-// The mean of the truth is that of the picture less the difference: nothing else is random.
+// The mean of the truth is that of the picture less the difference, and only the difference is random.
 void judge_mean(CertifiedError& e, const SurveyedSums& s, double total) {
     const double width = half_width(s.strata) * std::sqrt(s.aa);
     const auto relative = [total](double difference) {
@@ -239,10 +241,10 @@ void judge_mean(CertifiedError& e, const SurveyedSums& s, double total) {
         e.mean_interval.low = -kInfinity;
 }
 
-CertifiedError conclude(const Population& population, const Target& target, std::span<const ToldOfAll> told,
+CertifiedError conclude(const Population& population, const Target& target, std::span<const AllEstimates> estimates,
                         std::size_t index) {
     std::vector<double> square, difference, energy;
-    for (const ToldOfAll& all : told) {
+    for (const AllEstimates& all : estimates) {
         square.push_back(all[index].square);
         difference.push_back(all[index].difference);
         energy.push_back(all[index].energy);
@@ -256,7 +258,7 @@ CertifiedError conclude(const Population& population, const Target& target, std:
     return e;
 }
 
-// Black, and rightly so: no ratio is needed to know that.
+// The result for a target that is rightly black, for which no ratio is defined.
 CertifiedError nothing_missing(const Target& target) {
     CertifiedError e;
     e.cell = target.layer->name;
@@ -295,17 +297,17 @@ Certificate certify(const Image& image, const CertifiedScene& scene, const Certi
     out.samples = out.pixels * out.samples_per_pixel;
     const PathTracer tracer(scene.medium, scene.tracing, scene.bounces, scene.surroundings);
     Sampler sampler(targets, tracer, scene.camera, settings.seed, static_cast<int>(out.samples_per_pixel));
-    std::vector<ToldOfAll> told(draws.size());
+    std::vector<AllEstimates> estimates(draws.size());
     std::atomic<std::size_t> done = 0;
     parallel_for(draws.size(), [&](std::size_t i) {
-        told[i] = sampler.ask(i, draws[i]);
+        estimates[i] = sampler.sample(i, draws[i]);
         progress.fraction(double(++done) / double(draws.size()));
     });
     out.not_finite_samples = sampler.not_finite();
     for (std::size_t t = 0; t < targets.size(); ++t) {
         const bool black = population.total([&](std::size_t p) { return sum_of(targets[t].pixel(p)); }) == 0.0;
         out.errors.push_back(black && !scene.shines ? nothing_missing(targets[t])
-                                                    : conclude(population, targets[t], told, t));
+                                                    : conclude(population, targets[t], estimates, t));
     }
     warn(out, progress);
     return out;

@@ -21,8 +21,9 @@ std::uint64_t spread_bits(std::uint64_t x) {
 std::vector<std::size_t> z_order(std::size_t pixels, int width) {
     std::vector<std::size_t> order(pixels);
     std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto place = [width](std::size_t p) { return spread_bits(p % width) | spread_bits(p / width) << 1; };
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return place(a) < place(b); });
+    const auto curve_index = [width](std::size_t p) { return spread_bits(p % width) | spread_bits(p / width) << 1; };
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return curve_index(a) < curve_index(b); });
     return order;
 }
 
@@ -40,7 +41,7 @@ PixelSurvey::PixelSurvey(const std::vector<double>& size, int width, std::size_t
     for (std::size_t i = 0; i < 2 * strata; ++i) {
         Rng rng(Stream::Certificate, seed << 32 | i);
         const double at = (static_cast<double>(i / 2) + rng.next_double()) / static_cast<double>(strata) * total;
-        // The first that reaches beyond `at`: never one of size 0.
+        // The first pixel whose running sum exceeds `at`; its size is never 0.
         auto found = std::upper_bound(upto.begin(), upto.end(), at);
         if (found == upto.end())
             found = std::lower_bound(upto.begin(), upto.end(), total);
@@ -70,7 +71,7 @@ SurveyedSums surveyed_sums(const std::vector<double>& a, const std::vector<doubl
 double half_width(std::size_t degrees_of_freedom) {
     constexpr double z = 1.959963984540054;
     const double nu = static_cast<double>(std::max<std::size_t>(degrees_of_freedom, 1));
-    // Cornish-Fisher; within two thousandths from ten degrees of freedom on.
+    // The Cornish-Fisher expansion is within two thousandths from ten degrees of freedom on.
     return z + (z * z * z + z) / (4.0 * nu) + z * (5.0 * z * z * z * z + 16.0 * z * z + 3.0) / (96.0 * nu * nu);
 }
 

@@ -1,8 +1,8 @@
-// Sums over all pixels of a picture, known from a few pixels drawn at random: survey sampling.
+// Estimates sums over all pixels of a picture from a few pixels drawn at random: survey sampling.
 //
-// Pixels are drawn in proportion to a size that is to resemble what is summed, two in each of many strata, and a drawn
-// value counts by the inverse of its probability (Hansen and Hurwitz, On the Theory of Sampling from Finite
-// Populations, 1943). Nothing is assumed of the values, so that neither the estimates nor their variances have a bias.
+// Pixels are drawn in proportion to a size that should resemble the summed quantity, two in each of many strata. A
+// drawn value is weighted by the inverse of its probability (Hansen and Hurwitz, On the Theory of Sampling from Finite
+// Populations, 1943). Nothing is assumed of the values, so neither the estimates nor their variances have a bias.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace brisance {
 
-// Strata are stretches of equal size along a Z-order curve through the picture: neighbours are alike.
+// Strata are stretches of equal size along a Z-order curve through the picture, because neighbours are alike.
 class PixelSurvey {
 public:
     struct Draw {
@@ -22,8 +22,9 @@ public:
     // `size`: at least 0, one for each pixel; pixels of size 0 are never drawn. `draws` is made even.
     PixelSurvey(const std::vector<double>& size, int width, std::size_t draws, std::uint64_t seed);
 
-    // Draws 2 h and 2 h + 1 belong to stratum h, and are independent of each other and of all others. Empty when all
-    // sizes are 0.
+    // Draws 2 h and 2 h + 1 belong to stratum h and are independent of each other and of all others. There are none
+    // when
+    // all sizes are 0.
     const std::vector<Draw>& draws() const { return draws_; }
 
 private:
@@ -35,7 +36,7 @@ struct SurveyedSums {
     double a = 0.0, b = 0.0;
     double aa = 0.0, ab = 0.0, bb = 0.0;  // variances and covariance of the sums
     std::size_t strata = 0;
-    double largest_share = 0.0;  // of `aa` that one stratum alone brings
+    double largest_share = 0.0;  // of `aa`, the greatest from one stratum
 };
 
 SurveyedSums surveyed_sums(const std::vector<double>& a, const std::vector<double>& b);
@@ -45,8 +46,8 @@ struct Interval {
     double high = 0.0;
 };
 
-// Half the width of an interval, in standard errors, that holds the truth as often as this as far as sums over many
-// draws are normally distributed: a quantile of Student's t.
+// The probability with which an interval holds the truth, as far as sums over many draws are normally distributed. Half
+// the interval's width, in standard errors, is a quantile of Student's t.
 constexpr double kConfidence = 0.95;
 double half_width(std::size_t degrees_of_freedom);
 

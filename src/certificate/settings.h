@@ -1,4 +1,4 @@
-// What a certificate may cost.
+// Settings that limit the cost of a certificate.
 #pragma once
 
 namespace brisance {

@@ -1,4 +1,4 @@
-// What a long computation tells whoever waits for it.
+// Progress reports of a long computation.
 #pragma once
 
 #include <string>

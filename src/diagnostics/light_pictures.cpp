@@ -23,7 +23,7 @@ struct Disc {
     double distance;    // from the eye [m]
 };
 
-// Where the camera sees a light, past all surfaces.
+// The disc of a light that no surface hides from the camera.
 std::optional<Disc> disc_of(const VirtualLights& lights, std::size_t i, const Intersector& surfaces,
                             const Camera& camera) {
     const VirtualLight& light = lights.lights()[i];
@@ -32,16 +32,16 @@ std::optional<Disc> disc_of(const VirtualLights& lights, std::size_t i, const In
     if (!middle || !(middle->x >= 0.0 && middle->x < camera.settings().width && middle->y >= 0.0 &&
                      middle->y < camera.settings().height && glm::dot(away, light.frame.normal) < 0.0))
         return std::nullopt;
-    // Just above its own surface, and by no less than single precision can tell from there.
+    // The ray ends just above the light's own surface, at a distance that single precision resolves from the camera.
     const double clear = std::max(1e-3 * light.radius, 1e-5 * glm::length(away));
-    const dvec3 way = away + clear * light.frame.normal;
-    const double distance = glm::length(way);
-    if (surfaces.occluded({camera.eye_local(), way / distance}, distance))
+    const dvec3 to_light = away + clear * light.frame.normal;
+    const double distance = glm::length(to_light);
+    if (surfaces.occluded({camera.eye_local(), to_light / distance}, distance))
         return std::nullopt;
     return Disc{i, *middle, distance};
 }
 
-// Those seen, the farthest first.
+// The discs of all visible lights, the farthest first.
 std::vector<Disc> discs_of(const VirtualLights& lights, const Intersector& surfaces, const Camera& camera) {
     std::vector<std::optional<Disc>> found(lights.lights().size());
     parallel_for(found.size(), [&](std::size_t i) { found[i] = disc_of(lights, i, surfaces, camera); });

@@ -1,4 +1,4 @@
-// The many-light method at work: where virtual lights lie, what they hold, and how far paths go past them.
+// Pictures of the many-light method: the positions of virtual lights, their contents, and the lengths of paths.
 #pragma once
 
 #include <optional>
@@ -26,8 +26,8 @@ struct LightPictures {
 
     // Layers: beauty, the lights seen as discs over the picture in dim gray; "lights", the discs alone, with the
     // radiance that each sends to the camera and alpha; "light", the number of the light seen, from 1, else 0; "count",
-    // how many lights speak for the surface behind the pixel's middle (0 to LightShares::kMost; 0: none, or no
-    // surface); "path_length", mean number of vertices of the pixel's paths, 0 where there were none.
+    // the number of lights that cover the surface point behind the pixel's middle (0 to LightShares::kMost; 0: none, or
+    // no surface); "path_length", mean number of vertices of the pixel's paths, 0 where there were none.
     Image image;
 
     // Profiles side by side: tile t lies in column t % columns and row t / columns; a tile is one light's map of the

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using Type = PlyProperty::Type;
 using Light = LightPictures::Light;
 
-// What a viewer shows: the light's mean radiance as the frame's PNG would show it.
+// The colour of a light in a viewer: its mean radiance as the frame's PNG would show it.
 std::array<double, 3> display_colour(const Light& light, float exposure_stops, ViewTransform view) {
     const float scale =
         light.area > 0.0 ? std::exp2(exposure_stops) / (std::numbers::pi_v<float> * float(light.area)) : 0.0f;
@@ -63,7 +63,7 @@ void write_heat(const fs::path& file, const Image& image, const std::string& lay
     write_png(file, image.width, image.height, false_colours(plane));
 }
 
-// Profiles differ by powers of ten, and what is to be seen is their shape: each has its brightest texel at white.
+// Profiles differ by powers of ten, and the picture shows their shape: each has its brightest texel at white.
 Image shown_profiles(const LightPictures& pictures) {
     const Layer& from = pictures.profiles.layer("");
     const int side = pictures.tile, pitch = side + 1, rows = pictures.profiles.height / side;

@@ -9,7 +9,7 @@ namespace brisance {
 
 namespace {
 
-struct Place {
+struct IndexedPoint {
     vec3 point;
     std::uint32_t index;
 
@@ -27,8 +27,8 @@ std::uint64_t hash(const vec3& p) {
 
 }  // namespace
 
-// Most points are alone with the bit their hash names. The few others are sorted.
-std::vector<std::uint32_t> first_at_place(std::span<const vec3> points) {
+// Most points have the bit that their hash selects to themselves. Only the few others are sorted.
+std::vector<std::uint32_t> first_coincident(std::span<const vec3> points) {
     const std::uint64_t mask = std::bit_ceil(8 * points.size() + 1) - 1;
     std::vector<bool> once(mask + 1), again(mask + 1);
     for (const vec3& p : points) {
@@ -37,16 +37,17 @@ std::vector<std::uint32_t> first_at_place(std::span<const vec3> points) {
             again[bit] = true;
         once[bit] = true;
     }
-    std::vector<Place> places;
+    std::vector<IndexedPoint> suspects;
     for (std::size_t i = 0; i < points.size(); ++i)
         if (again[hash(points[i]) & mask])
-            places.push_back({points[i], static_cast<std::uint32_t>(i)});
-    std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.key() < b.key(); });
+            suspects.push_back({points[i], static_cast<std::uint32_t>(i)});
+    std::sort(suspects.begin(), suspects.end(),
+              [](const IndexedPoint& a, const IndexedPoint& b) { return a.key() < b.key(); });
     std::vector<std::uint32_t> first(points.size());
     std::iota(first.begin(), first.end(), 0u);
-    for (std::size_t k = 1; k < places.size(); ++k)
-        if (places[k].point == places[k - 1].point)
-            first[places[k].index] = first[places[k - 1].index];
+    for (std::size_t k = 1; k < suspects.size(); ++k)
+        if (suspects[k].point == suspects[k - 1].point)
+            first[suspects[k].index] = first[suspects[k - 1].index];
     return first;
 }
 

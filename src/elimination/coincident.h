@@ -1,4 +1,4 @@
-// Points at the same place.
+// Finds points with equal coordinates.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace brisance {
 
-// For each point, the lowest index among the points at exactly its place.
-std::vector<std::uint32_t> first_at_place(std::span<const vec3> points);
+// Returns for each point the lowest index among the points with exactly its coordinates.
+std::vector<std::uint32_t> first_coincident(std::span<const vec3> points);
 
 }  // namespace brisance

@@ -17,7 +17,7 @@ namespace brisance {
 
 namespace {
 
-// Weight limiting, [1] section 3: what is nearer than d_min counts as if at d_min.
+// Weight limiting, [1] section 3: a neighbour nearer than d_min counts as if it were at d_min.
 constexpr double kBeta = 0.65, kGamma = 1.5;
 
 constexpr std::size_t kGrain = 4096;  // points of one task of a simple loop
@@ -54,8 +54,8 @@ std::vector<std::uint32_t> ranked(std::size_t points, std::span<const std::uint6
     return order;
 }
 
-// In the order of their ids, in units of a power of two about the size of their box: squares of distances neither
-// overflow nor vanish, and no digit is lost.
+// The points in the order of their ids, in units of a power of two about the size of their box. Squares of distances
+// neither overflow nor vanish, and no digit is lost.
 class Scaled {
 public:
     Scaled(std::span<const vec3> points, const std::vector<std::uint32_t>& order) : points_(points.size()) {
@@ -79,23 +79,23 @@ private:
     double unit_ = 1.0;
 };
 
-// One point of each place, in k-d order.
+// One point of each set of coincident points, in k-d order.
 Candidates distinct(const std::vector<vec3>& points, const std::vector<std::uint32_t>& first) {
     std::vector<std::uint32_t> rank;
-    std::vector<vec3> places;
+    std::vector<vec3> distinct_points;
     for (std::uint32_t r = 0; r < points.size(); ++r)
         if (first[r] == r) {
             rank.push_back(r);
-            places.push_back(points[r]);
+            distinct_points.push_back(points[r]);
         }
-    const std::vector<std::uint32_t> order = kd_order(places);
+    const std::vector<std::uint32_t> order = kd_order(distinct_points);
     Candidates candidates;
     candidates.position.resize(order.size());
     candidates.rank.resize(order.size());
     parallel_for(
         order.size(),
         [&](std::size_t i) {
-            candidates.position[i] = places[order[i]];
+            candidates.position[i] = distinct_points[order[i]];
             candidates.rank[i] = rank[order[i]];
         },
         kGrain);
@@ -111,7 +111,7 @@ void set_reach(Candidates& candidates, std::size_t target, double unit, const El
     candidates.reach.assign(candidates.size(), static_cast<float>(closest_packing_distance(each, s.dimension)));
 }
 
-// The last stage is the one that shows; it gets the full ratio, the first what is left.
+// Only the last stage shows in the result, so it gets the full ratio, and the first stage the remainder.
 std::vector<std::uint32_t> run_stages(const Candidates& candidates, std::size_t target, const EliminationSettings& s) {
     std::vector<std::uint32_t> alive(candidates.size());
     std::iota(alive.begin(), alive.end(), 0u);
@@ -129,7 +129,7 @@ std::vector<std::uint32_t> run_stages(const Candidates& candidates, std::size_t 
     return alive;
 }
 
-// Ranks of those who stay: of each place one, and only if there are too few places others.
+// Returns the ranks of the survivors: one of each set of coincident points, and others only if there are too few sets.
 std::vector<std::uint32_t> choose(const Candidates& candidates, const std::vector<std::uint32_t>& first,
                                   std::size_t target, const EliminationSettings& settings) {
     std::vector<std::uint32_t> ranks;
@@ -151,7 +151,7 @@ Survivors eliminate(std::span<const vec3> points, std::size_t target, const Elim
         return {};
     const std::vector<std::uint32_t> order = ranked(points.size(), ids);
     const Scaled scaled(points, order);
-    const std::vector<std::uint32_t> first = first_at_place(scaled.points());
+    const std::vector<std::uint32_t> first = first_coincident(scaled.points());
     Candidates candidates = distinct(scaled.points(), first);
     set_reach(candidates, target, scaled.unit(), settings);
 

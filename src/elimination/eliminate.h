@@ -1,16 +1,17 @@
-// Weighted sample elimination: many random points to few that keep their distance from each other (blue noise).
+// Weighted sample elimination reduces many random points to few that keep their distance from each other (blue noise).
 //
 // [1] C. Yuksel, Sample Elimination for Generating Poisson Disk Sample Sets, Computer Graphics Forum 34(2), 2015.
 // [2] T. Li, W. Wang, D. Lin, C. Yuksel, Virtual Blue Noise Lighting, HPG 2022: radii from the candidates' density.
 //
-// Departs from both: elimination runs in parallel, yet keeps exactly who would be kept one by one (greedy.h), so that
-// no border of a cell can show. From [1]: ratios beyond stage_ratio are gone down in stages, each with distances to
-// match, so that nobody has too many neighbours. From [2]: weights are limited as in [1], which keeps survivors further
-// apart (nearest neighbours at 0.81 d_max instead of 0.72 on average). Coincident points count once: but for the first
-// of each place they go before any other. Weights are integers, and results the same bits for any number of threads.
+// Differences from both: elimination runs in parallel, yet keeps exactly the points that the one-by-one algorithm would
+// keep (greedy.h), so that no cell border can show. Differences from [1]: ratios beyond stage_ratio are reached in
+// stages, each with matching distances, so that no point has too many neighbours. Differences from [2]: weights are
+// limited as in [1], which keeps survivors further apart (nearest neighbours at 0.81 d_max instead of 0.72 on average).
+// Coincident points count once: all but the first of them are removed before any other point. Weights are integers, so
+// results are the same to the bit for any number of threads.
 //
-// Time grows with the number of candidates within d_max of each: uniform radii want candidates whose density varies by
-// two orders of magnitude at most.
+// Time grows with the number of candidates within d_max of each, so uniform radii need candidates whose density varies
+// by two orders of magnitude at most.
 #pragma once
 
 #include <cstdint>
@@ -40,9 +41,9 @@ struct Survivors {
     std::vector<float> distance;       // d_max = 2 r_max of each [m]: what it would keep from others in closest packing
 };
 
-// Exactly min(target, points) survivors. `ids`, one per point or none, name the points where the choice between equals
-// would go by index otherwise: with them, survivors do not depend on the order of the points.
-// Points without another candidate elsewhere get an adaptive distance of 0.
+// Returns exactly min(target, points) survivors. `ids`, one per point or none, replace indices as the tie-breaker
+// between equals; with them, survivors do not depend on the order of the points. Points without another candidate at
+// different coordinates get an adaptive distance of 0.
 // Throws Error: a position that is not finite, ids of another number, settings out of range.
 Survivors eliminate(std::span<const vec3> points, std::size_t target, const EliminationSettings& settings,
                     std::span<const std::uint64_t> ids = {});

@@ -16,22 +16,22 @@ namespace {
 constexpr std::size_t kLeastBlock = 256, kGreatestBlock = 4096;  // leaves that one task works on
 constexpr std::size_t kBlocks = 32;                              // unless those would be too small or too large
 constexpr double kOverlap = 1.5;              // neighbours above the same round's threshold, on average
-constexpr double kRepack = 0.3;               // when as few of the points are left, leaves are filled anew
+constexpr double kRepack = 0.3;               // leaves are refilled when this share of the points is left
 constexpr std::size_t kSampledLeaves = 1024;  // from which a round's threshold is read
 
 struct Removal {
     Weight weight;  // when it went
     std::uint32_t rank;
-    std::uint32_t place;  // in the list of those alive
+    std::uint32_t position_in_list;  // in the list of remaining points
 };
 
-// A removal near a border: what it takes from a leaf of another block is subtracted there after the round.
+// The effect of a removal near a border: the weights to subtract from a leaf of another block after the round.
 struct Message {
     std::uint32_t leaf;
     vec3 position;
 };
 
-// A range of leaves, and a copy of those around it as they were when the round began.
+// A range of leaves with copies of the leaves around it from the beginning of the round.
 struct Block {
     std::uint32_t first = 0, owned = 0;     // the range
     std::vector<Leaf> leaves;               // owned ones, then copies
@@ -64,7 +64,7 @@ std::uint32_t position_in(const std::vector<std::uint32_t>& ascending, std::uint
     return static_cast<std::uint32_t>(std::lower_bound(ascending.begin(), ascending.end(), value) - ascending.begin());
 }
 
-// Those that went first when one goes at a time.
+// Keeps the removals that the one-by-one algorithm would make first.
 void keep_greatest(std::vector<Removal>& removed, std::size_t count) {
     const auto last = removed.begin() + static_cast<std::ptrdiff_t>(count);
     std::nth_element(removed.begin(), last, removed.end(), [](const Removal& a, const Removal& b) {
@@ -73,7 +73,7 @@ void keep_greatest(std::vector<Removal>& removed, std::size_t count) {
     removed.erase(last, removed.end());
 }
 
-// The candidates left at some time, packed into leaves, and the rounds in which they are removed.
+// The remaining candidates, packed into leaves, and the rounds in which they are removed.
 class Rounds {
 public:
     Rounds(const Candidates& candidates, const std::vector<std::uint32_t>& alive, float scale, float least);
@@ -137,7 +137,7 @@ Rounds::Rounds(const Candidates& candidates, const std::vector<std::uint32_t>& a
     neighbours_ = mean_neighbours();
 }
 
-// Of points here and there, at least 1.
+// Averages over some points; at least 1.
 double Rounds::mean_neighbours() const {
     double sum = 0.0, points = 0.0;
     for (const Block& block : blocks_)
@@ -166,8 +166,8 @@ void Rounds::find_neighbours(Block& block, const LeafTree& tree) const {
     sort_unique(block.near);
 }
 
-// Goes through the block's points above the threshold from neighbour to neighbour, which keeps the cache warm, not by
-// weight: from each up to heavier and heavier ones until one may go, and back. Points held up by a heavier one in
+// Visits the block's points above the threshold from neighbour to neighbour, not by weight, which keeps the cache warm:
+// from each point up to heavier and heavier ones until one may be removed, and back. Points with a heavier neighbour in
 // another block wait for the next round.
 void Rounds::remove_heaviest(Block& block, Weight threshold) {
     block.idle = true;
@@ -197,14 +197,14 @@ void Rounds::climb(Block& block, Weight threshold) {
         hold(block);
 }
 
-// Nobody on the path can go before the end of the round.
+// Marks the points on the path, none of which can be removed before the end of the round.
 void Rounds::hold(Block& block) {
     for (const Slot& at : block.path)
         block.waiting[at.leaf] |= static_cast<std::uint16_t>(1u << at.slot);
     block.path.clear();
 }
 
-// Removes the point, unless another has to go first: then returns the heaviest around.
+// Removes the point, unless a heavier neighbour must be removed first: then returns the heaviest one.
 std::optional<Slot> Rounds::remove(Block& block, const Slot& at) {
     const auto [l, s] = at;
     Leaf& leaf = block.leaves[l];
@@ -227,8 +227,8 @@ std::optional<Slot> Rounds::remove(Block& block, const Slot& at) {
         }
     }
     block.changed[l] = 1;
-    const auto place = static_cast<std::uint32_t>((block.first + l) * kLeafSize + s);
-    block.removed.push_back({probe.weight, probe.rank, place});
+    const auto position_in_list = static_cast<std::uint32_t>((block.first + l) * kLeafSize + s);
+    block.removed.push_back({probe.weight, probe.rank, position_in_list});
     return {};
 }
 
@@ -249,7 +249,7 @@ void Rounds::refresh(Block& block) {
     }
 }
 
-// In three steps, as nobody may look at what another block is changing.
+// A round takes three steps, because no block may read what another block is changing.
 void Rounds::round(Weight threshold) {
     for_each_block([&](Block& block) {
         block.outbox.clear();
@@ -275,7 +275,7 @@ Weight Rounds::quantile(double share) {
     return *at;
 }
 
-// Nobody has neighbours any more: ranks alone decide.
+// Removes points when none has neighbours any more, so that ranks alone decide.
 void Rounds::remove_weightless(std::size_t count, std::vector<Removal>& removed) {
     std::vector<Removal> left;
     for (const Block& block : blocks_)
@@ -288,8 +288,8 @@ void Rounds::remove_weightless(std::size_t count, std::vector<Removal>& removed)
     removed.insert(removed.end(), left.begin(), left.end());
 }
 
-// Among the points above a round's threshold few should be neighbours: across a border between blocks the lighter of
-// two waits for the next round.
+// Among the points above a round's threshold few should be neighbours, because across a border between blocks the
+// lighter of two waits for the next round.
 double Rounds::round_share(std::size_t left) const {
     return std::min(kOverlap * double(alive_.size()) / (neighbours_ * double(left)), 0.5);
 }
@@ -332,16 +332,16 @@ std::vector<std::uint32_t> eliminate_greedily(const Candidates& candidates, std:
         const std::size_t before = removed.size();
         Rounds(candidates, left, scale, least).run(goal, threshold, removed);
         for (std::size_t r = before; r < removed.size(); ++r) {
-            removed[r].place = left[removed[r].place];  // among all candidates from now on
-            gone[removed[r].place] = true;
+            removed[r].position_in_list = left[removed[r].position_in_list];  // among all candidates from now on
+            gone[removed[r].position_in_list] = true;
         }
         std::erase_if(left, [&](std::uint32_t i) { return gone[i]; });
     }
     for (const Removal& r : removed)
-        gone[r.place] = false;
-    keep_greatest(removed, goal);  // the others stay after all
+        gone[r.position_in_list] = false;
+    keep_greatest(removed, goal);  // the others are restored
     for (const Removal& r : removed)
-        gone[r.place] = true;
+        gone[r.position_in_list] = true;
     std::erase_if(alive, [&](std::uint32_t i) { return gone[i]; });
     return alive;
 }

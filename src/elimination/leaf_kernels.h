@@ -1,4 +1,4 @@
-// The inner loops of elimination: one point against the sixteen of a leaf.
+// The inner loops of elimination compare one point with the sixteen of a leaf.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace brisance {
 
-// One slot of a leaf, and what it is compared by.
+// One slot of a leaf, with the values by which it is compared.
 struct Probe {
     vec3 position;
     float inverse_reach;
@@ -28,7 +28,7 @@ struct LeafView {
     const float* square_reach;  // the greatest of each leaf's points
 };
 
-// What the removal of a point takes from its neighbours.
+// The weights that the removal of a point subtracts from its neighbours.
 struct Taken {
     std::vector<std::int32_t> weight;   // per leaf of the list, sixteen each
     std::vector<std::uint8_t> touched;  // per leaf of the list: whether any of the sixteen is not zero
@@ -45,13 +45,13 @@ void sum_weights(Leaf* leaves, std::uint32_t leaf, std::span<const std::uint32_t
 // How many points of the leaves listed are in reach of the first point of `leaf`, itself included.
 std::size_t count_in_reach(const Leaf* leaves, std::span<const std::uint32_t> list, const Leaf& leaf);
 
-// Where a point is.
+// The location of a point among the leaves.
 struct Slot {
     std::uint32_t leaf, slot;
 };
 
-// The heaviest of the points that would go before the probe and are in reach of it or reach it. Only if there is none:
-// fills `taken`. The probe itself must have been taken out of its leaf.
+// Returns the heaviest of the points that would be removed before the probe and are in reach of it or reach it. If
+// there is none, fills `taken`. The probe itself must have been removed from its leaf.
 std::optional<Slot> take_weights(const LeafView& view, std::span<const std::uint32_t> list, const Probe& probe,
                                  float least, Taken& taken);
 

@@ -1,4 +1,4 @@
-// Points sixteen by sixteen, with boxes over them: who may be near whom.
+// Points in leaves of sixteen, with boxes over them that tell which leaves may hold neighbours.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,7 @@ struct Candidates {
     std::size_t size() const { return position.size(); }
 };
 
-// Sixteen slots for points. Those that are empty, at first or by elimination, lie too far to be anyone's neighbour and
-// weigh -1.
+// Sixteen slots for points. Empty slots, whether unused or eliminated, lie too far away to be a neighbour and weigh -1.
 struct alignas(64) Leaf {
     float x[kLeafSize], y[kLeafSize], z[kLeafSize];
     float inverse_reach[kLeafSize];  // 1 / d_max
@@ -43,8 +42,8 @@ public:
     LeafTree() = default;
     explicit LeafTree(std::vector<LeafBox> leaves);
 
-    // All leaves (itself among them) in which there may be a point nearer than `reach`, or than its own reach, to a
-    // point of `box`.
+    // Finds all leaves, the box's own included, that may hold a point nearer to a point of `box` than `reach` or than
+    // its own reach.
     void find(const LeafBox& box, std::vector<std::uint32_t>& found) const;
 
     const LeafBox& leaf(std::size_t l) const { return leaves_[l]; }
@@ -58,8 +57,8 @@ private:
     std::vector<LeafBox> leaves_, nodes_;
 };
 
-// Leaf l of the chosen candidates, taken sixteen by sixteen in the order given, with every reach multiplied by `scale`.
-// Weights are zero.
+// Makes leaf l of the chosen candidates, taken sixteen by sixteen in the order given, with every reach multiplied by
+// `scale` and zero weights.
 Leaf make_leaf(const Candidates& candidates, std::span<const std::uint32_t> chosen, std::size_t l, float scale);
 
 // The boxes of all leaves.

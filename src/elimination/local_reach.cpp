@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::size_t kBlock = 256;  // leaves that one task works on
 
-// The k-th smallest (k from 1) of n values, of which at least k are not above the limit. As values are about evenly
-// distributed, counting up to a guess between two bounds ends after a few steps.
+// Returns the k-th smallest (k from 1) of n values, of which at least k are not above the limit. Values are about
+// evenly distributed, so counting those up to a guess between two bounds ends after a few steps.
 float kth_smallest(std::vector<float>& values, std::size_t k, float limit) {
     float low = 0.0f, high = limit;
     std::size_t below = 0, above = count_up_to(values.data(), values.size(), high);
@@ -38,7 +38,7 @@ float kth_smallest(std::vector<float>& values, std::size_t k, float limit) {
     return *at;
 }
 
-// Searches around one leaf after the other; the distance found at one is the first guess at the next.
+// Searches around one leaf after the other. The distance found at one is the first guess at the next.
 class NeighbourSearch {
 public:
     NeighbourSearch(const std::vector<Leaf>& leaves, const LeafTree& tree, std::size_t k)

@@ -1,16 +1,16 @@
-// How far points should be apart where nothing is known but the points themselves.
+// Distances that points should keep, from the points alone.
 #pragma once
 
 #include "elimination/leaves.h"
 
 namespace brisance {
 
-// Sets each reach from the distance r_k to the k-th nearest other candidate. With `ratio` of candidates to survivors a
-// survivor may expect A = ratio pi r_k^2 / k of the surface, or V = ratio 4/3 pi r_k^3 / k of the space, to itself.
+// Sets each reach from the distance r_k to the k-th nearest other candidate. With `ratio` candidates per survivor, a
+// survivor can expect an area A = ratio pi r_k^2 / k, or a volume V = ratio 4/3 pi r_k^3 / k, of its own.
 void reach_by_density(Candidates& candidates, std::size_t k, double ratio, int dimension);
 
-// d_max = 2 r_max of points that fill an area (dimension 2) or a volume (3) of that measure each as densely as
-// possible.
+// Returns d_max = 2 r_max of points packed as densely as possible, each with this measure of area (dimension 2) or
+// volume (3).
 double closest_packing_distance(double measure, int dimension);
 
 }  // namespace brisance

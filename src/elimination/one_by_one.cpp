@@ -55,7 +55,7 @@ struct Neighbour {
     std::int32_t weight;  // that the neighbour gets from the one whose list this is
 };
 
-// By point: whom it weighs on.
+// For each point, the neighbours whose weights it adds to.
 struct Lists {
     std::vector<std::size_t> begin{0};
     std::vector<Neighbour> neighbours;
@@ -78,13 +78,13 @@ Lists list_neighbours(const Candidates& c, const std::vector<std::uint32_t>& ali
     return lists;
 }
 
-// A binary heap of points that can be found in it.
+// A binary heap of points that keeps the position of each.
 class Heap {
 public:
     Heap(std::vector<Weight> weight, std::vector<std::uint32_t> rank)
-        : weight_(std::move(weight)), rank_(std::move(rank)), heap_(weight_.size()), place_(weight_.size()) {
+        : weight_(std::move(weight)), rank_(std::move(rank)), heap_(weight_.size()), heap_index_(weight_.size()) {
         for (std::uint32_t n = 0; n < heap_.size(); ++n)
-            heap_[n] = place_[n] = n;
+            heap_[n] = heap_index_[n] = n;
         for (std::size_t n = heap_.size() / 2; n-- > 0;)
             sink(n);
     }
@@ -95,14 +95,14 @@ public:
         heap_.pop_back();
         if (!heap_.empty())
             sink(0);
-        place_[top] = kGone;
+        heap_index_[top] = kGone;
         return top;
     }
 
     void lighten(std::uint32_t point, Weight by) {
         weight_[point] -= by;
-        if (place_[point] != kGone)
-            sink(place_[point]);
+        if (heap_index_[point] != kGone)
+            sink(heap_index_[point]);
     }
 
 private:
@@ -113,7 +113,7 @@ private:
     }
     void put(std::size_t at, std::uint32_t point) {
         heap_[at] = point;
-        place_[point] = static_cast<std::uint32_t>(at);
+        heap_index_[point] = static_cast<std::uint32_t>(at);
     }
     void sink(std::size_t at) {
         const std::uint32_t point = heap_[at];
@@ -129,7 +129,7 @@ private:
     }
 
     std::vector<Weight> weight_;
-    std::vector<std::uint32_t> rank_, heap_, place_;
+    std::vector<std::uint32_t> rank_, heap_, heap_index_;
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What one point adds to the weight of another, as an integer: sums and differences are exact, so that a weight depends
-// on who is left and not on the order in which the others went.
+// The weight that one point adds to another, as an integer. Sums and differences are exact, so a weight depends on the
+// remaining points and not on the order in which the others were removed.
 #pragma once
 
 #include <algorithm>

@@ -30,8 +30,8 @@ constexpr std::int64_t kMostPixels = std::int64_t{1} << 28;  // 16384 x 16384; m
 // R, G, B, A and X, Y, Z in their own order, anything else by name after them.
 std::pair<std::size_t, std::string> channel_rank(const std::string& name) {
     static constexpr std::string_view known = "RGBAXYZ";
-    const std::size_t place = name.size() == 1 ? known.find(name[0]) : std::string_view::npos;
-    return {std::min(place, known.size()), name};
+    const std::size_t index = name.size() == 1 ? known.find(name[0]) : std::string_view::npos;
+    return {std::min(index, known.size()), name};
 }
 
 std::pair<std::string, std::string> split_channel(const std::string& full) {

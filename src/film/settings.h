@@ -1,4 +1,4 @@
-// What is written for one frame.
+// Settings of a frame's output files.
 #pragma once
 
 #include <string>

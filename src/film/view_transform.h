@@ -1,4 +1,4 @@
-// From linear radiance to what a display shows.
+// Transforms linear radiance to display values.
 #pragma once
 
 #include "core/vec.h"

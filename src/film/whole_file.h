@@ -10,7 +10,7 @@ namespace brisance {
 // belongs to something that is no regular file) or OutputFailed (no space left); `file` is then as it was before.
 void write_whole_file(const std::filesystem::path& file, std::string_view bytes);
 
-// Throws Error as write_whole_file would before its first byte: to be asked before an expensive computation.
+// Throws Error as write_whole_file would before its first byte. Call it before an expensive computation.
 void check_writable(const std::filesystem::path& file);
 
 // Deletes the temporary files that writes of `file` left behind when their process was killed: those of this machine's

@@ -1,4 +1,4 @@
-// Writing frames: each file appears whole or not at all. The only door to OpenEXR and OpenImageIO.
+// Writes frames; each file appears whole or not at all. Its header includes neither OpenEXR nor OpenImageIO.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace brisance {
 struct ExrReport {
     std::uint64_t clamped = 0;     // finite values beyond the largest half (65504), stored as that
     std::uint64_t not_finite = 0;  // NaN and infinite values, stored unchanged
-    std::string describe() const;  // one line; empty when nothing is to be told
+    std::string describe() const;  // one line; empty when there is nothing to report
 };
 
 // Scan-line EXR, ZIP, half (float where the layer says so). Beauty channels bare, others "layer.channel"; a one-channel
@@ -41,7 +41,7 @@ void write_text(const std::filesystem::path& file, const std::string& text);
 // Throws Error MissingInput or BadData.
 Image read_exr(const std::filesystem::path& file);
 
-// What the header of an EXR tells, whoever wrote it; absent where it says nothing.
+// Data in the header of an EXR by any program; absent members are not in the header.
 struct ExrMetadata {
     std::optional<int> frame;                 // imageCounter
     std::optional<double> render_seconds;     // renderTimeSeconds

@@ -1,4 +1,4 @@
-// Which of a medium's lights are seen from outside: in dense smoke, those of its skin.
+// Finds which of a medium's lights are seen from outside. In dense smoke they are those near its boundary.
 #pragma once
 
 #include <vector>
@@ -8,15 +8,15 @@
 
 namespace brisance {
 
-// Over PointDepths::kRays fixed directions, from a place in the medium, local [m].
+// Mean transmittance from a point in the medium (local [m]) to the outside over PointDepths::kRays fixed directions.
 float mean_transmittance_outside(const Medium& medium, const PointDepths& depths, const vec3& from);
 
-// For every node with an intensity above zero the mean transmittance to the outside over PointDepths::kRays fixed
-// directions, 0 for others: an importance, not an estimate.
+// Returns mean_transmittance_outside() for every node with an intensity above zero, and 0 for all others. It is an
+// importance, not an estimate.
 NodeWeights escape_likelihood(const Medium& medium, const PointDepths& depths, const std::vector<Rgb>& intensity);
 
-// Where to ask for what escapes: luminance of the intensity, times the likelihood over its mean but for the share
-// FootprintPicker::kLeastShare, which does not follow it. The sum is that of the luminances.
+// Sampling density for escaping light: the luminance of the intensity times the likelihood over its mean. The share
+// FootprintPicker::kLeastShare does not follow the likelihood. The densities sum to the sum of the luminances.
 NodeWeights escape_density(const std::vector<Rgb>& intensity, const NodeWeights& likelihood);
 
 }  // namespace brisance

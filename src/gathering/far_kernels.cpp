@@ -14,15 +14,15 @@
 #include "medium/lattice/extinction_sampler-inl.h"
 #include "medium/phase-inl.h"
 
-#ifndef BRISANCE_GATHERING_ASKED_RANGE_
-#define BRISANCE_GATHERING_ASKED_RANGE_
+#ifndef BRISANCE_GATHERING_LEVEL_RANGE_
+#define BRISANCE_GATHERING_LEVEL_RANGE_
 namespace brisance {
 
-// Squares of the distances between which a level's lights are asked.
-struct AskedRange {
-    explicit AskedRange(const FarLights& l)
+// Squares of the distances between which a level's lights are evaluated.
+struct LevelRange {
+    explicit LevelRange(const FarLights& l)
         : inner(l.bottom ? -1.0f : 0.25f * l.radius * l.radius), outer(l.top ? 1e38f : 4.0f * l.radius * l.radius) {}
-    // May a point of the box be as far from `p`?
+    // Whether the range includes the distance from `p` to some point of the box.
     bool meets(const Box& box, const vec3& p) const {
         const vec3 nearest = glm::max(glm::max(box.low - p, p - box.high), vec3(0.0f));
         const vec3 farthest = glm::max(glm::abs(box.low - p), glm::abs(box.high - p));
@@ -42,7 +42,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<float, 16>;
 using V = hn::Vec<D>;
 
-// Estimates of the processor and one Newton step: full single precision to a bit or two, far cheaper than dividing.
+// The processor's estimate refined by one Newton step reaches single precision to a bit or two and costs far less than
+// a division.
 HWY_INLINE V reciprocal(D d, V x) {
     const V r = hn::ApproximateReciprocal(x);
     return hn::Mul(r, hn::NegMulAdd(x, r, hn::Set(d, 2.0f)));
@@ -68,7 +69,7 @@ HWY_INLINE V map_transmittance(D d, const ShadowMapLayout& layout, const std::ui
     const hn::RebindToSigned<D> di;
     const hn::RebindToUnsigned<D> du;
     const V one = hn::Set(d, 1.0f), zero = hn::Zero(d);
-    // A receiver on the light itself has no direction; its blend weight is zero, any texel will do.
+    // A receiver on the light itself has no direction. Its blend weight is zero, so any texel will do.
     const V sum = hn::Max(hn::Add(hn::Add(hn::Abs(wx), hn::Abs(wy)), hn::Abs(wz)), hn::Set(d, 1e-3f));
     const V inv = reciprocal(d, sum);
     const V px = hn::Mul(wx, inv), py = hn::Mul(wy, inv);
@@ -78,7 +79,7 @@ HWY_INLINE V map_transmittance(D d, const ShadowMapLayout& layout, const std::ui
     // Texel centres are at half-integers of the interior; the border shifts them by one.
     const V half = hn::Set(d, 0.5f * layout.resolution), middle = hn::Set(d, 0.5f * layout.resolution + 0.5f);
     const V s = hn::MulAdd(u, half, middle), t = hn::MulAdd(v, half, middle);
-    // All three coordinates are positive: truncation is the floor.
+    // Truncation equals the floor because all three coordinates are positive.
     const auto is = hn::ConvertTo(di, s), it = hn::ConvertTo(di, t);
     const V last = hn::Set(d, static_cast<float>(layout.distances - 1));
     const float samples_per_metre =
@@ -120,15 +121,15 @@ HWY_INLINE V map_transmittance(D d, const ShadowMapLayout& layout, const std::ui
     return hn::Mul(transmittance, hn::Set(d, layout.range / 65535.0f));
 }
 
-// Numerical transmittance between the light and the receivers; `way` points from receiver to light [m].
-V exact_transmittance(D d, const FarLights& l, const vec3& light, const V way[3], V distance) {
+// Numerical transmittance between the light and the receivers. `to_light` points from receiver to light [m].
+V exact_transmittance(D d, const FarLights& l, const vec3& light, const V to_light[3], V distance) {
     const vec3 origin = l.index_from_local * light;
     V nodes[3];
     V square = hn::Zero(d);
     for (int a = 0; a < 3; ++a) {
         nodes[a] = hn::Zero(d);
         for (int b = 0; b < 3; ++b)
-            nodes[a] = hn::NegMulAdd(hn::Set(d, l.index_from_local[b][a]), way[b], nodes[a]);
+            nodes[a] = hn::NegMulAdd(hn::Set(d, l.index_from_local[b][a]), to_light[b], nodes[a]);
         square = hn::MulAdd(nodes[a], nodes[a], square);
     }
     const float longest = hn::GetLane(hn::MaxOfLanes(d, hn::Sqrt(square)));
@@ -159,7 +160,8 @@ V ball_kernel(D d, float a, V distance) {
     return hn::IfThenElse(hn::Lt(distance, hn::Set(d, 4.0f * a)), near, far);
 }
 
-// Transmittance from a ball: inside it, between the mean over the ball seen from its centre and that of its radius.
+// Transmittance from a ball. Inside it, the value is interpolated between the mean over the ball seen from its centre
+// and the transmittance of its radius.
 V ball_transmittance(D d, float a, V distance, V transmittance, V depth_of_radius) {
     const V edge = hn::Exp(d, hn::Neg(depth_of_radius));
     const V mean = hn::Div(hn::Sub(hn::Set(d, 1.0f), edge), hn::Max(depth_of_radius, hn::Set(d, 1e-6f)));
@@ -199,10 +201,11 @@ V radius_depth(D d, const FarLights& l, const Receivers& r, std::size_t at) {
 HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Receivers& r, std::size_t at,
                             const FarOutput& out) {
     const vec3 p = l.position[i];
-    const V way[3] = {hn::Sub(hn::Set(d, p.x), hn::LoadU(d, &r.x[at])),
-                      hn::Sub(hn::Set(d, p.y), hn::LoadU(d, &r.y[at])),
-                      hn::Sub(hn::Set(d, p.z), hn::LoadU(d, &r.z[at]))};
-    const V square = hn::MulAdd(way[0], way[0], hn::MulAdd(way[1], way[1], hn::Mul(way[2], way[2])));
+    const V to_light[3] = {hn::Sub(hn::Set(d, p.x), hn::LoadU(d, &r.x[at])),
+                           hn::Sub(hn::Set(d, p.y), hn::LoadU(d, &r.y[at])),
+                           hn::Sub(hn::Set(d, p.z), hn::LoadU(d, &r.z[at]))};
+    const V square =
+        hn::MulAdd(to_light[0], to_light[0], hn::MulAdd(to_light[1], to_light[1], hn::Mul(to_light[2], to_light[2])));
     const V safe = hn::Max(square, hn::Set(d, 1e-30f));
     const V inverse = reciprocal_sqrt(d, safe);
     const V distance = hn::Mul(safe, inverse);
@@ -211,12 +214,12 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Rece
         return;
     V w = hn::Mul(b, l.bottom ? ball_kernel(d, l.ball, distance) : hn::Mul(inverse, inverse));
     const V minus = hn::Neg(inverse);
-    const V wx = hn::Mul(way[0], minus), wy = hn::Mul(way[1], minus), wz = hn::Mul(way[2], minus);
+    const V wx = hn::Mul(to_light[0], minus), wy = hn::Mul(to_light[1], minus), wz = hn::Mul(to_light[2], minus);
     if (l.shadow == FarLights::Shadow::Maps) {
         const std::size_t map = l.map_of ? l.map_of[i] : i - l.list_base;
         w = hn::Mul(w, map_transmittance(d, l.layout, l.maps + map * l.layout.stride(), wx, wy, wz, distance));
     } else if (l.shadow == FarLights::Shadow::Exact) {
-        V t = exact_transmittance(d, l, p, way, distance);
+        V t = exact_transmittance(d, l, p, to_light, distance);
         if (l.bottom)
             t = ball_transmittance(d, l.ball, distance, t, radius_depth(d, l, r, at));
         w = hn::Mul(w, t);
@@ -252,10 +255,10 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Rece
 std::uint64_t gather(const FarLights& l, const Receivers& r, const ReceiverBlock& block, const FarOutput& out) {
     const D d;
     const std::size_t lanes = hn::Lanes(d);
-    const AskedRange range(l);
+    const LevelRange range(l);
     std::uint64_t evaluations = 0;
     for (const std::uint32_t i : l.list) {
-        if (l.map_of && l.map_of[i] == FarLights::kNoMap)  // nobody asks
+        if (l.map_of && l.map_of[i] == FarLights::kNoMap)  // no receiver needs it
             continue;
         for (std::size_t g = block.first_group; g < block.first_group + block.group_count; ++g) {
             if (!range.meets(r.group_bounds[g], l.position[i]))
@@ -287,8 +290,8 @@ std::uint64_t gather_far(const FarLights& lights, const Receivers& receivers, co
     return HWY_DYNAMIC_DISPATCH(gather)(lights, receivers, block, output);
 }
 
-bool asks(const FarLights& lights, std::uint32_t light, const Receivers& receivers, const ReceiverBlock& block) {
-    const AskedRange range(lights);
+bool may_reach(const FarLights& lights, std::uint32_t light, const Receivers& receivers, const ReceiverBlock& block) {
+    const LevelRange range(lights);
     for (std::size_t g = block.first_group; g < block.first_group + block.group_count; ++g)
         if (range.meets(receivers.group_bounds[g], lights.position[light]))
             return true;

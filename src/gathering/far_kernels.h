@@ -1,4 +1,4 @@
-// The inner loop of gathering: one light of the hierarchy, many receivers that share the interaction list.
+// The inner loop of gathering evaluates one light of the hierarchy for many receivers that share the interaction list.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace brisance {
 
-// Lights of one level that a block listens to, and how.
+// The lights of one level that a block evaluates, and their parameters.
 struct FarLights {
     std::span<const std::uint32_t> list;  // into the arrays below
     const vec3* position;
@@ -37,8 +37,8 @@ struct FarLights {
 struct FarOutput {
     std::size_t plane;  // values per channel
     float* fluence;
-    float* scattered;  // null: not asked for
-    float* moments;    // null: not asked for
+    float* scattered;  // null: not requested
+    float* moments;    // null: not requested
     float mean_cosine;
     ReceiverKind kind = ReceiverKind::Medium;
 };
@@ -48,8 +48,9 @@ struct FarOutput {
 std::uint64_t gather_far(const FarLights& lights, const Receivers& receivers, const ReceiverBlock& block,
                          const FarOutput& output);
 
-// Whether some receiver of the block may be as far from the light as its level is asked at.
-bool asks(const FarLights& lights, std::uint32_t light, const Receivers& receivers, const ReceiverBlock& block);
+// Whether the distance from the light to some receiver of the block may lie in the range in which the light's level is
+// evaluated.
+bool may_reach(const FarLights& lights, std::uint32_t light, const Receivers& receivers, const ReceiverBlock& block);
 
 // Name of the instruction set in use, for reports.
 const char* gather_instruction_set();

@@ -15,10 +15,10 @@ namespace brisance {
 
 namespace {
 
-constexpr std::size_t kLeastBatch = 2048;  // lights with maps at once, below which resolution is given up instead
+constexpr std::size_t kLeastBatch = 2048;  // lights with maps at once; resolution is reduced rather than fewer lights
 constexpr float kNearestOfBalls = 0.25f;  // first distance of the maps of the finest level's lights, over their spacing
 
-// From any light of the level to the farthest corner of the medium: beyond, nothing dims the light any more.
+// Distance from any light of the level to the farthest corner of the medium. Nothing attenuates light beyond it.
 float farthest_distance(const GridLevel& level, const Medium& medium) {
     Box lights;
     for (const vec3& p : level.position)
@@ -54,7 +54,7 @@ ShadowMapLayout layout_of(const LightField& field, const GridLevel& level, bool 
     return layout;
 }
 
-// Lowers resolution, then distances, until at least kLeastBatch lights (or all) fit the memory limit.
+// Lowers the resolution, then the number of distances, until at least kLeastBatch lights (or all) fit the memory limit.
 void fit_to_memory(ShadowMapLayout& layout, std::size_t lights, std::uint64_t limit, int level, Progress& progress) {
     const ShadowMapLayout wish = layout;
     const auto too_large = [&] { return layout.bytes_per_light() * std::min(lights, kLeastBatch) > limit; };
@@ -134,7 +134,7 @@ public:
             const FarLights lights = far_lights(level, top, layout, first);
             Stopwatch watch;
             if (on_demand)
-                make_asked_maps(level, lights, made);
+                make_needed_maps(level, lights, made);
             else if (maps && !(keep && !made.maps.empty()))
                 build_shadow_maps(*field_.pyramid, level, *field_.weight, field_.escape, layout, first, count,
                                   made.maps, field_.occluders);
@@ -174,25 +174,25 @@ private:
         return field_.settings.shadows == ShadowMethod::Maps && level.level > 0;
     }
 
-    // Adds to `made` the maps of lights that some receiver asks and that have none yet.
-    void make_asked_maps(const GridLevel& level, const FarLights& lights, ShadowMapCache::Level& made) {
+    // Adds to `made` the missing maps of all lights that may reach some receiver.
+    void make_needed_maps(const GridLevel& level, const FarLights& lights, ShadowMapCache::Level& made) {
         made.map_of.resize(level.size(), FarLights::kNoMap);
-        std::vector<std::uint8_t> asked(level.size(), 0);
+        std::vector<std::uint8_t> used(level.size(), 0);
         parallel_for(receivers_.blocks().size(), [&](std::size_t b) {
             thread_local std::vector<std::uint32_t> near;
             const ReceiverBlock& block = receivers_.blocks()[b];
             interaction_list(field_, level, lights.top, block.bounds, near);
             for (const std::uint32_t i : near) {
-                std::atomic_ref<std::uint8_t> mark(asked[i]);
+                std::atomic_ref<std::uint8_t> mark(used[i]);
                 if (made.map_of[i] == FarLights::kNoMap && mark.load(std::memory_order_relaxed) == 0 &&
-                    asks(lights, i, receivers_, block))
+                    may_reach(lights, i, receivers_, block))
                     mark.store(1, std::memory_order_relaxed);
             }
         });
         std::vector<std::uint32_t> list;
         const std::size_t stride = lights.layout.stride(), before = made.maps.size();
-        for (std::uint32_t i = 0; i < asked.size(); ++i)
-            if (asked[i]) {
+        for (std::uint32_t i = 0; i < used.size(); ++i)
+            if (used[i]) {
                 made.map_of[i] = static_cast<std::uint32_t>(before / stride + list.size());
                 list.push_back(i);
             }
@@ -268,7 +268,7 @@ void gather_upper_levels(const LightField& field, FarGather& far, std::vector<Le
         costs.push_back(far.run(levels[l], l + 1 == levels.size()));
 }
 
-// Adds what all levels of the grid send to the nodes that ask.
+// Adds the contributions of all levels of the grid to the requested nodes.
 void gather_grid(const LightField& field, const LatticeRequest& request, Gathered& out, std::vector<LevelCost>& costs,
                  Progress& progress) {
     const std::size_t nodes = field.pyramid->medium().lattice.node_count();

@@ -1,9 +1,9 @@
-// Gathering: what arrives at points of the medium from all levels of a lighting grid hierarchy.
+// Gathers the light that arrives at points of the medium from all levels of a lighting grid hierarchy.
 //
 //   L(x) = sum_l sum_i I_{l,i} T(p_{l,i}, x) B_l(d) / d^2,   d = |x - p_{l,i}|                     [1]
 //   (lighting_grid.h)
-// with r_l = alpha h_l and blends B_l that sum to one over levels at every distance: level 0 fades out over [r_0, 2
-// r_0], level l in over [r_l / 2, r_l] and out over [r_l, 2 r_l], the top level never out.
+// with r_l = alpha h_l and blends B_l that sum to one over levels at every distance. Level 0 fades out over
+// [r_0, 2 r_0]. Level l fades in over [r_l / 2, r_l] and out over [r_l, 2 r_l]. The top level never fades out.
 #pragma once
 
 #include <string>
@@ -31,14 +31,15 @@ struct LevelCost {
     std::uint64_t evaluations = 0;  // light and receiver pairs
 };
 
-// Shadow maps kept for a second gather from the same grid: its positions and medium must not have changed.
+// Shadow maps kept for a second gather from the same grid, whose positions and medium must not have changed.
 struct ShadowMapCache {
     struct Level {
         std::vector<std::uint16_t> maps;    // empty until made
         std::vector<std::uint32_t> map_of;  // on demand: of each light, its number among the maps (far_kernels.h)
     };
     std::vector<Level> levels;
-    // Only those of lights that some receiver asks, which changes no bit: for few receivers among many lights.
+    // Makes maps only of lights that may reach some receiver. This pays for few receivers among many lights and changes
+    // no bit of the result.
     bool on_demand = false;
 };
 
@@ -48,17 +49,18 @@ struct LightField {
     const std::vector<Rgb>* intensity;      // level 0, per node [W/sr]
     const std::vector<float>* directional;  // level 0, 24 per node, or null
     const LightingGrid* grid;               // levels above
-    const std::vector<float>* weight;       // per node: what the grid's centres are weighted by
+    const std::vector<float>* weight;       // per node: weight of the grid's centres
     float alpha;
     LightingSettings settings;
     ShadowMapCache* cache = nullptr;       // used by levels that fit the memory limit as a whole
     const Occluders* occluders = nullptr;  // surfaces between lights and receivers
-    // For receivers outside of the medium: per node, how likely its light is to get there. Null: receivers are inside.
+    // For receivers outside of the medium: per node, how likely its light is to leave the medium. Null: receivers are
+    // inside.
     const std::vector<float>* escape = nullptr;
     int bottom = 0;  // the finest level: does not fade in, its lights are balls
 };
 
-// Which nodes ask, and for what.
+// The nodes that need light, and the direction in which they scatter it.
 struct LatticeRequest {
     const std::vector<std::uint8_t>* needed;  // per node
     const std::vector<vec3>* toward_camera;   // per node, unit, or null
@@ -66,23 +68,23 @@ struct LatticeRequest {
     float mean_cosine = 0.0f;
 };
 
-// At the nodes of the lights' own lattice: the near field exactly, the levels above with precomputed shadows. Planar
-// over nodes; nodes that did not ask hold part of the sum and must not be used.
+// Gathers at the nodes of the lights' own lattice: the near field exactly, the levels above with precomputed shadows.
+// The result is planar over nodes. Nodes that were not requested hold part of the sum and must not be used.
 Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
                          Progress& progress);
 
-// At the nodes of the medium from the lights in `field.grid` alone, which holds all levels from field.bottom on: lights
-// outside of its lattice (point_grid.h), where field.intensity and field.directional are null, or such as begin at a
-// coarser level.
+// Gathers at the nodes of the medium from the lights in `field.grid` alone, which holds all levels from field.bottom
+// on. They are lights outside of its lattice (point_grid.h), where field.intensity and field.directional are null, or
+// lights that begin at a coarser level.
 Gathered gather_from_outside(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
                              Progress& progress);
 
-// The lit nodes as a level of lights for gather_at_points; its vertices are the nodes.
+// Returns the lit nodes as a level of lights for gather_at_points. Its vertices are the nodes.
 GridLevel bottom_level(const LightField& field);
 
-// At any points (local [m]) given as receivers, of the medium or on surfaces, which stop no light here; level 0
-// (`bottom`, made once; not asked where field.bottom is a coarser level) by marched shadows and the ball kernel. Planar
-// over receivers.
+// Gathers at any points (local [m]) given as receivers, in the medium or on surfaces. Surfaces stop no light here.
+// Level 0 uses marched shadows and the ball kernel; `bottom` holds its lights, is made once, and is not evaluated where
+// field.bottom is a coarser level. The result is planar over receivers.
 Gathered gather_at_points(const LightField& field, const GridLevel& bottom, const Receivers& receivers,
                           float mean_cosine, std::vector<LevelCost>& costs, Progress& progress,
                           ReceiverKind kind = ReceiverKind::Medium, bool moments = false);

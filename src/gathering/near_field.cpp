@@ -14,7 +14,7 @@ namespace brisance {
 
 namespace {
 
-constexpr int kMaxMargin = 24;  // nodes; beyond, a lattice of needles would want an endless stencil
+constexpr int kMaxMargin = 24;  // nodes; without it, a lattice of needles would need an endless stencil
 constexpr int kSelfEntries = 129;
 
 struct NodeOrder {
@@ -32,7 +32,7 @@ void add_trilinear(std::map<ivec3, double, NodeOrder>& taps, const dvec3& p, dou
     }
 }
 
-// The line integral from node 0 to node o, as coefficients of the nodes' values.
+// Returns the line integral from node 0 to node o as coefficients of the nodes' values.
 std::vector<NearField::Tap> line_taps(const ivec3& o, double metres) {
     std::vector<double> cuts{0.0, 1.0};
     for (int a = 0; a < 3; ++a)
@@ -69,8 +69,8 @@ double windowed_integral(int power, double s, double w) {
     return sum * step / 3.0;
 }
 
-// kappa and kappa_1 of a voxel far from cubic: the means over the ball of the voxel's volume, seen from its centre
-// (methods: the exact lattice correction would need a window over the longest edge).
+// kappa and kappa_1 of a voxel far from cubic are the means over the ball of the voxel's volume, seen from its centre.
+// The exact lattice correction would need a window over the longest edge.
 NearField::SelfKernels ball_self_kernels(double s, double volume) {
     const double a = std::cbrt(3.0 * volume / (4.0 * kPi));
     const double tau = s * a, shell = 4.0 * kPi / volume;
@@ -94,12 +94,12 @@ NearField::NearField(const mat3& local_from_index, float radius, bool shadows)
         for (int y = -reach.y; y <= reach.y; ++y)
             for (int z = -reach.z; z <= reach.z; ++z) {
                 const ivec3 o(x, y, z);
-                const vec3 way = local_from_index * vec3(o);
-                const float d = glm::length(way);
+                const vec3 offset = local_from_index * vec3(o);
+                const float d = glm::length(offset);
                 if (o == ivec3(0) || d >= 2.0f * radius)
                     continue;
                 const float blend = std::min(1.0f, 2.0f - d / radius);
-                stencil_.push_back({o, blend / (d * d), -way / d, shadows ? line_taps(o, d) : std::vector<Tap>{}});
+                stencil_.push_back({o, blend / (d * d), -offset / d, shadows ? line_taps(o, d) : std::vector<Tap>{}});
                 margin_ = std::max({margin_, std::abs(x), std::abs(y), std::abs(z)});
             }
     tabulate_self_kernel();
@@ -107,8 +107,8 @@ NearField::NearField(const mat3& local_from_index, float radius, bool shadows)
 
 namespace {
 
-// The lattice corrections by a Gaussian window w: K = w K + (1 - w) K, where (1 - w) K is smooth and the lattice sums
-// it without error, its value at the origin included: 1 / window^2 of 1/r^2, and 0 of 1/r.
+// The lattice corrections by a Gaussian window w: K = w K + (1 - w) K. The part (1 - w) K is smooth, so the lattice
+// sums it without error. Its value at the origin is included: 1 / window^2 for 1/r^2, and 0 for 1/r.
 NearField::SelfKernels windowed_self_kernels(double s, double window, double volume,
                                              const std::vector<double>& distances) {
     double light = 4.0 * kPi * windowed_integral(0, s, window) / volume + 1.0 / (window * window);
@@ -121,7 +121,7 @@ NearField::SelfKernels windowed_self_kernels(double s, double window, double vol
     return {float(light), float(flux / 3.0)};
 }
 
-// Where extinction itself is the window.
+// Corrections for extinction so strong that it serves as the window.
 NearField::SelfKernels direct_self_kernels(double s, double volume, const std::vector<double>& distances) {
     double light = 4.0 * kPi / (s * volume), flux = 4.0 * kPi / (s * s * volume);
     for (double d : distances) {

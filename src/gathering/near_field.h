@@ -1,18 +1,18 @@
-// Level 0 of the hierarchy on the lattice itself: every node lit by the nodes within 2 alpha h_0, with exact shadows.
+// Level 0 of the hierarchy on the lattice itself: every node is lit by the nodes within 2 alpha h_0, with exact
+// shadows.
 //
 // Receivers and lights are nodes of one lattice, so their separation takes a few hundred values and everything but the
 // extinction is known in advance. For each separation o:
-//  - The optical depth between node x and node x + o is a fixed linear combination of the extinction at nearby nodes:
-//  the
-//    line integral of the trilinear interpolant, exact (it is piecewise cubic along the line, and a 2-point Gauss rule
-//    per piece integrates that without error).
-//  - The kernel is the singular 1/d^2 itself. What it leaves out, the node's own light, is the self term
+//  - The optical depth between node x and node x + o is a fixed linear combination of the extinction at nearby nodes.
+//    It is the exact line integral of the trilinear interpolant, which is piecewise cubic along the line: a 2-point
+//    Gauss rule per piece integrates it without error.
+//  - The kernel is the singular 1/d^2 itself. It leaves out the node's own light, which the self term adds:
 //      kappa(s) = (1/V) integral exp(-s r) / r^2 dV - sum over o != 0 of exp(-s |o|) / |o|^2,
-//    the correction that makes the punctured lattice sum exact for smooth light in a homogeneous medium (and makes such
-//    a medium absorb exactly what it emits, from sigma h = 0 to infinity). Nothing is clamped. Light that changes
-//    across the node arrives with a flux of its own, -kappa_1 grad I, for which the sum leaves out
+//    This correction makes the punctured lattice sum exact for smooth light in a homogeneous medium, and makes such a
+//    medium absorb exactly what it emits, from sigma h = 0 to infinity. Nothing is clamped. Light that changes across
+//    the node arrives with a flux of its own, -kappa_1 grad I, for which the sum leaves out
 //      kappa_1(s) = (1/3V) integral exp(-s r) / r dV - (1/3) sum over o != 0 of exp(-s |o|) / |o|;
-//    phase functions that are not isotropic see it.
+//    This flux matters for phase functions that are not isotropic.
 #pragma once
 
 #include <cstdint>

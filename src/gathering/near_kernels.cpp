@@ -85,10 +85,11 @@ vec3 gradient(const NearField& field, const NearBrick& b, const float* plane, in
     return vec3(half(b.wide * b.wide), half(b.wide), half(1)) * field.index_from_local();
 }
 
-// Where sh_basis keeps x, y and z.
+// Indices of x, y and z in sh_basis.
 constexpr int kAxisMoment[3] = {2, 0, 1};
 
-// One colour of what a node's own light brings it: by the direction of that light, and by its change across the node.
+// One colour of the light that a node receives from itself, through the direction of that light and its change across
+// the node.
 struct SelfLight {
     float fluence;
     vec3 flux;
@@ -100,7 +101,7 @@ SelfLight self_light(const NearField& field, const NearField::SelfKernels& kerne
     if (!b.scattered && !b.moments)
         return self;
     self.flux = -kernels.flux * gradient(field, b, b.intensity + c * b.plane, at);
-    // No more of it than there is light to make it: at the edge of a fire a difference of nodes is no derivative.
+    // The flux cannot exceed the fluence. At the edge of a fire a difference of nodes is no derivative.
     self.flux *= std::min(1.0f, self.fluence / std::max(glm::length(self.flux), 1e-37f));
     if (!b.directional)
         return self;

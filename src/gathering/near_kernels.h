@@ -1,4 +1,4 @@
-// The vector kernel of the near field: rows of eight nodes, all separations.
+// The vector kernel of the near field processes rows of eight nodes for all separations.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace brisance {
 
-// A separation with its nodes turned into offsets in a brick's box.
+// A separation whose nodes are given as offsets in a brick's box.
 struct FlatSeparation {
     int offset;
     float kernel;

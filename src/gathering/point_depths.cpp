@@ -18,13 +18,13 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using D = hn::CappedTag<float, PointDepths::kRays>;
 
-// Rays in planar arrays: origin + t * way over t in [begin, 1], all in nodes. Sums the extinction at the middles of
-// `steps` equal steps, times the part of the way that a step is.
-void sum_extinction(const PackedExtinction& level, const vec3& origin, const float* way_x, const float* way_y,
-                    const float* way_z, const float* begin, int steps, float* sum) {
+// Integrates rays in planar arrays: origin + t * segment over t in [begin, 1], all in nodes. Sums the extinction at the
+// middles of `steps` equal steps, times the fraction of the segment that a step covers.
+void sum_extinction(const PackedExtinction& level, const vec3& origin, const float* segment_x, const float* segment_y,
+                    const float* segment_z, const float* begin, int steps, float* sum) {
     const D d;
     for (int k = 0; k < PointDepths::kRays; k += static_cast<int>(hn::Lanes(d))) {
-        const auto x = hn::LoadU(d, way_x + k), y = hn::LoadU(d, way_y + k), z = hn::LoadU(d, way_z + k);
+        const auto x = hn::LoadU(d, segment_x + k), y = hn::LoadU(d, segment_y + k), z = hn::LoadU(d, segment_z + k);
         const auto first = hn::LoadU(d, begin + k);
         const auto step = hn::Mul(hn::Sub(hn::Set(d, 1.0f), first), hn::Set(d, 1.0f / float(steps)));
         auto total = hn::Zero(d);
@@ -65,16 +65,16 @@ void PointDepths::between(const vec3& from, const vec3* to, float* depth) const 
     alignas(64) float x[kRays], y[kRays], z[kRays], begin[kRays];
     float longest = 0.0f;
     for (int k = 0; k < kRays; ++k) {
-        const vec3 way = nodes_from_local_ * to[k] - origin;
+        const vec3 segment = nodes_from_local_ * to[k] - origin;
         float enter = 0.0f;
         for (int a = 0; a < 3; ++a)
-            if (way[a] != 0.0f)
-                enter = std::max(enter, ((way[a] > 0.0f ? low_[a] : high_[a]) - origin[a]) / way[a]);
+            if (segment[a] != 0.0f)
+                enter = std::max(enter, ((segment[a] > 0.0f ? low_[a] : high_[a]) - origin[a]) / segment[a]);
         enter = std::min(enter, 1.0f);
-        x[k] = way.x, y[k] = way.y, z[k] = way.z, begin[k] = enter;
-        longest = std::max(longest, (1.0f - enter) * glm::length(way));
+        x[k] = segment.x, y[k] = segment.y, z[k] = segment.z, begin[k] = enter;
+        longest = std::max(longest, (1.0f - enter) * glm::length(segment));
     }
-    // More steps than this cannot be crossed by a ray that matters, but could be asked for by a point far away.
+    // No ray that matters crosses more nodes than this, but a point far away could demand more steps.
     const int steps = 1 + static_cast<int>(std::min(longest, 4096.0f));
     HWY_DYNAMIC_DISPATCH(sum_extinction)(extinction_, origin, x, y, z, begin, steps, depth);
     for (int k = 0; k < kRays; ++k)

@@ -1,4 +1,4 @@
-// Optical depths from one point to sixteen others, together.
+// Computes the optical depths from one point to sixteen others at once.
 #pragma once
 
 #include "medium/lattice/extinction_pyramid.h"
@@ -13,7 +13,7 @@ public:
     // a reference.
     PointDepths(const ExtinctionPyramid& pyramid, int level);
 
-    // From `from` to to[0 ... 15], local [m]; what lies outside of the medium costs nothing.
+    // Computes the depths from `from` to to[0 ... 15], local [m]. Segments outside of the medium cost nothing.
     void between(const vec3& from, const vec3* to, float* depth) const;
 
 private:

@@ -1,7 +1,8 @@
-// Points that ask for light, packed for vector kernels.
+// Points at which light is gathered, packed for vector kernels.
 //
-// Receivers come in groups of 16 (the last of a block padded by repeating its last point) with planar coordinates;
-// groups form blocks that share one interaction list per level. A block is a compact set: the nodes of a brick, say.
+// Receivers come in groups of 16 with planar coordinates; the last group of a block is padded by repeating its last
+// point. Groups form blocks that share one interaction list per level. A block is a compact set, such as the nodes of a
+// brick.
 #pragma once
 
 #include <cstdint>
@@ -26,10 +27,10 @@ struct ReceiverBlock {
     Box bounds;  // local [m]
 };
 
-// What `scattered` weighs light by (Gathered, below), with the direction of each receiver.
+// The weight of light in `scattered` (Gathered, below), given the direction of each receiver.
 enum class ReceiverKind {
     Medium,  // the phase function toward `toward_camera`
-    Surface  // cosine / pi to the normal, which stands in the place of `toward_camera`; 0 from below
+    Surface  // cosine / pi to the normal, which is passed as `toward_camera`; 0 from below
 };
 
 class Receivers {
@@ -44,23 +45,24 @@ public:
     const std::vector<ReceiverBlock>& blocks() const { return blocks_; }
 
     std::vector<float> x, y, z;              // [m]
-    std::vector<float> out_x, out_y, out_z;  // empty: no direction asked for
+    std::vector<float> out_x, out_y, out_z;  // empty: no directions
     std::vector<Box> group_bounds;
 
 private:
     std::vector<ReceiverBlock> blocks_;
 };
 
-// What arrives, one value per (padded) receiver and channel, planar: value of channel c at receiver i is [c * size +
-// i].
+// Gathered light, one value per (padded) receiver and channel. It is planar: channel c of receiver i is at
+// [c * size + i].
 struct Gathered {
     // Fluence [W/m^2], channels R G B.
     std::vector<float> fluence;
-    // Radiance scattered toward the camera per unit scattering coefficient: integral of p L [W/(m^2 sr)]; R G B; only
-    // where receivers have a direction. Of surfaces: what a white Lambert surface reflects [W/(m^2 sr)].
+    // Radiance scattered toward the camera per unit scattering coefficient: integral of p L [W/(m^2 sr)], channels
+    // R G B, only where receivers have a direction. For surfaces it is what a white Lambert surface reflects
+    // [W/(m^2 sr)].
     std::vector<float> scattered;
-    // Moments of the incident radiance against the real spherical harmonics of degree 1 and 2 (sh.h), of the direction
-    // of travel: channel 3 * m + c for m = 0..7 and colour c; only when asked for.
+    // Moments of the incident radiance against the real spherical harmonics of degree 1 and 2 (sh.h) of the direction
+    // of travel: channel 3 * m + c for m = 0..7 and colour c. Empty unless requested.
     std::vector<float> moments;
 
     void resize(std::size_t receivers, bool camera, bool directional);

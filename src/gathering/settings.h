@@ -1,4 +1,4 @@
-// How the fire's light, and the scattered light, reaches a point of the medium.
+// Settings for gathering the fire's light and scattered light at points of the medium.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// Real orthonormal spherical harmonics up to degree 2, and how a Henyey-Greenstein phase function acts on them.
+// Real orthonormal spherical harmonics up to degree 2, and the action of a Henyey-Greenstein phase function on them.
 #pragma once
 
 #include <array>
@@ -23,7 +23,8 @@ inline std::array<float, kShMoments> sh_basis(const vec3& w) {
             kSh2a * w.x * w.z, kSh2c * (w.x * w.x - w.y * w.y)};
 }
 
-// Degree l of incident radiance leaves a scattering multiplied by g^l.
+// Scattering multiplies degree l of the incident radiance by g^l: Henyey and Greenstein, Diffuse Radiation in the
+// Galaxy, 1941.
 inline float sh_phase_factor(int moment, float g) {
     return moment < 3 ? g : g * g;
 }

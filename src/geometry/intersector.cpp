@@ -76,13 +76,13 @@ struct Nearby {
     bool found = false;
 };
 
-// For triangles whose box is near enough: is their plane?
+// Tests the plane of triangles whose box is near enough.
 bool look_nearby(RTCPointQueryFunctionArguments* a) {
     Nearby& nearby = *static_cast<Nearby*>(a->userPtr);
     const Triangle t = triangle_of(*nearby.scene, a->geomID, a->primID);
-    const dvec3 normal = t.normal(), way = dvec3(a->query->x, a->query->y, a->query->z) - t.a;
+    const dvec3 normal = t.normal(), offset = dvec3(a->query->x, a->query->y, a->query->z) - t.a;
     const double radius = a->query->radius;
-    if (std::abs(glm::dot(normal, way)) > radius * glm::length(normal))
+    if (std::abs(glm::dot(normal, offset)) > radius * glm::length(normal))
         return false;
     nearby.found = true;
     a->query->radius = 0.0f;  // no need to look any further
@@ -170,11 +170,11 @@ std::uint64_t Intersector::bytes() const {
     return embree_ ? static_cast<std::uint64_t>(embree_->bytes.load()) : 0;
 }
 
-bool Intersector::any_within(const dvec3& place, double radius) const {
+bool Intersector::any_within(const dvec3& position, double radius) const {
     if (!embree_)
         return false;
-    // In single precision, as the triangles are: a little wider than asked.
-    RTCPointQuery query{float(place.x), float(place.y), float(place.z), 0.0f, float(radius * 1.0001)};
+    // The query is in single precision, as the triangles are, so its radius is a little larger.
+    RTCPointQuery query{float(position.x), float(position.y), float(position.z), 0.0f, float(radius * 1.0001)};
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     Nearby nearby{&scene_};

@@ -1,4 +1,4 @@
-// Rays against the triangles of a scene: the only door to Embree (3 or 4).
+// Intersects rays with the triangles of a scene. Only this module includes Embree (3 or 4).
 #pragma once
 
 #include <cstdint>
@@ -31,8 +31,9 @@ public:
     bool empty() const;  // no triangles: nothing was built
     std::optional<SurfaceHit> first_hit(const Ray& ray, double end = std::numeric_limits<double>::infinity()) const;
     bool occluded(const Ray& ray, double end = std::numeric_limits<double>::infinity()) const;
-    // Whether a triangle may come that near to the place: false where none does, true for some that only almost do.
-    bool any_within(const dvec3& place, double radius) const;
+    // Whether a triangle may lie within `radius` [m] of the position. False is exact; true may be returned for some
+    // triangles slightly farther away.
+    bool any_within(const dvec3& position, double radius) const;
 
     const Scene& scene() const { return scene_; }
     std::uint64_t bytes() const;  // of the hierarchy

@@ -17,7 +17,7 @@ struct SurfacePoint {
 
     // A ray from just above the surface, on the side that `direction` goes to.
     Ray leaving(const dvec3& direction) const;
-    // The same place just above the surface, on the side of `other`.
+    // The same point just above the surface, on the side of `other`.
     dvec3 start_toward(const dvec3& other) const;
 
     // Whether interpolated normals would let light through the surface itself between these directions: what they call
@@ -32,7 +32,8 @@ struct SurfacePoint {
 // are just seen, so that silhouettes do not go black.
 SurfacePoint surface_point(const Scene& scene, const SurfaceHit& hit, const dvec3& toward_viewer);
 
-// Radiance that the front of a triangle emits at a place; the back emits the same where the material is double sided.
+// Radiance that the front of a triangle emits at a point [W/(m^2 sr)]. The back emits the same where the material is
+// double sided.
 Rgb emission_at(const Scene& scene, const SurfaceHit& hit);
 
 // [1] 0..1

@@ -1,4 +1,4 @@
-// What a vertex of a coarser lattice stands for: the nodes under its hat, by weight.
+// The footprint of a vertex of a coarser lattice: the nodes under its hat, by weight.
 #pragma once
 
 #include <vector>
@@ -10,23 +10,23 @@ namespace brisance {
 // A weight (luminance, extinction, ...) for every node of a medium's lattice.
 using NodeWeights = std::vector<float>;
 
-// Picks nodes under the hat of a vertex systematically in proportion to hat times weight. Keeps scratch memory: one
-// picker per thread.
+// Picks nodes under the hat of a vertex by systematic sampling in proportion to hat times weight. It keeps scratch
+// memory, so each thread needs its own.
 class FootprintPicker {
 public:
     // Vertices lie at every 2^level-th node.
     FootprintPicker(const Medium& medium, const NodeWeights& weights, int level)
         : medium_(medium), weights_(weights), level_(level) {}
 
-    // `count` picks in node order; empty when nothing has weight.
+    // Returns `count` picks in node order, or none when nothing has weight.
     const std::vector<ivec3>& pick(const ivec3& vertex, int count);
 
     struct WeightedPick {
         ivec3 node;
         float weight;  // the mean of weight times f over all picks is that of f over the footprint
     };
-    // The same with a density that follows `importance` (per node, >= 0) but for the share kLeastShare, which does not:
-    // no pick weighs more than its reciprocal.
+    // Picks with a density that follows `importance` (per node, >= 0) except for the share kLeastShare, so that no pick
+    // weighs more than the reciprocal of that share.
     const std::vector<WeightedPick>& pick(const ivec3& vertex, int count, const NodeWeights& importance);
     static constexpr float kLeastShare = 0.25f;
 

@@ -12,7 +12,7 @@ namespace brisance {
 
 namespace {
 
-// Moments of the lights a vertex stands for, about the vertex, in level-0 nodes.
+// Moments of the lights that a vertex represents, about the vertex, in level-0 nodes.
 struct Moments {
     Rgb intensity{0.0f};
     float weight = 0.0f;
@@ -46,8 +46,8 @@ struct PointMoments {
     }
 };
 
-// Trilinear refinement: the hat of a coarse vertex is the sum of fine hats with weights 1/2, 1, 1/2 per axis, so coarse
-// moments are the same sum of fine moments, shifted to the coarse vertex.
+// By trilinear refinement the hat of a coarse vertex is the sum of fine hats with weights 1/2, 1, 1/2 per axis. Coarse
+// moments are therefore the same sum of fine moments, shifted to the coarse vertex.
 template <class Fine>
 MomentField coarser(const BrickLattice& fine_lattice, const Fine& fine, float fine_spacing) {
     MomentField coarse;

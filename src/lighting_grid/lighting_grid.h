@@ -1,12 +1,12 @@
 // Lighting grid hierarchy: lights splatted to the vertices of ever coarser lattices.
 // [1] C. Yuksel and C. Yuksel, Lighting Grid Hierarchy for Self-illuminating Explosions, SIGGRAPH 2017.
 //
-// Level 0 is the medium's own nodes (voxel_lights.h). Level l >= 1 has vertices at every 2^l-th node, fixed in the
-// world for as long as the volume's transform is: a frame's bounds play no part. Every level is made from level 0:
+// Level 0 is the medium's own nodes (voxel_lights.h). Level l >= 1 has vertices at every 2^l-th node. They are fixed in
+// the world as long as the volume's transform is, whatever the bounds of a frame. Every level is made from level 0:
 //   I_{l,i} = sum_j w_{l,i}(x_j) I_j                    [1] eq. 1, w the trilinear hat of vertex i
 //   p_{l,i} = sum_j v_j x_j / sum_j v_j,  v_j = w Y_j   [1] eq. 2, Y luminance (or another positive weight)
-// so each level carries the same total intensity and first moment. Trilinear splats nest: a level is made exactly from
-// the moments about the vertices of the level below, which is what the construction does.
+// so each level carries the same total intensity and first moment. Trilinear splats nest, so the construction makes
+// each level exactly from the moments about the vertices of the level below.
 #pragma once
 
 #include <cstdint>
@@ -27,8 +27,8 @@ struct GridLevel {
     // Degrees 1 and 2 of a directional intensity, 24 per light ([3 * m + colour], sh.h); empty: isotropic.
     std::vector<float> directional;
 
-    // Of lights outside of the medium: places that light i stands for are part[first_part[i] ... first_part[i + 1]),
-    // local [m]. Empty where lights stand for voxels.
+    // For lights outside of the medium: light i represents the positions part[first_part[i] ... first_part[i + 1]),
+    // local [m]. Empty where lights represent voxels.
     std::vector<vec3> part;
     std::vector<std::uint32_t> first_part;
 
@@ -57,19 +57,19 @@ struct LightingGrid {
     std::uint64_t bytes() const;
 };
 
-// Levels 1 .. `levels` of the lights in `intensity` (per node of `lattice`). `weight` (per node, >= 0) takes the place
-// of luminance in the centres where given: positions then do not depend on the intensities, as the scattering operator
-// needs.
+// Builds levels 1 .. `levels` of the lights in `intensity` (per node of `lattice`). Where given, `weight` (per node,
+// >= 0) replaces luminance in the centres, so that positions do not depend on the intensities; the scattering operator
+// needs this.
 LightingGrid build_lighting_grid(const Medium& medium, const std::vector<Rgb>& intensity,
                                  const std::vector<float>* weight, int levels);
 
-// Replaces the intensities of all levels by those of other level-0 lights; positions and extents stay. Exact when every
-// node lit now was among the lights the grid was built from.
-// `directional` (24 per node, or null) goes the same way.
+// Replaces the intensities of all levels by those of other level-0 lights; positions and extents stay. The result is
+// exact when every node lit now was among the lights that the grid was built from. `directional` (24 per node, or null)
+// is replaced likewise.
 void set_intensity(LightingGrid& grid, const BrickLattice& lattice, const std::vector<Rgb>& intensity,
                    const std::vector<float>* directional);
 
-// As many levels as leave a top level of at most about five vertices along the longest side of the medium.
+// The number of levels for which the top level has at most about five vertices along the longest side of the medium.
 int automatic_levels(const Medium& medium);
 
 }  // namespace brisance

@@ -12,21 +12,21 @@ namespace brisance {
 namespace {
 
 constexpr int kMostLevels = 24;
-constexpr std::size_t kMostParts = 16;  // of a light, for the surfaces that hide it in part
+constexpr std::size_t kMostParts = 16;  // of a light, for partial occlusion by surfaces
 
 struct Earlier {
     bool operator()(const ivec3& a, const ivec3& b) const { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
 };
 
 struct Sum {
-    dvec3 place{0.0};
+    dvec3 weighted_position{0.0};
     double weight = 0.0;
     Rgb intensity{0.0f};
     std::vector<float> directional;
     std::vector<std::uint32_t> members;
 };
 
-// Up to kMostParts of its members, in proportion to their power.
+// Appends the positions of up to kMostParts of the members, picked in proportion to their power.
 void add_parts(const PointLights& lights, const Sum& sum, std::vector<vec3>& parts) {
     const std::size_t count = std::min(kMostParts, sum.members.size());
     double passed = 0.0;
@@ -47,7 +47,7 @@ GridLevel make_level(const Medium& medium, const PointLights& lights, int number
             continue;
         const vec3 nodes = medium.index_from_local * lights.position[i] + vec3(medium.reference_node);
         Sum& sum = sums[ivec3(glm::round(nodes * scale))];
-        sum.place += double(y) * dvec3(lights.position[i]);
+        sum.weighted_position += double(y) * dvec3(lights.position[i]);
         sum.weight += y;
         sum.intensity += lights.intensity[i];
         sum.members.push_back(static_cast<std::uint32_t>(i));
@@ -65,7 +65,7 @@ GridLevel make_level(const Medium& medium, const PointLights& lights, int number
         add_parts(lights, sum, level.part);
         level.first_part.push_back(static_cast<std::uint32_t>(level.part.size()));
         level.vertex.push_back(vertex);
-        level.position.emplace_back(sum.place / sum.weight);
+        level.position.emplace_back(sum.weighted_position / sum.weight);
         level.intensity.push_back(sum.intensity);
         level.directional.insert(level.directional.end(), sum.directional.begin(), sum.directional.end());
     }

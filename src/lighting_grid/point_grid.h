@@ -1,9 +1,9 @@
-// A lighting grid over lights anywhere in space: those that light a medium from outside.
+// A lighting grid over lights anywhere in space that light a medium from outside.
 //
-// Each light belongs to the vertex nearest to it on every level, with its place in the mean: they are few and far from
-// what they light, and moving from one vertex to the next at once does not show. Levels below the top keep only lights
-// that the medium may ask them for. A coarse light's centre may lie behind a surface that its lights are in front of:
-// surfaces hide it as far as they hide some of those, its parts.
+// On every level each light belongs to its nearest vertex and its position enters the vertex's mean. The lights are few
+// and far from what they light, so a jump from one vertex to the next does not show. Levels below the top keep only
+// lights within range of the medium. A coarse light's centre may lie behind a surface that its lights are in front of.
+// Its visibility is therefore that of some of those lights, its parts.
 #pragma once
 
 #include <vector>
@@ -19,8 +19,8 @@ struct PointLights {
     std::size_t size() const { return position.size(); }
 };
 
-// levels[0] is level 0. As many levels as leave about five vertices along the longest side of all lights. `alpha`: a
-// light of level l serves up to 2 alpha h_l.
+// Builds as many levels as leave about five vertices along the longest side of all lights; levels[0] is level 0. A
+// light of level l is evaluated up to the distance 2 alpha h_l.
 LightingGrid build_point_grid(const Medium& medium, const PointLights& lights, float alpha);
 
 }  // namespace brisance

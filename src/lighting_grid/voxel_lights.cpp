@@ -121,7 +121,7 @@ std::vector<Rgb> voxel_lights(const Medium& medium) {
 
 namespace {
 
-// A brick's values with `margin` nodes all round, and how to step between neighbours.
+// A brick's values with `margin` nodes all round, and the strides between neighbours.
 struct Surrounded {
     int wide;
     std::vector<float> box;
@@ -133,7 +133,7 @@ struct Surrounded {
     int index(const ivec3& p) const { return (p.x * wide + p.y) * wide + p.z; }
 };
 
-// The share of its wish to give that a node can afford.
+// The share of its outgoing flux that a node can afford.
 float affordable(const float* v, const Surrounded& s) {
     float out = 0.0f;
     for (int a = 0; a < 3; ++a)

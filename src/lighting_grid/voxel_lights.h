@@ -1,11 +1,12 @@
-// Fire to point lights: one light per node of the medium's lattice, carrying the energy of the field the camera sees.
+// Turns fire into point lights: one light per node of the medium's lattice, with the energy of the field that the
+// camera sees.
 //
 // With hat_i the trilinear hat function of node i,
 //   I_i = integral of hat_i(x) j(x) dV,   j = extinction * source + emission,
-// each factor interpolated on its own. Hats sum to one and reproduce linear functions, so the sum of all I_i is the
-// exact integral of j and their first moment is exact too. The integrand is of degree three per axis in each cell: a
-// 2-point Gauss rule per axis integrates it without error. The result is then sharpened (sharpen_lights): the sum stays
-// exact, the first moment wherever the fire is smooth.
+// where each factor is interpolated on its own. Hats sum to one and reproduce linear functions, so the sum of all I_i
+// is the exact integral of j, and their first moment is exact too. The integrand is of degree three per axis in each
+// cell, so a 2-point Gauss rule per axis integrates it without error. The result is then sharpened (sharpen_lights):
+// the sum stays exact, and so does the first moment wherever the fire is smooth.
 #pragma once
 
 #include <cstdint>
@@ -19,14 +20,15 @@ namespace brisance {
 // Radiant intensity [W/sr] of every node of the medium's lattice; empty when nothing emits.
 std::vector<Rgb> voxel_lights(const Medium& medium);
 
-// Undoes the spread of h^2/6 per axis that the splat to nodes gives the light: a conservative flux of
-// (I_neighbour - I) / 12 from the darker of two neighbours to the brighter. What a node gives away is limited to what
-// it has, so that no light turns negative, and the result stays continuous in the data. Without this, light crosses a
-// voxel that absorbs e-fold about 8 % too easily.
+// Undoes the spread of h^2/6 per axis that the splat to nodes gives the light, by a conservative flux of
+// (I_neighbour - I) / 12 from the darker of two neighbours to the brighter. A node gives away no more than it has, so
+// that no light turns negative and the result stays continuous in the data. Without this, light crosses a voxel that
+// absorbs e-fold about 8 % too easily.
 void sharpen_lights(const BrickLattice& lattice, std::vector<Rgb>& intensity);
 
-// Node values whose trilinear interpolant has the averages of the smooth field through `values` (planar, one channel of
-// the lattice's nodes): minus a twelfth of the second difference per axis. Nodes outside `mask` are left alone.
+// Replaces `values` (planar, one channel of the lattice's nodes) by node values whose trilinear interpolant has the
+// averages of the smooth field through them: it subtracts a twelfth of the second difference per axis. Nodes outside
+// `mask` keep their values.
 void sharpen_interpolant(const BrickLattice& lattice, const std::vector<std::uint8_t>& mask, std::span<float> values);
 
 // The same projection of extinction * factor, for a factor given at the nodes: scattered light, collisions.

@@ -1,4 +1,4 @@
-// What smoke leaves of light along a way of constant extinction, in closed form.
+// Attenuation of light along a segment of constant extinction, in closed form.
 #pragma once
 
 #include <algorithm>
@@ -6,13 +6,13 @@
 
 namespace brisance {
 
-// phi1(tau) = (1 - exp(-tau)) / tau, right to rounding for every tau >= 0: by expm1, and its series near zero.
+// phi1(tau) = (1 - exp(-tau)) / tau, accurate to rounding for every tau >= 0 by expm1, and by its series near zero.
 inline float phi1(float tau) {
     return tau < 1e-3f ? 1.0f - tau * (0.5f - tau * (1.0f / 6.0f)) : -std::expm1(-tau) / tau;
 }
 
-// Mean optical depth at which light that enters from all along a way of depth tau is met, from its near end: each place
-// counts by its transmittance. 1 - tau / (exp(tau) - 1).
+// Mean optical depth, from the near end of a segment of depth tau, of light that enters along all of it. Each point is
+// weighted by its transmittance: 1 - tau / (exp(tau) - 1).
 inline float mean_depth(float tau) {
     return tau < 1e-3f ? 0.5f * tau : 1.0f - tau / std::expm1(std::min(tau, 80.0f));
 }

@@ -8,7 +8,7 @@
 
 namespace brisance {
 
-// What the grids say at one node. Absent grids read as 0, an absent colour as white.
+// The grids' values at one node. Absent grids read as 0, an absent colour as white.
 struct NodeValues {
     float temperature = 0.0f;  // as stored, not kelvin
     float flame = 0.0f;

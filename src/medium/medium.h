@@ -1,8 +1,7 @@
 // One frame's participating medium: optical coefficients on one lattice, made for sampling.
 //
-// Everything lies on the lattice of the finest grid used; grids on other lattices, and those of further volumes, are
-// resampled onto it. Between nodes
-// fields are trilinear, outside every brick they are zero. Two products make the light:
+// Everything lies on the lattice of the finest grid used. Grids on other lattices, and those of further volumes, are
+// resampled onto it. Fields are trilinear between nodes and zero outside every brick. Two products make the light:
 //   emitted    j(x)   = extinction(x) * source(x) + emission(x)     [W/(m^3 sr)]
 //   scattered  s(x)   = extinction(x) * (albedo * fluence / 4 pi)(x)
 // each factor interpolated on its own. Thresholds, ramps and black-body curves act on node values, before

@@ -1,5 +1,5 @@
-// The Henyey-Greenstein phase function. `mean_cosine` g > 0 scatters forward; cosines are between the directions of
-// travel before and after the scattering.
+// The phase function of Henyey and Greenstein, Diffuse Radiation in the Galaxy, Astrophysical Journal 93, 1941. It
+// scatters forward for `mean_cosine` g > 0. Cosines are between the directions of travel before and after scattering.
 #pragma once
 
 #include <cmath>
@@ -8,8 +8,8 @@ namespace brisance {
 
 constexpr float kPi = 3.14159265358979323846f;
 
-// p(cos) [1/sr], integrates to 1 over the sphere. Written so that g -> +-1 keeps its peak: the denominator's terms are
-// both non-negative.
+// p(cos) [1/sr], which integrates to 1 over the sphere. Both terms of the denominator are non-negative, so that the
+// peak survives as g -> +-1.
 inline float henyey_greenstein(float cosine, float g) {
     const float denominator =
         (1.0f - std::abs(g)) * (1.0f - std::abs(g)) + 2.0f * std::abs(g) * (1.0f - (g < 0.0f ? -cosine : cosine));

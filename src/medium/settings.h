@@ -1,4 +1,4 @@
-// From grid values to optical coefficients.
+// Settings that turn grid values into optical coefficients.
 #pragma once
 
 #include <optional>
@@ -54,7 +54,7 @@ struct MediumSettings {
     ColourRole colour_role = ColourRole::Albedo;
 };
 
-// What a further volume has otherwise than the shot; its phase function is the shot's.
+// Settings of a further volume that differ from the shot's. Its phase function is the shot's.
 struct MediumChanges {
     std::optional<float> extinction_per_metre;
     std::optional<Rgb> albedo;

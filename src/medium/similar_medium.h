@@ -1,7 +1,7 @@
-// The medium that scattered light is followed through, where the medium itself is too stiff for lights on a lattice.
+// A substitute medium for scattered light, where the medium itself is too stiff for lights on a lattice.
 //
-// A lattice cannot tell where in a voxel light comes from. That matters in three cases, and in each there is a milder
-// medium from which nearly the same light comes:
+// A lattice does not resolve where in a voxel light comes from. That matters in three cases, and in each a milder
+// medium emits nearly the same light:
 //  - Many mean free paths to a voxel. What is seen of such smoke comes from a skin far thinner than a voxel. Layers of
 //    constant albedo look the same however optical depth is laid out in them, so extinction is held down until a voxel
 //    is about as thick as the skin. Smoke that scatters nearly all light is no skin: light diffuses through many
@@ -29,11 +29,12 @@ namespace brisance {
 // The share of scattering in Henyey-Greenstein's forward peak that counts as none: 0 up to g = 0.5, g^3 from 0.85.
 float forward_share(float mean_cosine);
 
-// What of it `bounces` scatterings leave to the camera's rays: all of it with one, else nothing.
+// The part of forward_share() that `bounces` scatterings leave to the camera's rays: all of it with one, else nothing.
 float forward_left_out(float mean_cosine, int bounces);
 
-// Empty where the medium will do. `bounces`: scatterings to follow, -1: all orders. With 1 the forward share of single
-// scattering is missing; with a number above, peaks stay as they are, since every order is asked for by itself.
+// Returns nothing where the medium itself suffices. `bounces` is the number of scatterings to follow, -1: all orders.
+// With 1 the forward share of single scattering is missing; with a number above, peaks stay as they are, since every
+// order is computed by itself.
 std::optional<Medium> similar_medium(const Medium& medium, int bounces);
 
 }  // namespace brisance

@@ -1,12 +1,12 @@
-// What counts as haze beside dense smoke: one measure for all who treat it apart.
+// The definition of thin smoke beside dense smoke, shared by all code that treats it separately.
 #pragma once
 
 #include <span>
 
 namespace brisance {
 
-// The mean extinction where light meets smoke, by extinction [1/m]: that of the smoke proper, however much haze there
-// is around it.
+// The mean extinction weighted by extinction [1/m]. It is that of the dense smoke, however much thin smoke surrounds
+// it.
 inline double extinction_met(std::span<const float> extinction) {
     double sum = 0.0, squares = 0.0;
     for (const float e : extinction) {
@@ -16,9 +16,10 @@ inline double extinction_met(std::span<const float> extinction) {
     return sum > 0.0 ? squares / sum : 0.0;
 }
 
-// Of extinction_met(): no more is thin smoke.
+// Smoke is thin up to this share of extinction_met().
 constexpr float kThinSmoke = 0.05f;
-// Of the nodes with extinction that are thin: fringes of real smoke are up to a third; above this there is haze.
+// Share of thin nodes among those with extinction. Fringes of real smoke make up to a third; above this share the
+// volume holds thin smoke of its own.
 constexpr float kFringes = 0.4f;
 
 }  // namespace brisance

@@ -1,4 +1,4 @@
-// From linear Rec. 709 to the spaces in which distances mean something to the eye. White (1, 1, 1) is D65.
+// Converts linear Rec. 709 to spaces whose distances correspond to perceived differences. White (1, 1, 1) is D65.
 // [1] CIE 15, Colorimetry: CIELAB. The opponent space YCxCz is CIELAB without its cube root, so that filtering in it is
 // filtering light.
 #pragma once

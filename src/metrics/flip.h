@@ -1,4 +1,4 @@
-// FLIP: the difference that somebody sees who flips between two pictures on a display.
+// FLIP: the difference that an observer perceives when flipping between two pictures on a display.
 #pragma once
 
 #include "metrics/picture.h"

@@ -1,4 +1,4 @@
-// What the measures compare: linear colour alone, whatever channels a file has.
+// The pictures that the measures compare: linear colour alone, whatever channels a file has.
 #pragma once
 
 #include <vector>

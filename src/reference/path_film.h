@@ -1,4 +1,4 @@
-// What a picture's paths have summed up to, in two independent halves, and that sum as bytes for a checkpoint.
+// The sums of a picture's paths in two independent halves, and their serialisation for a checkpoint.
 #pragma once
 
 #include <cstdint>
@@ -9,15 +9,16 @@
 
 namespace brisance {
 
-// Sums, not means, in double precision: adding in the same order gives the same bits, wherever it was interrupted.
+// Holds sums, not means, in double precision. Adding in the same order gives the same bits wherever it was interrupted.
 class PathFilm {
 public:
-    // With `orders` every order of scattering is kept apart, otherwise the ledger's cells V, MV, MM. With `cells` all
-    // of the ledger's cells are kept besides, after them.
+    // With `orders` the film keeps every order of scattering apart, otherwise the ledger's cells V, MV, MM. With
+    // `cells`
+    // it also keeps all of the ledger's cells, after them.
     PathFilm(int width, int height, bool orders, bool cells = false);
 
-    // Adds what one camera ray brought to a pixel's half (0 or 1). Not for two threads on one pixel. False: not finite,
-    // and left out.
+    // Adds the radiance of one camera ray to a pixel's half (0 or 1). Two threads must not add to the same pixel.
+    // Returns false for a value that is not finite, which is left out.
     bool add(std::size_t pixel, int half, const PathSum& path);
 
     int width() const { return width_; }
@@ -27,12 +28,13 @@ public:
     double sum(std::size_t pixel, int half, int which, int channel) const {
         return values_[(pixel * 2 + half) * sums_ * 3 + which * 3 + channel];
     }
-    // Of squared radiance of single paths, both halves.
+    // Sum of the squared radiance of single paths over both halves.
     double square(std::size_t pixel, int channel) const { return squares_[pixel * 3 + channel]; }
 
     // A checkpoint: the work's state, the sums, and the `key` of what was rendered.
     std::string serialise(const std::string& key) const;
-    // Takes over what `bytes` hold. Empty when all is well, else why they cannot be used; the film is then unchanged.
+    // Restores the state in `bytes`. Returns an empty string, or else the reason why they cannot be used; the film is
+    // then unchanged.
     std::string restore(const std::string& bytes, const std::string& key);
 
     // Progress: passes finished (one camera ray in each half of each pixel), rows finished of the pass under way.

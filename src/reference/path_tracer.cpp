@@ -11,16 +11,16 @@ namespace brisance {
 
 namespace {
 
-// First scatterings drawn on one ray of the camera: the ray itself, integrated cell by cell, costs as much as several.
+// First scatterings drawn on one camera ray. The ray itself, integrated cell by cell, costs as much as several of them.
 constexpr int kFirstCollisions = 16;
 
-// Surface paths that begin at the end of one ray of the camera that comes through smoke: they share the cost of the ray
-// itself. Without smoke a ray costs little.
+// Surface paths that begin at the end of one camera ray through smoke. They share the cost of the ray itself; without
+// smoke a ray costs little.
 constexpr int kFirstReflections = 4;
 
 }  // namespace
 
-// Files what a path gathers by the number of its scatterings and by the ledger's cell.
+// Files the light that a path gathers by the number of its scatterings and by the ledger's cell.
 class PathTracer::Filing : public PlainPath {
 public:
     Filing(const PathTracer& tracer, bool row_surface, PathSum& sum, PathStatistics& statistics)
@@ -30,7 +30,7 @@ public:
           sum_(sum),
           statistics_(statistics) {}
 
-    // Where no path goes on and no surface ends the segment, the whole line is integrated instead.
+    // Integrates the whole line where the path does not continue and no surface ends the segment.
     SegmentMedium medium_along(const PathState& state, const PathStep& step, Rng& rng) const {
         if (continues(state) || scene_.surroundings())
             return PlainPath::medium_along(state, step, rng);

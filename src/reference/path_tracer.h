@@ -1,9 +1,9 @@
 // The reference: unbiased paths through medium and surroundings, filed by the number of their scatterings and by the
 // ledger's cells.
 //
-// A ray of the camera is integrated as a whole, and several first scatterings are sampled on it, each the start of a
-// path; the surface at its end starts further paths. A path takes the steps of transport/path_step.h and gathers all
-// light there is. What a vertex gathers counts under the scatterings up to that vertex.
+// A camera ray is integrated as a whole. Several first scatterings are sampled on it, each the start of a path, and the
+// surface at its end starts further paths. A path takes the steps of transport/path_step.h and gathers all light. The
+// light gathered at a vertex counts under the number of scatterings up to that vertex.
 #pragma once
 
 #include <array>
@@ -14,15 +14,15 @@
 
 namespace brisance {
 
-// What one path gathers [W/(m^2 sr)], by its number of scatterings; the last entry holds that number and all above.
-// With surroundings the same by cell; either adds up to the whole.
+// The radiance that one path gathers [W/(m^2 sr)], by its number of scatterings; the last entry holds that number and
+// all above. With surroundings the same by cell. Either adds up to the whole.
 constexpr int kPathOrders = 10;
 struct PathSum : std::array<Rgb, kPathOrders> {
     CellSum cells;
 };
 
-// A scattering of a path, and what it gathers; number 0 is the camera, where all paths of its ray begin. The light of
-// all vertices adds up to the PathSum.
+// A scattering of a path and the light that it gathers. Number 0 is the camera, where all paths of its ray begin. The
+// light of all vertices adds up to the PathSum.
 struct TracedVertex {
     int order;                // scatterings with this one
     dvec3 position;           // local [m]

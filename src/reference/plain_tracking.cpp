@@ -1,5 +1,5 @@
-// The plain tracker: emission at every tentative collision, absorption or scattering at real ones (Woodcock et al.
-// 1965). The baseline that the line estimator of path_tracer.cpp is held against.
+// The plain tracker adds emission at every tentative collision and absorbs or scatters at real ones (Woodcock et al.
+// 1965). It is the baseline for the line estimator of path_tracer.cpp.
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +10,7 @@ namespace brisance {
 
 namespace {
 
-// Tentative collisions per voxel where the medium emits; the smoke alone may call for none.
+// Tentative collisions per voxel where the medium emits. The smoke alone may need none.
 constexpr double kTentativePerVoxel = 1.0 / 4.0;
 
 double exponential(Rng& rng) {

@@ -23,8 +23,8 @@ constexpr int kRowsAtOnce = 32;    // between two looks at the clock
 constexpr int kPixelsAtOnce = 32;  // of a row, to a task
 const std::vector<std::string> kColour = {"R", "G", "B"};
 
-// The three-dimensional sequence of Roberts (generalised golden ratio): place k of a half, shifted at random.
-struct Place {
+// Point k of a half in the three-dimensional sequence of Roberts (generalised golden ratio), shifted at random.
+struct SamplePoint {
     double x, y, first_collision;
 };
 
@@ -33,7 +33,7 @@ std::uint64_t seeded(int seed, std::size_t pixel) {
     return std::uint64_t(seed) << 32 | pixel;
 }
 
-Place place_of(int seed, std::size_t pixel, std::uint64_t sample) {
+SamplePoint sample_point(int seed, std::size_t pixel, std::uint64_t sample) {
     constexpr double g1 = 0.8191725133961645, g2 = 0.6710436067037893, g3 = 0.5497004779019703;
     Rng shift(Stream::PathRotation, seeded(seed, pixel), sample & 1);
     const double k = static_cast<double>(sample >> 1);
@@ -45,11 +45,11 @@ Place place_of(int seed, std::size_t pixel, std::uint64_t sample) {
     return {x, y, at(g3)};
 }
 
-Ray ray_at(const Camera& camera, std::size_t pixel, const Place& place) {
+Ray ray_at(const Camera& camera, std::size_t pixel, const SamplePoint& point) {
     const CameraSettings& s = camera.settings();
     const double column = static_cast<double>(pixel % s.width) + 0.5, row = static_cast<double>(pixel / s.width) + 0.5;
     const double size = s.filter_width_pixels;
-    return camera.ray(column + (place.x - 0.5) * size, row + (place.y - 0.5) * size);
+    return camera.ray(column + (point.x - 0.5) * size, row + (point.y - 0.5) * size);
 }
 
 class Tracing {
@@ -152,7 +152,7 @@ private:
         progress_.fraction(std::min(part, 1.0));
     }
 
-    // A checkpoint that cannot be written costs a warning, not the render: the one before is still whole.
+    // A checkpoint that cannot be written only causes a warning, because the previous one is still whole.
     void save() {
         if (checkpoint_.file.empty())
             return;
@@ -188,7 +188,7 @@ Rgb beauty(const PathFilm& film, std::size_t pixel, int half) {
     return Rgb(sum / double(std::max<std::uint64_t>(film.work.passes, 1)));
 }
 
-// Root of the summed squares of half the halves' difference, over the same of their mean.
+// The root of the summed squares of half the halves' difference, over that of their mean.
 double Tracing::relative_standard_error(const PathFilm& film) {
     double noise = 0.0, norm = 0.0;
     for (std::size_t p = 0; p < std::size_t(film.width()) * film.height(); ++p) {
@@ -199,7 +199,7 @@ double Tracing::relative_standard_error(const PathFilm& film) {
     return norm > 0.0 ? std::sqrt(noise / norm) : 0.0;
 }
 
-// Standard error of the picture's mean over its mean, luminance: one pair of halves says it to an order of magnitude.
+// The standard error of the picture's mean luminance over that mean. One pair of halves gives its order of magnitude.
 double relative_error_of_mean(const PathFilm& film) {
     double a = 0.0, b = 0.0;
     for (std::size_t p = 0; p < std::size_t(film.width()) * film.height(); ++p) {
@@ -308,13 +308,13 @@ private:
     const OutputSettings& output_;
 };
 
-// Alpha, depth and albedo have nothing random about them: a few of the camera's marches give them.
+// Alpha, depth and albedo are not random, so a few of the camera's marches give them.
 Image sampled_layers(const Medium& medium, const Surroundings* surroundings, const Camera& camera) {
     constexpr int kEnough = 2;  // rays along a pixel's side
     const SourceField field(medium);
     PictureSettings settings;
-    const int asked = camera.settings().samples_per_axis;
-    settings.samples_per_axis = asked > 0 ? asked : std::min(automatic_samples(camera, field), kEnough);
+    const int requested = camera.settings().samples_per_axis;
+    settings.samples_per_axis = requested > 0 ? requested : std::min(automatic_samples(camera, field), kEnough);
     settings.cells = false;
     settings.surroundings = surroundings;
     Progress silent;
@@ -347,19 +347,19 @@ void report_bad_samples(const PathFilm& film, Progress& progress) {
 }  // namespace
 
 Ray sample_ray(const Camera& camera, int seed, std::size_t pixel, std::uint64_t sample) {
-    return ray_at(camera, pixel, place_of(seed, pixel, sample));
+    return ray_at(camera, pixel, sample_point(seed, pixel, sample));
 }
 
 PathSum trace_sample(const PathTracer& tracer, const Camera& camera, std::size_t pixel, std::uint64_t sample,
                      PathStatistics& statistics) {
     const int seed = tracer.settings().seed;
-    const Place place = place_of(seed, pixel, sample);
+    const SamplePoint point = sample_point(seed, pixel, sample);
     Rng rng(Stream::Path, seeded(seed, pixel), sample);
     PathSum sum{};
-    tracer.trace(ray_at(camera, pixel, place), place.first_collision, rng, sum, statistics);
+    tracer.trace(ray_at(camera, pixel, point), point.first_collision, rng, sum, statistics);
     const PixelFilter filter = camera.settings().filter;
     if (filter != PixelFilter::Box)
-        weigh(sum, statistics, filter_weight(filter, place.x - 0.5, place.y - 0.5));
+        weigh(sum, statistics, filter_weight(filter, point.x - 0.5, point.y - 0.5));
     return sum;
 }
 

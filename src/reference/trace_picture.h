@@ -1,4 +1,4 @@
-// The path tracer's picture: passes over all pixels until enough is known.
+// The path tracer's picture: passes over all pixels until the error is small enough.
 #pragma once
 
 #include <array>
@@ -15,13 +15,13 @@
 
 namespace brisance {
 
-// Where the state of a long render is kept, and what it belongs to.
+// The file that keeps the state of a long render, and the key of that render.
 struct Checkpoint {
     std::filesystem::path file;  // empty: none is kept
     std::string key;             // everything that decides the bits
 };
 
-// What is traced, by reference, and which layers are written.
+// The traced scene, by reference, and the layers to write.
 struct TracedScene {
     const Medium& medium;
     const Camera& camera;
@@ -38,18 +38,17 @@ struct TracedPicture {
     double samples_per_pixel = 0.0;
 };
 
-// The camera's ray of a path, in local space: where in the pixel it lies is the same for the same seed, pixel and
-// number.
+// The camera ray of a path, in local space. The same seed, pixel and number give the same position in the pixel.
 Ray sample_ray(const Camera& camera, int seed, std::size_t pixel, std::uint64_t sample);
 
-// One path of a pixel, the same for the same picture size, seed, pixel, and number. Even numbers belong to the first
-// half. What its vertices gathered is weighted by the pixel's filter as the sum is.
+// Traces one path of a pixel, the same for the same picture size, seed, pixel, and number. Even numbers belong to the
+// first half. The light of its vertices is weighted by the pixel's filter as the sum is.
 PathSum trace_sample(const PathTracer& tracer, const Camera& camera, std::size_t pixel, std::uint64_t sample,
                      PathStatistics& statistics);
 
-// Goes on from the checkpoint where there is one. Layers as render_picture's, all 32 bit, and "variance": of each
-// pixel's mean, by the spread of its paths; stratification makes the true one smaller.
-// Throws Error BadData when the checkpoint does not belong to this render.
+// Continues from the checkpoint if there is one. The layers are those of render_picture, all 32 bit, and "variance":
+// the variance of each pixel's mean, from the spread of its paths. Stratification makes the true one smaller. Throws
+// Error BadData when the checkpoint does not belong to this render.
 TracedPicture trace_picture(const TracedScene& scene, const Checkpoint& checkpoint, Statistics& statistics,
                             Progress& progress);
 

@@ -285,8 +285,8 @@ ScatteredLight CoarseOperator::spread_to_fine(const ScatteredLight& coarse, cons
     const CoarseSampler sampler{medium_.lattice, level_};
     const bool directional = !coarse.directional.empty();
     const int channels = directional ? 27 : 3;
-    // Source function: light leaving per volume and extinction; where a coarse node has no extinction its neighbours
-    // speak. A node that sharpening has emptied says next to nothing: its quotient would be rounding.
+    // The source function is the light leaving per volume and extinction. Where a coarse node has no extinction, its
+    // neighbours determine it. A node that sharpening has emptied has almost no weight: its quotient would be rounding.
     std::vector<std::vector<Rgb>> source(channels / 3, std::vector<Rgb>(n, Rgb(0.0f)));
     parallel_for(
         fine.lattice.brick_count(),

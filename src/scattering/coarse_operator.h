@@ -17,8 +17,8 @@ struct ScatteredLight {
     void sharpen(const BrickLattice& lattice);
 };
 
-// What the light arriving at the medium's nodes becomes: the exact projection of extinction * albedo * fluence / 4 pi,
-// and of its higher moments times the phase function's. Only nodes with `mask` count.
+// Returns the light that arriving light scatters into: the exact projection of extinction * albedo * fluence / 4 pi,
+// and of its higher moments times those of the phase function. Only nodes with `mask` count.
 ScatteredLight scattered_light(const Medium& medium, const Gathered& arriving, const std::vector<std::uint8_t>& mask);
 
 // Where the power of one flight went, over 4 pi [W/sr].
@@ -59,8 +59,8 @@ private:
     std::vector<std::uint8_t> mask_;   // nodes with extinction in their hat
     std::vector<Rgb> unit_;            // light of a source function of 1: integral of hat * extinction [m^2]
     std::vector<float> weight_;        // the same as a scalar: centres do not depend on a bounce's light
-    std::vector<float> least_weight_;  // what a source function is divided by at least
-    int collision_numbers_ = 1;        // per node of the next: directional light asks for moments
+    std::vector<float> least_weight_;  // lower bound of a source function's divisor
+    int collision_numbers_ = 1;        // per node of the next: directional light needs moments
     std::vector<float> collision_;     // per node: probability of a collision before leaving the medium
     std::vector<float> factor_;        // D
     LightingGrid grid_;

@@ -15,7 +15,7 @@ namespace brisance {
 // with a notice or a warning, stands in gltf_nodes.h, gltf_meshes.h, gltf_materials.h and gltf_cameras.h.
 //
 // Throws Error MissingInput (no such file, buffer or texture) or BadData (what the file says cannot be used), Temporary
-// (more memory than `memory_limit` bytes would be needed, told before it is taken; that counts the files' bytes,
+// (more memory than `memory_limit` bytes would be needed, reported before allocation; that counts the files' bytes,
 // triangles with the tree over them, and textures). Triangles without area, or with positions that are not finite, are
 // left out with a warning that counts them.
 Scene load_scene(const SceneSettings& settings, const std::filesystem::path& folder, double seconds,

@@ -1,4 +1,4 @@
-// What a scene may take, asked for before it is taken.
+// The memory limit of a scene, checked before each allocation.
 #pragma once
 
 #include <cstdint>

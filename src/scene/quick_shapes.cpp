@@ -62,11 +62,11 @@ Icosphere split(const Icosphere& coarse) {
     Icosphere fine{coarse.corners, {}};
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
     const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-        const auto [place, fresh] =
+        const auto [entry, fresh] =
             middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(fine.corners.size()));
         if (fresh)
             fine.corners.push_back(glm::normalize(coarse.corners[a] + coarse.corners[b]));
-        return place->second;
+        return entry->second;
     };
     for (const uvec3& t : coarse.triangles) {
         const std::uint32_t a = middle(t.x, t.y), b = middle(t.y, t.z), c = middle(t.z, t.x);

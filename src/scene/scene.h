@@ -1,5 +1,5 @@
-// One frame's surfaces, as triangles in one space, with their materials and textures: what is left of files, nodes and
-// animation once a moment is chosen.
+// One frame's surfaces as triangles in one space, with their materials and textures. Files, nodes and animation have
+// been resolved for one moment.
 //
 // Positions are "local": metres relative to `origin`, axes parallel to the world's, so that a set 10^6 m from the
 // world's origin keeps its digits in single precision.

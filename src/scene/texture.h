@@ -1,4 +1,4 @@
-// A picture on a surface, or around the scene.
+// An image on a surface or around the scene.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ public:
     bool nearest = false;             // else bilinear
     bool srgb = false;                // rgb are stored by sRGB's curve, alpha is linear in any case
     std::vector<std::uint8_t> bytes;  // RGBA
-    std::vector<float> floats;        // RGBA, in place of bytes
+    std::vector<float> floats;        // RGBA, instead of bytes
 
     // Linear RGBA at uv, interpolated in linear light. Coordinates that are not finite count as 0.
     vec4 at(vec2 uv) const;

@@ -1,4 +1,5 @@
-// The octahedral map: unit directions to the unit square, area-even enough for shadows and free of face seams.
+// The octahedral map takes unit directions to a square. Its areas are even enough for shadows, and it has no seams
+// between faces.
 // Cigolle et al., A Survey of Efficient Representations for Independent Unit Vectors, JCGT 3(2), 2014.
 #pragma once
 

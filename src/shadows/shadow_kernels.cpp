@@ -31,8 +31,9 @@ HWY_INLINE V step_depth(D d, const PackedExtinction* mips, const ShadowStep& s, 
     return hn::Mul(sample_extinction(d, mips[s.mip], p[0], p[1], p[2]), hn::Set(d, s.length));
 }
 
-// How far along rays of one group of lanes any of them may find extinction [m], level by level of the pyramid as they
-// are asked for: what lies farther need not be sampled to be known as 0. `slack`: how far off its line a ray starts.
+// The distance up to which any ray of one group of lanes may find extinction [m], computed for each level of the
+// pyramid when it is first needed. Extinction beyond it is 0 and need not be sampled. `slack` is the offset of a ray's
+// start from its line.
 class Exits {
 public:
     Exits(const PackedExtinction* mips, const V start[3], const V direction[3], const V slack[3])
@@ -55,9 +56,9 @@ private:
             // Inside of the rim of empty bricks.
             const V low = hn::Sub(hn::Set(d, node(level.min_brick[a] + 1)), slack_[a]);
             const V high = hn::Add(hn::Set(d, node(level.min_brick[a] + level.extent[a] - 1)), slack_[a]);
-            const V way = hn::CopySign(hn::Max(hn::Abs(direction_[a]), hn::Set(d, 1e-20f)), direction_[a]);
-            const V bound = hn::IfThenElse(hn::Gt(way, hn::Zero(d)), high, low);
-            exit = hn::Min(exit, hn::Div(hn::Sub(bound, start_[a]), way));
+            const V slope = hn::CopySign(hn::Max(hn::Abs(direction_[a]), hn::Set(d, 1e-20f)), direction_[a]);
+            const V bound = hn::IfThenElse(hn::Gt(slope, hn::Zero(d)), high, low);
+            exit = hn::Min(exit, hn::Div(hn::Sub(bound, start_[a]), slope));
         }
         return hn::GetLane(hn::MaxOfLanes(d, exit));
     }
@@ -68,7 +69,7 @@ private:
     float exit_[ExtinctionPyramid::kMaxLevels] = {};
 };
 
-// Mean transmittance to the first stored distance over starts spread in the light's extent.
+// Mean transmittance to the first stored distance over starting points spread in the light's extent.
 HWY_INLINE V near_transmittance(D d, const PackedExtinction* mips, std::span<const ShadowStep> steps, const V origin[3],
                                 const V direction[3], const ShadowRays& rays, std::size_t ray) {
     const float reach = steps.back().distance + 0.5f * steps.back().length;
@@ -120,7 +121,7 @@ void march(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
     }
 }
 
-// Rays of one group of texels, from different places of the light's extent.
+// Rays of one group of texels from different points of the light's extent.
 struct Bundle {
     V offset[kParallelRays][3];
     V weight[kParallelRays];
@@ -156,7 +157,7 @@ HWY_INLINE V mean_transmittance(D d, Bundle& b) {
 
 constexpr std::size_t kMostStepsAtOnce = 4;  // one voxel long each
 
-// Are all lanes where the medium is even?
+// Whether all lanes lie in homogeneous bricks.
 HWY_INLINE bool all_even(D d, const HomogeneousBricks::View& parts, const ShadowStep& s, const V origin[3],
                          const V direction[3]) {
     const hn::RebindToSigned<D> di;
@@ -170,14 +171,14 @@ HWY_INLINE bool all_even(D d, const HomogeneousBricks::View& parts, const Shadow
     return hn::AllTrue(di, hn::Ne(hn::GatherIndex(di, parts.even, entry), hn::Zero(di)));
 }
 
-// All of `steps` in one.
+// Merges all of `steps` into one.
 inline ShadowStep stride_over(std::span<const ShadowStep> steps, int mip) {
     const float begin = steps.front().distance - 0.5f * steps.front().length;
     const float end = steps.back().distance + 0.5f * steps.back().length;
     return {0.5f * (begin + end), end - begin, mip, steps.back().store};
 }
 
-// Takes all of `steps` in one, if all lanes are where the medium is even.
+// Takes all of `steps` in one if all lanes lie in homogeneous bricks.
 HWY_INLINE bool stride(D d, const PackedExtinction* mips, std::span<const ShadowStep> steps, const V start[3],
                        const V direction[3], const HomogeneousStrides& strides, Bundle& bundle) {
     const ShadowStep s = stride_over(steps, strides.mip);
@@ -203,8 +204,7 @@ HWY_INLINE void march_bundle(D d, const PackedExtinction* mips, std::span<const 
     }
 }
 
-// The steps that lead to the next stored distance, or as many of them as a stride may take: no longer than a brick's
-// half.
+// The number of steps to the next stored distance, limited to what one stride may take: half a brick's length.
 inline std::size_t steps_at_once(std::span<const ShadowStep> steps, const HomogeneousStrides* strides) {
     std::size_t n = 1;
     while (n < steps.size() && steps[n - 1].store < 0 && (!strides || n < kMostStepsAtOnce))
@@ -255,20 +255,21 @@ void segments(const PackedExtinction& level, const float* const begin[3], const 
     const D d;
     const std::size_t lanes = hn::Lanes(d);
     for (std::size_t r = 0; r < count; r += lanes) {
-        V from[3], way[3];
+        V from[3], segment[3];
         V square = hn::Zero(d);
         for (int a = 0; a < 3; ++a) {
             from[a] = hn::LoadU(d, begin[a] + r);
-            way[a] = hn::Sub(hn::LoadU(d, end[a] + r), from[a]);
-            square = hn::MulAdd(way[a], way[a], square);
+            segment[a] = hn::Sub(hn::LoadU(d, end[a] + r), from[a]);
+            square = hn::MulAdd(segment[a], segment[a], square);
         }
         const float longest = hn::GetLane(hn::MaxOfLanes(d, hn::Sqrt(square)));
         const int steps = 1 + static_cast<int>(longest / step_nodes);
         V sum = hn::Zero(d);
         for (int s = 0; s < steps; ++s) {
             const V t = hn::Set(d, (s + 0.5f) / steps);
-            sum = hn::Add(sum, sample_extinction(d, level, hn::MulAdd(t, way[0], from[0]),
-                                                 hn::MulAdd(t, way[1], from[1]), hn::MulAdd(t, way[2], from[2])));
+            sum =
+                hn::Add(sum, sample_extinction(d, level, hn::MulAdd(t, segment[0], from[0]),
+                                               hn::MulAdd(t, segment[1], from[1]), hn::MulAdd(t, segment[2], from[2])));
         }
         hn::StoreU(hn::Mul(sum, hn::Mul(hn::LoadU(d, metres + r), hn::Set(d, 1.0f / steps))), d, depths + r);
     }

@@ -26,30 +26,31 @@ struct ShadowRays {
 };
 
 // Marches all rays from `origin` [nodes, relative to the reference]; transmittance of ray r at stored distance k goes
-// to out[r * distances + k], times 65535. Up to the first stored distance, where `near_steps` lead, the transmittance
-// is the mean over kNearRays rays from different places of the light's extent, all converging there.
+// to out[r * distances + k], times 65535. Up to the first stored distance, which `near_steps` reach, the transmittance
+// is the mean over kNearRays rays that start at different points of the light's extent and converge there.
 constexpr int kNearRays = 4;
 constexpr std::size_t kStarts = 64;
 void march_shadow_rays(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
                        std::span<const ShadowStep> steps, const vec3& origin, const ShadowRays& rays, int distances,
                        std::uint16_t* out);
 
-// Where rays may stride: where the middle of several steps lies in such a part, all rays take one in their stead, of
-// extinction averaged over `mip`.
+// Where rays may stride. Where the middle of several steps lies in homogeneous bricks for all rays, one step with
+// extinction from level `mip` replaces them.
 struct HomogeneousStrides {
     HomogeneousBricks::View parts;
     int mip;
 };
 
-// The same with the weighted mean over kParallelRays parallel rays all along, times `scale` in place of 65535.
-// `strides`: or null.
+// The same with the weighted mean over kParallelRays parallel rays along the full length, times `scale` instead of
+// 65535. `strides` may be null.
 constexpr int kParallelRays = 8;
 void march_parallel_rays(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
                          std::span<const ShadowStep> steps, const vec3& origin, const ShadowRays& rays, int distances,
                          float scale, std::uint16_t* out, const HomogeneousStrides* strides = nullptr);
 
-// Optical depths of `count` segments from planar begins to planar ends, in nodes of level 0 relative to the reference;
-// `metres` is each one's length. Midpoint rule, steps of at most `step_nodes` nodes. Arrays are padded to 16.
+// Computes the optical depths of `count` segments from planar begins to planar ends, in nodes of level 0 relative to
+// the reference; `metres` holds their lengths. It uses the midpoint rule with steps of at most `step_nodes` nodes.
+// Arrays are padded to 16.
 void segment_optical_depths(const PackedExtinction& level, const float* const begin[3], const float* const end[3],
                             const float* metres, float step_nodes, std::size_t count, float* depths);
 

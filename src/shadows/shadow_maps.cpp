@@ -23,11 +23,11 @@ float finest_step(const Medium& medium) {
     return std::max(edge, medium.spacing / 16.0f);
 }
 
-// Rays see density averaged over this share of the light's spacing at the light. Wide averages save steps and lose the
-// clumps of smoke in which fire burns: half a spacing let 5 % too much light through on real smoke, a sixteenth 1 %.
+// At the light, rays see density averaged over this share of the light's spacing. Wide averages save steps but lose the
+// clumps of smoke in which fire burns: on real smoke half a spacing let 5 % too much light through, a sixteenth 1 %.
 constexpr float kFilterShare = 0.0625f;
 
-// Of the pyramid that rays through even parts see: its averages reach no farther than such a part does.
+// The pyramid level that strides sample. Its averages reach no farther than a homogeneous brick does.
 constexpr int kStrideLevel = 2;
 
 // Steps one averaged voxel long over [begin, end]; averages shrink to single voxels at the far end of the range.
@@ -48,8 +48,8 @@ void add_steps(const ExtinctionPyramid& pyramid, const GridLevel& level, float f
         steps.back().store = store;
 }
 
-// Rays in the order in which they are marched: square tiles, so that rays of one vector run through the same smoke and
-// are all lost in it, or out of it, at about the same distance.
+// Rays in the order in which they are marched. They form square tiles, so that rays of one vector run through the same
+// smoke and become opaque in it, or leave it, at about the same distance.
 struct TexelTable {
     static constexpr int kTile = 4;  // texels along a side: 16 rays
     int resolution;
@@ -63,7 +63,7 @@ struct TexelTable {
             d.resize(rays);
         for (int u = 0; u < tiles * kTile; ++u)
             for (int v = 0; v < tiles * kTile; ++v) {
-                // Past the edge, the last texel once more.
+                // Past the edge, the last texel is repeated.
                 const float x = (2.0f * std::min(u, texels - 1) + 1.0f) / texels - 1.0f;
                 const float y = (2.0f * std::min(v, texels - 1) + 1.0f) / texels - 1.0f;
                 const vec3 nodes = medium.index_from_local * octahedral_direction(x, y);
@@ -76,7 +76,7 @@ struct TexelTable {
         const std::size_t tile = std::size_t(u / kTile) * tiles + v / kTile;
         return (tile * kTile + u % kTile) * kTile + v % kTile;
     }
-    // From the order of rays to rows of texels, `distances` values each.
+    // Copies values from the order of rays to rows of texels, `distances` values each.
     void put_in_rows(const std::vector<std::uint16_t>& marched, int distances, std::uint16_t* rows) const {
         for (int u = 0; u < resolution; ++u)
             for (int v = 0; v < resolution; ++v, rows += distances)
@@ -84,8 +84,8 @@ struct TexelTable {
     }
 };
 
-// Where rays of a light start: offsets from its centre [nodes] to kStarts of the voxels it stands for, in a scattered
-// order; the first 16 stand again at the end for whole-vector loads.
+// Where rays of a light start: offsets from its centre [nodes] to kStarts of the voxels it represents, in a scattered
+// order. The first 16 are repeated at the end for whole-vector loads.
 struct Starts {
     std::array<std::vector<float>, 3> offset;
     std::vector<float> weight;
@@ -95,15 +95,15 @@ struct Starts {
         for (auto& o : offset)
             o.assign(kStarts + 16, 0.0f);
     }
-    void set(std::size_t k, const vec3& way, float w) {
-        const std::size_t place = k * 27 % kStarts;  // 27 is prime to kStarts
+    void set(std::size_t k, const vec3& start, float w) {
+        const std::size_t slot = k * 27 % kStarts;  // 27 is prime to kStarts
         for (int a = 0; a < 3; ++a)
-            offset[a][place] = way[a];
-        weight[place] = w;
+            offset[a][slot] = start[a];
+        weight[slot] = w;
         picked = true;
     }
-    // Those of the light's voxels that were picked, local [m].
-    std::vector<vec3> places(const Medium& medium, const vec3& centre) const {
+    // Positions of the light's picked voxels, local [m].
+    std::vector<vec3> positions(const Medium& medium, const vec3& centre) const {
         std::vector<vec3> out;
         for (std::size_t k = 0; k < (picked ? kStarts : 0); ++k)
             out.push_back(centre + medium.local_from_index * vec3(offset[0][k], offset[1][k], offset[2][k]));
@@ -118,23 +118,23 @@ struct Starts {
 void pick_starts(FootprintPicker& picker, const Medium& medium, const GridLevel& level, std::size_t light,
                  const NodeWeights* escape, Starts& starts) {
     const vec3 centre = medium.index_from_local * level.position[light];
-    const auto way = [&](const ivec3& node) { return vec3(node - medium.reference_node) - centre; };
+    const auto from_centre = [&](const ivec3& node) { return vec3(node - medium.reference_node) - centre; };
     starts = Starts();
     if (escape) {
         const auto& picks = picker.pick(level.vertex[light], kStarts, *escape);
         for (std::size_t k = 0; k < picks.size(); ++k)
-            starts.set(k, way(picks[k].node), picks[k].weight);
+            starts.set(k, from_centre(picks[k].node), picks[k].weight);
     } else {
         const std::vector<ivec3>& picks = picker.pick(level.vertex[light], kStarts);
         for (std::size_t k = 0; k < picks.size(); ++k)
-            starts.set(k, way(picks[k]), 1.0f);
+            starts.set(k, from_centre(picks[k]), 1.0f);
     }
     starts.repeat_first();
 }
 
-// Copies the interior of a map into place and wraps its border: crossing an edge of the square continues on the same
-// edge mirrored about its middle.
-void place_with_border(const std::uint16_t* interior, const ShadowMapLayout& layout, std::uint16_t* map) {
+// Copies the interior of a map and wraps its border: a step across an edge of the square continues on the same edge,
+// mirrored about its middle.
+void copy_with_border(const std::uint16_t* interior, const ShadowMapLayout& layout, std::uint16_t* map) {
     const int r = layout.resolution;
     for (int i = -1; i <= r; ++i)
         for (int j = -1; j <= r; ++j) {
@@ -202,11 +202,11 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
             texels.put_in_rows(marched, layout.distances, interior.data());
             if (occluders) {
                 const vec3& position = level.position[light];
-                const std::vector<vec3> voxels = starts.places(medium, position);
+                const std::vector<vec3> voxels = starts.positions(medium, position);
                 cut_at_surfaces(*occluders, {position, voxels.empty() ? level.parts_of(light) : voxels}, layout,
                                 interior);
             }
-            place_with_border(interior.data(), layout, maps + k * layout.stride());
+            copy_with_border(interior.data(), layout, maps + k * layout.stride());
         }
     });
 }

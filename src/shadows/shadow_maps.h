@@ -1,23 +1,23 @@
-// Precomputed volumetric shadows: for every light of a hierarchy level a directional map of transmittance as a function
-// of distance. After [1] section on precomputed shadows (lighting_grid.h), with these choices of ours:
-//  - Octahedral maps with a wrapped border texel: bilinear in direction, linear in distance, continuous everywhere.
-//  - Range-limited: level l is only asked between alpha h_l / 2 and 2 alpha h_l (the top level: to the far end of the
-//    medium), so distances are sampled there alone.
-//  - What is stored and interpolated is transmittance, in 16 bits: a light stands for many, and the mean of their
-//    transmittances is what the receiver needs.
-//  - A light outside of the medium stands for no voxels, and its rays die within the smoke's skin, each at a place of
-//    its own. Transmittance interpolated there would be too much by a quarter: such maps have a sample for every voxel,
-//    and are interpolated as optical depth.
-//  - A light stands for a region, and near it the mean transmittance of that region is what counts, more than that of
-//    its centre (exp is convex, and fire burns where the smoke is dense): up to the nearest distance asked for, each
-//    texel averages several rays that start at voxels the light stands for, picked systematically in proportion to what
-//    they give it, and converge there.
+// Precomputed volumetric shadows: for every light of a hierarchy level, a directional map of transmittance as a
+// function of distance. They follow the section of [1] on precomputed shadows (lighting_grid.h), with these choices of
+// ours:
+//  - Maps are octahedral with a wrapped border texel: bilinear in direction, linear in distance, continuous everywhere.
+//  - Level l is only evaluated between alpha h_l / 2 and 2 alpha h_l (the top level: up to the far end of the medium),
+//    so distances are sampled there alone.
+//  - Maps store and interpolate transmittance, in 16 bits: a light represents many, and the receiver needs the mean of
+//    their transmittances.
+//  - A light outside of the medium represents no voxels, and each of its rays is extinguished at a different depth near
+//    the smoke's boundary. Interpolated transmittance would be too large by a quarter there, so such maps have a sample
+//    for every voxel and are interpolated as optical depth.
+//  - A light represents a region. Near it the mean transmittance of that region counts more than that of its centre,
+//    because exp is convex and fire burns where the smoke is dense. Up to the first stored distance, each texel
+//    therefore averages several rays. They start at voxels of the region, picked systematically in proportion to their
+//    contribution to the light, and converge at that distance.
 //  - For receivers outside of the medium, where a ray ends matters less than where it begins: rays from kParallelRays
-//    such voxels stay parallel all along. Voxels from which light escapes are picked more often, and count for less: in
-//    dense smoke few others would be among them.
-//  - Such rays take four steps in one where the medium is even around them (homogeneous_bricks.h), if they are told
-//  where:
-//    through a room full of haze they are long.
+//    such voxels stay parallel along their full length. Voxels from which light escapes are picked more often and weigh
+//    less; in dense smoke few of them would be picked otherwise.
+//  - Such rays take four steps in one inside homogeneous bricks (homogeneous_bricks.h), where these are given: rays
+//    through a room full of thin smoke are long.
 //  - Rays see density averaged over a sixteenth of the light's spacing near the light, shrinking to single voxels at
 //    the far end.
 #pragma once
@@ -47,15 +47,15 @@ struct ShadowMapLayout {
     std::size_t bytes_per_light() const { return stride() * 2; }
 };
 
-// The maps of the lights [first, first + count) of `level`, one after another in `maps` (transmittance over range times
-// 65535). `weights`: of the voxels that a light stands for, per node of the medium's lattice. `escape`: where
-// layout.for_outside, how likely light from a node is to leave the medium. `occluders`: surfaces that light does not
-// pass, or null.
+// Builds the maps of the lights [first, first + count) of `level`, one after another in `maps` (transmittance over
+// range times 65535). `weights` are those of the voxels that a light represents, per node of the medium's lattice.
+// `escape` is needed where layout.for_outside is set: how likely light from a node is to leave the medium. `occluders`
+// are surfaces that block light, or null.
 void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const NodeWeights& weights,
                        const NodeWeights* escape, const ShadowMapLayout& layout, std::size_t first, std::size_t count,
                        std::vector<std::uint16_t>& maps, const Occluders* occluders = nullptr);
 
-// Those of the lights in `list`, from `maps` on.
+// Builds the maps of the lights in `list`, one after another in `maps`.
 void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const NodeWeights& weights,
                        const NodeWeights* escape, const ShadowMapLayout& layout, std::span<const std::uint32_t> list,
                        std::uint16_t* maps, const Occluders* occluders = nullptr);

@@ -9,7 +9,7 @@ namespace brisance {
 
 namespace {
 
-constexpr std::size_t kParts = 2;  // asked for each texel
+constexpr std::size_t kParts = 2;  // tested for each texel
 
 float visible_share(const Occluders& occluders, const MappedLight& light, std::size_t texel, const vec3& to) {
     if (light.parts.empty())
@@ -23,7 +23,7 @@ float visible_share(const Occluders& occluders, const MappedLight& light, std::s
     return seen;
 }
 
-// Within which all of its rays to surfaces lie.
+// Radius around the light's centre within which all of its rays to surfaces lie.
 float reach_of(const MappedLight& light, const ShadowMapLayout& layout) {
     float reach = layout.far_distance;
     for (const vec3& part : light.parts)

@@ -1,4 +1,4 @@
-// What surfaces in the medium take from the shadow maps of a light.
+// Occlusion by surfaces in the medium, applied to the shadow maps of a light.
 #pragma once
 
 #include <array>
@@ -10,14 +10,14 @@
 
 namespace brisance {
 
-// A light as its maps know it.
+// The part of a light's data that its maps depend on.
 struct MappedLight {
     vec3 centre;                  // local [m]
-    std::span<const vec3> parts;  // places it stands for; none: it is where it is, and what lies close to it is its own
+    std::span<const vec3> parts;  // positions it represents; empty: the centre, and surfaces close to it do not hide it
 };
 
-// Clears, of the texels of one map without border (as march_shadow_rays writes it), what lies behind surfaces: up to
-// layout.near_distance as seen from kParts of the light's parts, from there on along the texel's direction.
+// Clears what lies behind surfaces in one map without border, as march_shadow_rays writes it. Up to
+// layout.near_distance visibility is that from kParts of the light's parts, from there on along the texel's direction.
 void cut_at_surfaces(const Occluders& occluders, const MappedLight& light, const ShadowMapLayout& layout,
                      std::span<std::uint16_t> interior);
 

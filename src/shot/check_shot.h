@@ -1,4 +1,4 @@
-// Settings that are fine one by one and contradict each other.
+// Rejects settings that are valid one by one but contradict each other.
 #pragma once
 
 #include <map>
@@ -8,7 +8,7 @@
 
 namespace brisance {
 
-// `given`: where each key that was given stands, by dotted path. Throws Error Usage.
+// `given` holds the source position of each given key by dotted path. Throws Error Usage.
 void check_shot(const Shot& shot, const std::map<std::string, std::string>& given, const std::string& source);
 
 }  // namespace brisance

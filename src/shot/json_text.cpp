@@ -61,10 +61,10 @@ private:
         path_.resize(depth);
         path_.back() = key;
         const std::string dotted = fmt::format("{}", fmt::join(path_, "."));
-        const auto [place, first] = line_of_key_.emplace(dotted, line_);
+        const auto [entry, first] = line_of_key_.emplace(dotted, line_);
         if (!first)
             throw Error(ExitCode::Usage, fmt::format("{}:{}: {} is given twice; it was given first on line {}", source_,
-                                                     line_, dotted, place->second));
+                                                     line_, dotted, entry->second));
     }
 
     const std::string& source_;

@@ -34,7 +34,7 @@ std::string nearest_key(const std::string& path, const std::vector<std::string>&
     std::string nearest;
     int least = std::numeric_limits<int>::max();
     for (const std::string& candidate : known) {
-        // A right name in the wrong place is a likelier mistake than two wrong letters.
+        // A right name in the wrong section is a likelier mistake than two wrong letters.
         const int moved = edit_distance(last_part(path), last_part(candidate)) + 1;
         const int distance = std::min(edit_distance(path, candidate), moved);
         if (distance < least) {

@@ -6,8 +6,8 @@
 
 namespace brisance {
 
-// What to say of a key that was renamed or taken out, with what takes its place; nothing for other keys. A section, or
-// a key: "particles", "particles.paths".
+// Returns the message for a section or key that was renamed or removed ("particles", "particles.paths"), with its
+// replacement, and nothing for other keys.
 std::optional<std::string> renamed_key(const std::string& path);
 
 // The same for a value that was renamed; `text`: the value as JSON.

@@ -11,13 +11,13 @@ namespace brisance {
 namespace {
 
 Json& at_path(Json& root, const std::string& path) {
-    Json* place = &root;
+    Json* node = &root;
     std::size_t begin = 0;
     for (std::size_t point = path.find('.'); point != std::string::npos; point = path.find('.', begin)) {
-        place = &(*place)[path.substr(begin, point - begin)];
+        node = &(*node)[path.substr(begin, point - begin)];
         begin = point + 1;
     }
-    return (*place)[path.substr(begin)];
+    return (*node)[path.substr(begin)];
 }
 
 Json resolved(const Shot& shot) {
@@ -52,7 +52,7 @@ bool holds_objects(const Json& json) {
     return json.is_object() || (json.is_array() && std::any_of(json.begin(), json.end(), holds_objects));
 }
 
-// Indented, with lists of plain values on one line.
+// Prints JSON indented, with lists of plain values on one line.
 void print(const Json& json, int depth, std::string& out) {
     if (!holds_objects(json)) {
         out += one_line(json);
@@ -114,11 +114,11 @@ std::string shot_schema() {
     };
     for (const Key& key : shot_keys()) {
         declare_sections_of(key.path);
-        Json& place = at_path(root, schema_path(key.path));
-        place = {{"description", key.help}};
-        place.update(key.schema);
+        Json& node = at_path(root, schema_path(key.path));
+        node = {{"description", key.help}};
+        node.update(key.schema);
         if (const std::optional<Json> value = key.get(defaults); value && key.path != "volume.file")
-            place["default"] = *value;
+            node["default"] = *value;
     }
     at_path(root, schema_path("volume"))["required"] = {"file"};
     return printed(root);

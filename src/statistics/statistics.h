@@ -24,7 +24,7 @@ struct Statistics {
     std::vector<std::string> cells;  // ledger cells that run, in the order of the sum
     std::vector<SkippedPart> skipped;
     std::vector<StageCost> stages;
-    nlohmann::ordered_json certificate;  // null: not asked for
+    nlohmann::ordered_json certificate;  // null: not requested
     std::vector<std::string> warnings;   // "code: line"
     std::vector<std::string> notices;
     double seconds = 0.0;

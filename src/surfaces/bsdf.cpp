@@ -181,7 +181,8 @@ Rgb Bsdf::straight_weight(const View& view) const {
     return (view.side == 0 ? through + sheet_ * view.base_share : through) * base_;
 }
 
-// In proportion to the light they carry from wo; facets, whose light the angle alone tells badly, never below a tenth.
+// Chooses lobes in proportion to the light they carry from wo. Facets never fall below a tenth, because the angle alone
+// predicts their light badly.
 void Bsdf::choose_lobes(View& view) const {
     const bool outside = view.side == 0;
     const float lost = static_cast<float>(view.lost), lost_both = static_cast<float>(view.lost_both);

@@ -7,8 +7,8 @@
 //                   Szirmay-Kalos, A Microfacet Based Coupled Specular-Matte BRDF Model, EG 2001);
 //   rough interface a GGX dielectric that reflects and refracts (Walter et al., Microfacet Models for Refraction
 //                   through Rough Surfaces, EGSR 2007), tinting by the base colour what it refracts.
-// A thin sheet takes the place of the interface where there is no thickness: the coat, and what it lets through goes
-// straight on, tinted, without a blur. It must face the viewer, as opaque surfaces must.
+// Where there is no thickness, a thin sheet replaces the interface: the coat, and light that it transmits continues
+// straight on, tinted, without a blur. The sheet must face the viewer, as opaque surfaces must.
 // Light that meets more than one facet comes back by lobes proportional to the cosine times what single scattering
 // misses in either direction (Kulla and Conty 2017, course notes "Revisiting Physically Based Shading at Imageworks").
 // Metal and coated diffuse are black from below.

@@ -120,7 +120,7 @@ Albedos albedos_of(const Numbers& n) {
     return {n[0], n[1], {n[2], n[3]}, {n[4], n[5]}, {n[6], n[7]}};
 }
 
-// Of `count` entries evenly over 0..1: the one below x, and how far x is on the way to the next.
+// Of `count` entries evenly over 0..1: the one below x, and the fraction by which x lies beyond it.
 std::pair<int, double> cell_of(double x, int count) {
     const double position = std::clamp(x, 0.0, 1.0) * (count - 1);
     const int cell = std::min(static_cast<int>(position), count - 2);
@@ -148,7 +148,7 @@ void add(const Entry& entry, double weight, Numbers& sum) {
 
 }  // namespace
 
-// A Fibonacci lattice: even along every line, which Fresnel's kinks and the horizon ask for.
+// A Fibonacci lattice is even along every line, which Fresnel's kinks and the horizon require.
 Albedos integrate_albedos(double ior, double alpha, double cosine, int least) {
     int points = 1, step = 1;
     while (points < least)

@@ -1,6 +1,6 @@
-// What light is lost between microfacets when only its first reflection or refraction counts, tabulated over
-// roughness and angle for one index of refraction: the ground that energy compensation stands on (Kulla and Conty,
-// Revisiting Physically Based Shading at Imageworks, SIGGRAPH 2017 course).
+// The light lost between microfacets when only its first reflection or refraction counts, tabulated over roughness and
+// angle for one index of refraction. It is the basis of energy compensation (Kulla and Conty, Revisiting Physically
+// Based Shading at Imageworks, SIGGRAPH 2017 course).
 //
 // Tables hold directional albedos: shares, 0..1, of light from one direction that leave at once. For every
 // roughness that is not smooth and a Fresnel term of 1 beyond the critical angle they are within 1e-3 of the integrals

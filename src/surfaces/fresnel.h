@@ -1,4 +1,4 @@
-// How much a plane interface reflects. Cosines are between a direction and the normal of its own side, 0..1.
+// Reflectance of a plane interface. Cosines are between a direction and the normal of its own side, 0..1.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// What a surface is made of, in the terms of glTF 2.0: metallic-roughness with KHR_materials_transmission, _ior and
-// _specular. Emission is not part of it.
+// The material of a surface in the terms of glTF 2.0: metallic-roughness (section 3.9.2) with
+// KHR_materials_transmission, _ior and _specular. Emission is not part of it.
 #pragma once
 
 #include "core/vec.h"

@@ -1,4 +1,4 @@
-// Even haze without a file.
+// Homogeneous fog without a file.
 #pragma once
 
 #include "volume/settings.h"
@@ -6,8 +6,8 @@
 
 namespace brisance {
 
-// Density 1 at all nodes of the box, faces included, and 0 beyond: outside of its faces it fades over one voxel.
-// Throws Error Temporary, beginning with `where`, when it needs more than `memory_limit_bytes`.
+// Returns density 1 at all nodes of the box, faces included, and 0 beyond. Outside of its faces it fades over one
+// voxel. Throws Error Temporary, beginning with `where`, when it needs more than `memory_limit_bytes`.
 BlockGrid fog_grid(const FogBox& box, std::uint64_t memory_limit_bytes, const std::string& where);
 
 }  // namespace brisance

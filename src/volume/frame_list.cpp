@@ -12,7 +12,7 @@
 namespace brisance {
 namespace {
 
-constexpr std::size_t kMostFrames = 1'000'000;  // beyond it a range is a typing mistake
+constexpr std::size_t kMostFrames = 1'000'000;  // more must be a typing mistake
 
 [[noreturn]] void reject(const std::string& list, const std::string& why) {
     throw Error(ExitCode::Usage, fmt::format("frames \"{}\": {}", list, why));

@@ -23,7 +23,7 @@ bool is_folder_part(const std::string& pattern, std::size_t position) {
 
 // Digits at the end of the file name's stem, as [begin, end) within the whole path; a point may follow them only as the
 // beginning of the extension.
-std::optional<std::pair<std::size_t, std::size_t>> number_place(const std::string& path) {
+std::optional<std::pair<std::size_t, std::size_t>> number_range(const std::string& path) {
     const std::size_t slash = path.rfind('/');
     const std::size_t name = slash == std::string::npos ? 0 : slash + 1;
     const std::size_t point = path.rfind('.');
@@ -173,18 +173,18 @@ std::string describe_frames(const std::vector<int>& frames) {
 
 std::optional<int> frame_number_of(const std::filesystem::path& file) {
     const std::string path = file.string();
-    const auto place = number_place(path);
-    return place ? to_int(std::string_view(path).substr(place->first, place->second - place->first)) : std::nullopt;
+    const auto range = number_range(path);
+    return range ? to_int(std::string_view(path).substr(range->first, range->second - range->first)) : std::nullopt;
 }
 
 std::optional<std::string> pattern_of(const std::filesystem::path& file) {
     std::string path = file.string();
-    const auto place = number_place(path);
-    if (!place)
+    const auto range = number_range(path);
+    if (!range)
         return std::nullopt;
-    const std::size_t digits = place->second - place->first;
-    const bool padded = digits > 1 && (path[place->first] == '0' || digits >= 4);
-    return path.replace(place->first, digits, padded ? std::string(digits, '#') : "#");
+    const std::size_t digits = range->second - range->first;
+    const bool padded = digits > 1 && (path[range->first] == '0' || digits >= 4);
+    return path.replace(range->first, digits, padded ? std::string(digits, '#') : "#");
 }
 
 std::vector<int> frames_on_disk(const std::string& pattern) {

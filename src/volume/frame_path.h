@@ -1,4 +1,4 @@
-// Numbered files: which file belongs to which frame, which frames are there, which are asked for.
+// Numbered files: which file belongs to which frame, which frames exist, and which are requested.
 //
 // Tokens, everywhere in a file name and in folder names: #### and @@@ (as many digits as signs), %04d and %d, $F4 and
 // $F, <frame04> and <frame>. Their width is the least number of digits; longer numbers keep all theirs. A single # or @
@@ -43,8 +43,9 @@ struct FrameFile {
 };
 
 // One file for each frame. Without `frames` all on disk; a pattern without token is one file: for its own number (or 1)
-// without `frames`, for every asked frame when its name holds no number, else for exactly one frame.
-// Throws Error as resolve_frame, for the first missing frame; Usage when a numbered file is asked for several frames.
+// without `frames`, for every requested frame when its name holds no number, else for exactly one frame.
+// Throws Error as resolve_frame, for the first missing frame; Usage when several frames are requested of a numbered
+// file.
 std::vector<FrameFile> resolve_sequence(const std::string& pattern, const std::optional<std::vector<int>>& frames);
 
 }  // namespace brisance

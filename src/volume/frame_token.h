@@ -16,7 +16,7 @@ struct FrameToken {
 // The first token of `part` at or after `from`. In a folder's name (`file_name` false) a single # or @ is none.
 std::optional<FrameToken> find_frame_token(const std::string& part, std::size_t from, bool file_name);
 
-// Every token of `part` replaced by the frame. As printf does, a minus sign takes one place of the width.
+// Replaces every token of `part` by the frame. As with printf, a minus sign takes one character of the width.
 std::string expand_tokens(const std::string& part, int frame, bool file_name);
 
 // The first thing in an expanded path that looks like a token or a variable; empty when nothing does.

@@ -22,7 +22,7 @@ struct Preset {
     RoleTable names;
 };
 
-// `heat` is burn intensity in Houdini and a kind of temperature in old Blender files: only a preset may tell.
+// `heat` is burn intensity in Houdini and a kind of temperature in old Blender files. Only a preset can decide.
 const Preset& preset_of(MappingPreset which) {
     static const Preset automatic{"automatic",
                                   {{{"density", "smoke", "dens", "soot"},
@@ -234,11 +234,11 @@ std::string GridMapping::describe() const {
 GridMapping map_grids(const std::vector<GridInfo>& grids, const VolumeSettings& settings, const std::string& file) {
     GridMapping mapping;
     const Preset& preset = preset_of(settings.preset);
-    const auto choose = [&](Role role, const std::optional<std::string>& asked) -> std::optional<GridChoice> {
-        if (!asked)
+    const auto choose = [&](Role role, const std::optional<std::string>& requested) -> std::optional<GridChoice> {
+        if (!requested)
             return choose_by_name(grids, role, preset, mapping);
-        return asked->empty() ? std::nullopt
-                              : std::optional<GridChoice>(choose_named(grids, role, *asked, file, mapping));
+        return requested->empty() ? std::nullopt
+                                  : std::optional<GridChoice>(choose_named(grids, role, *requested, file, mapping));
     };
     mapping.density = choose(Density, settings.grids.density);
     mapping.temperature = choose(Temperature, settings.grids.temperature);

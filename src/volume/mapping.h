@@ -1,4 +1,4 @@
-// From the grids of a file to the roles they play: by name, by preset, or automatically; always printed.
+// Maps the grids of a file to their roles by name, by preset, or automatically. The choice is always printed.
 #pragma once
 
 #include <optional>

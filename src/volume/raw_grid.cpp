@@ -178,8 +178,8 @@ void fill_histogram(const RawGrid<T>& grid, int bins, GridCensus& census) {
         const Voxel<Channels, T> voxel(stored);
         if (!voxel.finite)
             return;
-        const double place = (voxel.measure() - census.minimum) * scale;
-        histogram[std::min(static_cast<std::size_t>(std::max(place, 0.0)), count - 1)] += times;
+        const double bin = (voxel.measure() - census.minimum) * scale;
+        histogram[std::min(static_cast<std::size_t>(std::max(bin, 0.0)), count - 1)] += times;
     };
     constexpr std::size_t per_part = 1024;
     std::vector<std::vector<std::uint64_t>> parts((grid.leaves.size() + per_part - 1) / per_part);

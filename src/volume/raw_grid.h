@@ -1,5 +1,5 @@
-// A grid's voxels as they lie in memory after loading, and what is made of them. No OpenVDB type appears here: the
-// door (read_vdb.cpp) hands over pointers, this side counts and copies.
+// A grid's voxels as they lie in memory after loading, and functions that count and copy them. No OpenVDB type appears
+// here: read_vdb.cpp passes plain pointers.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The only door to OpenVDB: files and trees come in, plain data goes out.
+// The only file that includes OpenVDB. It turns files and trees into plain data.
 #include <fmt/format.h>
 #include <openvdb/io/File.h>
 #include <openvdb/io/GridDescriptor.h>
@@ -31,7 +31,7 @@ std::string clean(const std::string& text) {
     return result;
 }
 
-// Runs `body` and turns whatever OpenVDB throws, damaged files included, into one line about `where`.
+// Runs `body` and turns any exception of OpenVDB, damaged files included, into an Error with one line about `where`.
 template <class Body>
 auto guarded(const std::string& where, const Body& body) {
     const char* const remedy = "write or copy the file again";
@@ -199,7 +199,7 @@ public:
         return index;
     }
 
-    // Never throws for one bad grid among good ones: it is described as unusable.
+    // Describes a bad grid among good ones as unusable instead of throwing.
     GridInfo describe(std::size_t k) {
         GridInfo info;
         info.name = name(k);

@@ -10,7 +10,7 @@ namespace brisance {
 
 enum class MappingPreset { Automatic, Houdini, EmberGen, Mantaflow };
 
-// Names a grid as "name" or "name[index]". An absent optional asks for automatic mapping, an empty string for no grid.
+// Names a grid as "name" or "name[index]". An absent optional means automatic mapping, an empty string no grid.
 struct GridRoles {
     std::optional<std::string> density;
     std::optional<std::string> temperature;
@@ -18,9 +18,9 @@ struct GridRoles {
     std::optional<std::string> colour;
 };
 
-// Even haze of density 1 in place of a file.
+// Homogeneous fog of density 1 instead of a file.
 struct FogBox {
-    dvec3 low{0.0}, high{0.0};  // [m], in the file's place: `up` and `world_from_file` move it
+    dvec3 low{0.0}, high{0.0};  // [m], in the file's space: `up` and `world_from_file` transform it
     double voxel_metres = 0.0;  // 0: a 32nd of its longest side
 };
 
@@ -34,7 +34,8 @@ struct VolumeSettings {
     dmat4 world_from_file{1.0};  // affine; applied after `up`
 };
 
-// Both of them in one. Throws Error Usage, beginning with `where`, when the matrix is not affine or cannot be inverted.
+// Returns `up` and `world_from_file` as one matrix. Throws Error Usage, beginning with `where`, when the matrix is not
+// affine or cannot be inverted.
 dmat4 placement(const VolumeSettings& settings, const std::string& where);
 
 }  // namespace brisance

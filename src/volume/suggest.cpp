@@ -8,7 +8,7 @@
 namespace brisance {
 namespace {
 
-constexpr double kOpticalDepth = 10.0;   // of a dense way through the smoke: opaque, yet not a wall
+constexpr double kOpticalDepth = 10.0;   // of a dense path through the smoke: opaque, yet not a wall
 constexpr double kDensestPath = 1.2;     // over maximum times width; 0.6 to 1.8 in simulated fires, clouds, explosions
 constexpr double kSurelyKelvin = 100.0;  // below it no fire's temperature is in kelvin
 constexpr double kKelvinPerUnit = 1000.0;   // of simulations whose temperature is a small number

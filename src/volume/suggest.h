@@ -1,4 +1,4 @@
-// A first look for a file without a shot, guessed from its numbers alone.
+// Guesses a first look for a file without a shot from its numbers alone.
 #pragma once
 
 #include <string>
@@ -28,7 +28,8 @@ struct SuggestedLook {
     std::vector<std::string> notes;        // why, one line each
 };
 
-// nullptr: no grid plays this role. Depends on nothing but its arguments: guess once for a sequence, else it flickers.
+// A null pointer means that no grid plays this role. The result depends on the arguments alone, so guess once for a
+// sequence: separate guesses would flicker.
 SuggestedLook suggest_look(const MeasuredGrid* density, const MeasuredGrid* flame, const MeasuredGrid* temperature);
 
 }  // namespace brisance

@@ -23,7 +23,7 @@ struct GridCensus {
     std::vector<std::uint64_t> histogram;  // equal bins over [minimum, maximum]; filled by inspection only
 };
 
-// What a file says of one grid, readable without its voxels.
+// A file's metadata of one grid, readable without its voxels.
 struct GridInfo {
     std::string name;          // may be empty
     int index = 0;             // among the grids of this name, in file order
@@ -41,8 +41,8 @@ struct GridInfo {
 
 // A grid's voxels as 8^3 blocks aligned to multiples of 8, sorted by (x, y, z) of the block origin.
 // Inside a block x is the slowest and z the fastest index, channels interleaved innermost. Inactive voxels hold 0.
-// Active tiles are expanded, blocks that hold nothing but 0 left out. Non-finite values have become 0 and are counted
-// in `census`; negative ones are counted and kept: whoever reads them clamps.
+// Active tiles are expanded and blocks that hold nothing but 0 left out. Non-finite values have become 0 and are
+// counted in `census`. Negative values are counted and kept; readers must clamp them.
 struct BlockGrid {
     static constexpr int kBlock = 8;
     GridInfo info;

@@ -1,5 +1,5 @@
-// Layout of the skeleton: magic, versions, flags, UUID, file metadata, then per grid a descriptor that gives the
-// place where the grid ends, at which the next descriptor begins.
+// Layout of the skeleton: magic, versions, flags, UUID, file metadata, then per grid a descriptor with the offset at
+// which the grid ends and the next descriptor begins.
 #include "volume/vdb_header.h"
 
 #include <fmt/format.h>
@@ -22,7 +22,7 @@ constexpr std::uint32_t kGridOffsets = 212, kInstancing = 216, kTextUuid = 218, 
                         kCompressionPerGrid = 222;
 constexpr std::uint32_t kLongestName = 1u << 16;
 
-// Little-endian reads that know how far the file reaches.
+// Little-endian reads that check the end of the file.
 class ByteReader {
 public:
     ByteReader(const std::filesystem::path& file, std::uint64_t size)
@@ -44,19 +44,19 @@ public:
     std::string text() {
         const auto length = number<std::uint32_t>();
         if (length > kLongestName)
-            throw_damaged(fmt::format("a name of {} bytes at byte {}", length, place_));
+            throw_damaged(fmt::format("a name of {} bytes at byte {}", length, offset_));
         std::string result(length, '\0');
         take(result.data(), length);
         return result;
     }
 
-    void skip(std::uint64_t bytes) { go_to(place_ + bytes); }
+    void skip(std::uint64_t bytes) { go_to(offset_ + bytes); }
 
-    void go_to(std::uint64_t place) {
-        if (place > size_)
-            throw_truncated(fmt::format("something ends at byte {}", place));
-        place_ = place;
-        stream_.seekg(static_cast<std::streamoff>(place));
+    void go_to(std::uint64_t offset) {
+        if (offset > size_)
+            throw_truncated(fmt::format("something ends at byte {}", offset));
+        offset_ = offset;
+        stream_.seekg(static_cast<std::streamoff>(offset));
     }
 
     [[noreturn]] void throw_truncated(const std::string& what) const {
@@ -70,22 +70,22 @@ public:
                     fmt::format("{}: damaged VDB: {}; write or copy the file again", file_.string(), what));
     }
 
-    std::uint64_t place() const { return place_; }
+    std::uint64_t offset() const { return offset_; }
 
 private:
     void take(void* destination, std::uint64_t bytes) {
-        if (place_ + bytes > size_)
-            throw_truncated(fmt::format("its header goes on at byte {}", place_));
+        if (offset_ + bytes > size_)
+            throw_truncated(fmt::format("its header goes on at byte {}", offset_));
         stream_.read(static_cast<char*>(destination), static_cast<std::streamsize>(bytes));
         if (!stream_)
-            throw Error(ExitCode::BadData, fmt::format("{}: reading failed at byte {}", file_.string(), place_));
-        place_ += bytes;
+            throw Error(ExitCode::BadData, fmt::format("{}: reading failed at byte {}", file_.string(), offset_));
+        offset_ += bytes;
     }
 
     std::ifstream stream_;
     std::filesystem::path file_;
     std::uint64_t size_;
-    std::uint64_t place_ = 0;
+    std::uint64_t offset_ = 0;
 };
 
 std::uint64_t size_of_readable_file(const std::filesystem::path& file) {
@@ -120,7 +120,7 @@ bool begins_with_magic(const std::string& bytes) {
     return bytes.starts_with(magic);
 }
 
-// A damaged count or size in here would keep OpenVDB busy for minutes; this reader stops at the end of the file.
+// A damaged count or size here would keep OpenVDB busy for minutes. This reader stops at the end of the file.
 void skip_metadata(ByteReader& reader) {
     const auto entries = reader.number<std::uint32_t>();
     for (std::uint32_t i = 0; i < entries; ++i) {
@@ -160,14 +160,14 @@ void read_descriptors(ByteReader& reader, VdbHeader& header) {
         const std::string shown = name.substr(0, name.find('\x1e'));
         if (end > header.file_bytes)
             reader.throw_truncated(fmt::format("grid \"{}\" ({} of {}) ends at byte {}", shown, i + 1, count, end));
-        if (begin < reader.place() || end < begin)
+        if (begin < reader.offset() || end < begin)
             reader.throw_damaged(fmt::format("grid \"{}\" ends before it begins", shown));
         reader.go_to(begin);
         if (header.file_version >= kCompressionPerGrid)
             reader.skip(sizeof(std::uint32_t));
         skip_metadata(reader);
         reader.text();  // type of the transform
-        if (reader.place() > end)
+        if (reader.offset() > end)
             reader.throw_damaged(fmt::format("the metadata of grid \"{}\" reach beyond its end", shown));
         reader.go_to(end);
         header.grid_names.push_back(name);

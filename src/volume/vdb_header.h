@@ -1,5 +1,5 @@
-// The skeleton of a .vdb file, read without OpenVDB: is it one, is it whole, which grids should it hold.
-// OpenVDB trusts sizes it finds in a file; checking them first turns a crash or garbage into a sentence.
+// Reads the skeleton of a .vdb file without OpenVDB: whether it is one, whether it is whole, and which grids it should
+// hold. OpenVDB trusts the sizes in a file. Checking them first turns a crash or garbage into an error message.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,11 @@ struct VdbHeader {
     std::uint64_t file_bytes = 0;
 };
 
-// Throws Error MissingInput when there is no such file, BadData when it is no VDB (naming what it looks like), when it
-// ends before the place its own table of grids gives as the end of one, or when that table makes no sense.
+// Throws Error MissingInput when there is no such file, and BadData when it is no VDB (naming what it looks like), when
+// it ends before the end of a grid in its own table, or when that table makes no sense.
 VdbHeader read_vdb_header(const std::filesystem::path& file);
 
-// What the first bytes of a file that is no VDB look like: "a Git LFS pointer: ...". Ends with what would fix it.
+// Describes the first bytes of a file that is no VDB: "a Git LFS pointer: ...". Ends with the remedy.
 std::string describe_foreign_file(const std::string& first_bytes);
 
 }  // namespace brisance

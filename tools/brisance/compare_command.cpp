@@ -45,8 +45,8 @@ struct Objections {
 
 // Each line once, however many frames give rise to it.
 void notice(const std::string& line) {
-    static std::set<std::string> told;
-    if (told.insert(line).second)
+    static std::set<std::string> printed;
+    if (printed.insert(line).second)
         fmt::print(stderr, "notice: {}\n", line);
 }
 
@@ -58,9 +58,9 @@ std::string shown_layers(const std::vector<std::string>& layers) {
 }
 
 std::vector<FrameFiles> files_of(const CompareOptions& options) {
-    const std::optional<std::vector<int>> asked =
+    const std::optional<std::vector<int>> requested =
         options.frames.empty() ? std::nullopt : std::optional(parse_frames(options.frames));
-    const std::vector<FrameFile> images = resolve_sequence(options.image, asked);
+    const std::vector<FrameFile> images = resolve_sequence(options.image, requested);
     for (const std::string& pattern : options.references)
         if (images.size() > 1 && !has_frame_token(pattern))
             throw Error(ExitCode::Usage, fmt::format("{} is one reference for {} frames; put #### where the frame "
@@ -136,7 +136,7 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// A file with one picture alone, as other renderers write them, is whatever it is asked for.
+// A file with a single picture, as other renderers write them, stands for whatever layer is requested.
 std::vector<std::string> parts_in(const Loaded& reference, const std::string& layers) {
     const std::vector<std::string> there = picture_layers(reference.image);
     return there.size() == 1 ? there : split(layers);

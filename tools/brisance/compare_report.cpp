@@ -65,11 +65,11 @@ std::string shown_frame(const std::optional<int>& frame) {
     return frame ? fmt::format("{}", *frame) : "-";
 }
 
-std::string place(const ComparedFrame& frame, const std::string& layer) {
+std::string location(const ComparedFrame& frame, const std::string& layer) {
     return frame.frame ? fmt::format("{} of frame {}", shown_layer(layer), *frame.frame) : shown_layer(layer);
 }
 
-std::string place(const ComparedChange& change, const std::string& layer) {
+std::string location(const ComparedChange& change, const std::string& layer) {
     return fmt::format("{} from frame {} to {}", shown_layer(layer), change.from, change.to);
 }
 
@@ -85,10 +85,10 @@ void judge(const std::vector<Part>& parts, const Metric<Result>& metric, double 
             const NotFinite& bad = result.not_finite;
             if (!(std::abs(*value) <= limit))
                 lines.push_back(
-                    fmt::format("{} of {} is {:.6g}, above {:g}", metric.name, place(part, layer), *value, limit));
+                    fmt::format("{} of {} is {:.6g}, above {:g}", metric.name, location(part, layer), *value, limit));
             else if (bad.image + bad.reference > 0)
                 lines.push_back(fmt::format("{} of {} leaves out {} pixels that are not finite", metric.name,
-                                            place(part, layer), bad.image + bad.reference));
+                                            location(part, layer), bad.image + bad.reference));
         }
     }
 }
@@ -175,7 +175,7 @@ std::string not_finite_lines(const CompareReport& report) {
                 text += fmt::format(
                     "NOT FINITE: {} pixels of the image and {} of the reference in {}: wholly different to flip, left "
                     "out of the other measures\n",
-                    bad.image, bad.reference, place(frame, layer));
+                    bad.image, bad.reference, location(frame, layer));
     return text;
 }
 

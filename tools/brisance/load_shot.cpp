@@ -82,12 +82,12 @@ std::string volume_pattern(const Shot& shot) {
     return shot.volume.file.empty() ? "" : (shot.folder / shot.volume.file).string();
 }
 
-std::vector<FrameFile> resolve_frames(const Shot& shot, const std::optional<std::vector<int>>& asked) {
+std::vector<FrameFile> resolve_frames(const Shot& shot, const std::optional<std::vector<int>>& requested) {
     std::vector<FrameFile> frames;
     if (!shot.volume.file.empty())
-        frames = resolve_sequence(volume_pattern(shot), asked);
+        frames = resolve_sequence(volume_pattern(shot), requested);
     else
-        for (const int frame : asked.value_or(std::vector<int>{1}))
+        for (const int frame : requested.value_or(std::vector<int>{1}))
             frames.push_back({frame, {}});
     for (const FrameFile& frame : frames)
         for (const fs::path& file : further_files(shot, frame.frame))

@@ -19,8 +19,8 @@ Shot load_shot(const std::string& input, const ShotOptions& options, Progress& p
 // The volume's path or pattern, seen from the current folder.
 std::string volume_pattern(const Shot& shot);
 
-// The frames of a shot and their .vdb files, which are empty where the shot has no volume; then frame 1 where none is
-// asked for. Throws Error as resolve_sequence.
-std::vector<FrameFile> resolve_frames(const Shot& shot, const std::optional<std::vector<int>>& asked);
+// Returns the frames of a shot and their .vdb files. Where the shot has no volume, files are empty, and frame 1 is the
+// default. Throws Error as resolve_sequence.
+std::vector<FrameFile> resolve_frames(const Shot& shot, const std::optional<std::vector<int>>& requested);
 
 }  // namespace brisance

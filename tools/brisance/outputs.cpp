@@ -20,14 +20,14 @@ std::string default_name(const Shot& shot, bool several) {
     return name + (several && !has_frame_token(name) ? ".####.exr" : ".exr");
 }
 
-std::string output_pattern(const Shot& shot, const std::string& asked, bool several) {
+std::string output_pattern(const Shot& shot, const std::string& requested, bool several) {
     std::error_code error;
-    if (asked.empty() && shot.output.path.empty())
+    if (requested.empty() && shot.output.path.empty())
         return default_name(shot, several);
-    const fs::path path = asked.empty() ? shot.folder / shot.output.path : fs::path(asked);
+    const fs::path path = requested.empty() ? shot.folder / shot.output.path : fs::path(requested);
     if (!path.has_filename() || fs::is_directory(path, error))
         return (path / default_name(shot, several)).string();
-    const std::string origin = asked.empty() ? "output.path" : "-o";
+    const std::string origin = requested.empty() ? "output.path" : "-o";
     if (path.extension() != ".exr")
         throw Error(ExitCode::Usage, fmt::format("{} names the EXR and must end in .exr: {}", origin, path.string()));
     if (several && !has_frame_token(path.string()))
@@ -58,9 +58,9 @@ void refuse_overwriting(const FrameOutput& output, const fs::path& input) {
 
 }  // namespace
 
-std::vector<FrameOutput> plan_outputs(const Shot& shot, const std::string& asked, const std::vector<FrameFile>& frames,
-                                      const fs::path& input) {
-    const std::string pattern = output_pattern(shot, asked, frames.size() > 1);
+std::vector<FrameOutput> plan_outputs(const Shot& shot, const std::string& requested,
+                                      const std::vector<FrameFile>& frames, const fs::path& input) {
+    const std::string pattern = output_pattern(shot, requested, frames.size() > 1);
     std::vector<FrameOutput> outputs;
     std::map<fs::path, int> frame_of;
     for (const FrameFile& frame : frames) {
@@ -87,19 +87,20 @@ std::vector<FrameOutput> plan_outputs(const Shot& shot, const std::string& asked
     return outputs;
 }
 
-std::vector<fs::path> plan_checkpoints(const Shot& shot, const std::string& asked, const std::vector<FrameFile>& frames,
-                                       const std::vector<FrameOutput>& outputs, const fs::path& input) {
+std::vector<fs::path> plan_checkpoints(const Shot& shot, const std::string& requested,
+                                       const std::vector<FrameFile>& frames, const std::vector<FrameOutput>& outputs,
+                                       const fs::path& input) {
     std::vector<fs::path> checkpoints(frames.size());
-    if (asked.empty())
+    if (requested.empty())
         return checkpoints;
     if (shot.method != RenderMethod::Path)
         throw Error(ExitCode::Usage, "--checkpoint keeps the state of the path tracer; give --method path with it");
-    if (frames.size() > 1 && !has_frame_token(asked))
+    if (frames.size() > 1 && !has_frame_token(requested))
         throw Error(ExitCode::Usage, fmt::format("--checkpoint: several frames would be kept in {}; put #### where the "
                                                  "frame number goes",
-                                                 asked));
+                                                 requested));
     for (std::size_t i = 0; i < frames.size(); ++i) {
-        checkpoints[i] = expand(asked, frames[i].frame);
+        checkpoints[i] = expand(requested, frames[i].frame);
         std::vector<fs::path> taken = files_of(outputs[i]);
         taken.insert(taken.end(), {input, frames[i].file});
         for (const fs::path& file : taken) {

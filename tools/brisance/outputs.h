@@ -20,17 +20,17 @@ struct FrameOutput {
     LightPictureFiles lights;                     // STEM.virtual_lights.*; empty: not wanted
 };
 
-// One output for each frame. `asked`: the EXR of the command line, or a folder for it, relative to the current folder;
-// empty: the shot's, relative to the shot's folder; if that is empty too, the shot's name in the current folder.
-// `inputs` are never overwritten. Throws Error Usage (no .exr; several frames would get one name; an input would be
-// overwritten), CannotCreate or OutputFailed when a folder is missing or cannot be written into.
-std::vector<FrameOutput> plan_outputs(const Shot& shot, const std::string& asked, const std::vector<FrameFile>& frames,
-                                      const std::filesystem::path& input);
+// One output for each frame. `requested`: the EXR of the command line, or a folder for it, relative to the current
+// folder; empty: the shot's, relative to the shot's folder; if that is empty too, the shot's name in the current
+// folder. `inputs` are never overwritten. Throws Error Usage (no .exr; several frames would get one name; an input
+// would be overwritten), CannotCreate or OutputFailed when a folder is missing or cannot be written into.
+std::vector<FrameOutput> plan_outputs(const Shot& shot, const std::string& requested,
+                                      const std::vector<FrameFile>& frames, const std::filesystem::path& input);
 
-// One checkpoint for each frame: `asked` with the frame's number in it, or nothing for all when it is empty. Throws
+// One checkpoint for each frame: `requested` with the frame's number in it, or nothing for all when it is empty. Throws
 // Error Usage (no frame token for several frames; the method keeps none; it is a file that is read or written as
 // something else), CannotCreate or OutputFailed as plan_outputs.
-std::vector<std::filesystem::path> plan_checkpoints(const Shot& shot, const std::string& asked,
+std::vector<std::filesystem::path> plan_checkpoints(const Shot& shot, const std::string& requested,
                                                     const std::vector<FrameFile>& frames,
                                                     const std::vector<FrameOutput>& outputs,
                                                     const std::filesystem::path& input);

@@ -1,4 +1,4 @@
-// What a render tells the person who waits, or the log that is read later. Everything goes to standard error.
+// Progress reports of a render for a terminal or a log. Everything goes to standard error.
 #pragma once
 
 #include <atomic>

@@ -61,7 +61,7 @@ bool attempt(const std::string& what, const std::function<void()>& work, TextPro
     }
 }
 
-std::optional<std::vector<int>> asked_frames(const RenderOptions& options) {
+std::optional<std::vector<int>> requested_frames(const RenderOptions& options) {
     return options.frames.empty() ? std::nullopt : std::optional(parse_frames(options.frames));
 }
 
@@ -70,12 +70,12 @@ std::optional<std::vector<int>> asked_frames(const RenderOptions& options) {
 std::vector<FrameFile> usable_frames(const Shot& shot, const RenderOptions& options, TextProgress& progress,
                                      Failures& failures) {
     const std::string pattern = volume_pattern(shot);
-    const std::optional<std::vector<int>> asked = asked_frames(options);
+    const std::optional<std::vector<int>> requested = requested_frames(options);
     std::vector<FrameFile> frames;
-    if (!options.keep_going || !asked || pattern.empty()) {
-        frames = resolve_frames(shot, asked);
+    if (!options.keep_going || !requested || pattern.empty()) {
+        frames = resolve_frames(shot, requested);
     } else {
-        for (const int frame : *asked)
+        for (const int frame : *requested)
             attempt(
                 "",
                 [&] {
@@ -156,7 +156,7 @@ void announce(const fs::path& file) {
     std::fflush(stdout);
 }
 
-// Their mean is the picture, their difference tells its noise; what is certified is the picture.
+// The halves' mean is the picture, and their difference shows its noise. The certificate is about the picture.
 void write_halves(const RenderedFrame& frame, const FrameOutput& output, Progress& progress) {
     if (output.halves[0].empty())
         return;

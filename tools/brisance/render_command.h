@@ -19,7 +19,7 @@ struct RenderOptions {
     std::vector<std::string> overrides;
     std::string checkpoint;          // where the state of a long render is kept, and taken up; empty: nowhere
     std::vector<std::string> debug;  // pictures of how a method works: kDebugVirtualLights
-    bool certify = false;            // also where the shot does not ask for it
+    bool certify = false;            // also where the shot does not enable it
     int threads = 0;                 // 0: all processors
     bool explain = false;
     bool print_config = false;

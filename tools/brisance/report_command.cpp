@@ -111,7 +111,7 @@ std::vector<std::string> reference_settings(const ReportOptions& options, const 
             "output.halves=true"};
 }
 
-// The words that render with `settings` over the shot as it was asked for.
+// The words that render with `settings` over the shot as given.
 std::string render_command(const ReportOptions& options, const std::vector<std::string>& settings,
                            const std::string& output) {
     std::vector<std::string> words = {"brisance", "render", options.input};

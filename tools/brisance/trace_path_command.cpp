@@ -13,8 +13,8 @@ namespace brisance {
 namespace {
 
 FrameFile only_frame(const Shot& shot, const TracePathOptions& options) {
-    const auto asked = options.frames.empty() ? std::nullopt : std::optional(parse_frames(options.frames));
-    const std::vector<FrameFile> frames = resolve_frames(shot, asked);
+    const auto requested = options.frames.empty() ? std::nullopt : std::optional(parse_frames(options.frames));
+    const std::vector<FrameFile> frames = resolve_frames(shot, requested);
     if (frames.size() != 1)
         throw Error(ExitCode::Usage,
                     fmt::format("a path belongs to one frame, not to {}; choose it with -f", frames.size()));
@@ -39,7 +39,7 @@ std::string triple(const T& v) {
     return fmt::format("{} {} {}", v.x, v.y, v.z);
 }
 
-std::string place(const dvec3& p) {
+std::string coordinates(const dvec3& p) {
     return fmt::format("{:.9g} {:.9g} {:.9g}", p.x, p.y, p.z);
 }
 
@@ -50,7 +50,7 @@ void print_vertices(const TracedPath& path) {
     for (const TracedVertex& vertex : path.vertices)
         fmt::print("  {:<6} {} {}  throughput {}  along {}  from fire {}  from emitters {}{}\n",
                    vertex_name(vertex, path.has_cells), vertex.on_surface ? "on a surface at" : "at",
-                   place(vertex.position), triple(vertex.throughput), triple(vertex.along_segment),
+                   coordinates(vertex.position), triple(vertex.throughput), triple(vertex.along_segment),
                    triple(vertex.from_fire), triple(vertex.from_emitters), finite(vertex) ? "" : "  NOT FINITE");
 }
 

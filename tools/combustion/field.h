@@ -37,7 +37,7 @@ inline vec3 face_offset(int axis) {
     return offset;
 }
 
-// The eight samples around a position and the position's place between them; clamped to the field.
+// The eight samples around a position, clamped to the field, and the position's fractions between them.
 struct Stencil {
     std::size_t base;
     std::size_t step_x, step_y, step_z;

@@ -1,5 +1,5 @@
-// How much of its heat each place can radiate away: all of it at the skin of the cloud, little of it deep inside or in
-// a crease. This is what leaves a dark crust over a glowing interior.
+// The share of its heat that each cell can radiate away: all of it at the boundary of the cloud, little of it deep
+// inside or in a crease. This leaves a dark crust over a glowing interior.
 #pragma once
 
 #include "field.h"

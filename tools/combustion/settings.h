@@ -8,7 +8,7 @@ namespace brisance::combustion {
 struct Settings {
     int resolution = 96;         // voxels across the domain; rounded up to a multiple of 16
     std::uint32_t seed = 1;      // of the puffs and of the turbulence
-    float width = 16.0f;         // of the domain, both ways [m]
+    float width = 16.0f;         // of the domain, along both horizontal axes [m]
     float height_ratio = 1.25f;  // domain height over its width
     float frame_rate = 24.0f;    // [1/s]
     float courant = 2.0f;        // most cells crossed in one step

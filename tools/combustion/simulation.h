@@ -4,7 +4,7 @@
 // [1] Nguyen, Fedkiw & Jensen, Physically Based Modeling and Animation of Fire, SIGGRAPH 2002: cooling (eq. 13),
 //     buoyancy and confinement on a marker-and-cell grid.
 // [2] Feldman, O'Brien & Arikan, Animating Suspended Particle Explosions, SIGGRAPH 2003: expansion as a divergence
-//     asked of the pressure solve.
+//     imposed on the pressure solve.
 // [3] Fedkiw, Stam & Jensen, Visual Simulation of Smoke, SIGGRAPH 2001: vorticity confinement (eq. 9-11).
 // [4] Majda & Sethian, The derivation and numerical solution of the equations for zero Mach number combustion,
 //     Combust. Sci. Technol. 42, 1985: div u = (1/T) DT/Dt at constant pressure.
@@ -80,7 +80,7 @@ private:
     CurlNoise turbulence_;
     Mixture mixture_;
     FaceVelocity velocity_;
-    Field<float> expansion_;  // divergence asked of the flow [1/s]
+    Field<float> expansion_;  // divergence imposed on the flow [1/s]
     Multigrid multigrid_;
 };
 

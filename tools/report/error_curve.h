@@ -8,7 +8,7 @@ namespace brisance {
 
 struct CurvePoint {
     double seconds = 0.0;
-    double error = 0.0;  // 0: too small to be told from 0
+    double error = 0.0;  // 0: too small to distinguish from 0
     double work = 0.0;   // paths per pixel; 0: not of that kind
 };
 

@@ -101,11 +101,11 @@ void compare_layers(const Image& image, const ReportReference& reference, Measur
 
 Shot shot_with(const Shot& shot, const std::string& source, const std::vector<std::string>& settings) {
     Shot result = parse_shot(to_json(shot), source, shot.folder, {"", settings});
-    const CameraSettings asked = result.camera;
+    const CameraSettings requested = result.camera;
     result.camera = shot.camera;
     // Of the method, unlike the rest of the camera.
-    result.camera.samples_per_axis = asked.samples_per_axis;
-    result.camera.edge_refinement = asked.edge_refinement;
+    result.camera.samples_per_axis = requested.samples_per_axis;
+    result.camera.edge_refinement = requested.edge_refinement;
     result.camera_given = shot.camera_given;
     return result;
 }

@@ -26,7 +26,7 @@ struct PlannedMethod {
     std::vector<PlannedRun> runs;
 };
 
-// The shots of all runs, from the one that was asked for. Throws Error Usage for settings that no shot accepts, and for
+// Returns the shots of all runs, made from the given one. Throws Error Usage for settings that no shot accepts, and for
 // those that would change what is true instead of how it is computed. Path-traced runs whose seed is `taken` get
 // another.
 std::vector<PlannedMethod> plan_runs(const Shot& shot, const std::vector<Method>& methods,

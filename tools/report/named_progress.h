@@ -8,7 +8,7 @@
 
 namespace brisance {
 
-// Tells of which run a stage is.
+// Adds the name of the run to each stage.
 class NamedProgress : public Progress {
 public:
     NamedProgress(Progress& to, std::string name) : to_(to), name_(std::move(name)) {}

@@ -28,10 +28,10 @@ std::string script_json(const nlohmann::ordered_json& json) {
 
 std::string report_page(const nlohmann::ordered_json& report, const nlohmann::ordered_json& pictures) {
     const std::string_view page = page_template();
-    const std::size_t place = page.find(kMarker);
-    assert(place != std::string_view::npos);
-    return std::string(page.substr(0, place)) + data_element("report-data", report) +
-           data_element("report-pictures", pictures) + std::string(page.substr(place + kMarker.size()));
+    const std::size_t marker = page.find(kMarker);
+    assert(marker != std::string_view::npos);
+    return std::string(page.substr(0, marker)) + data_element("report-data", report) +
+           data_element("report-pictures", pictures) + std::string(page.substr(marker + kMarker.size()));
 }
 
 }  // namespace brisance

@@ -14,7 +14,7 @@
 
 namespace brisance {
 
-// What a kernel needs to sample one level. Positions are in the level's nodes, relative to the reference node.
+// The data that a kernel needs to sample one level. Positions are in the level's nodes, relative to the reference node.
 struct PackedExtinction {
     static constexpr int kWordsPerBrick = 9 * 9 * 8;
     const std::int32_t* directory;  // first word of each brick; 0 for the empty brick; a rim of empty bricks all round
@@ -38,11 +38,11 @@ public:
     const Medium& medium() const { return *medium_; }
     std::uint64_t bytes() const;
 
-    // Surfaces that stand in the medium and hold its light up; null (the default): none. Kept.
+    // Surfaces in the medium that block its light; null (the default): none. Keeps the pointer.
     void set_occluders(const Occluders* occluders) { occluders_ = occluders; }
     const Occluders* occluders() const { return occluders_; }
 
-    // Where rays may take long steps; null (the default): nowhere. Kept.
+    // Where rays may take long steps; null (the default): nowhere. Keeps the pointer.
     void set_homogeneous_bricks(const HomogeneousBricks* homogeneous_bricks) {
         homogeneous_bricks_ = homogeneous_bricks;
     }

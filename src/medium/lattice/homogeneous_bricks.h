@@ -1,4 +1,4 @@
-// Where a medium is thin or empty for a brick around: rays need look there but now and then.
+// Marks where a medium is thin or empty for a brick around, so that rays need only few samples there.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ public:
     bool empty() const { return even_.empty(); }
     bool at(const ivec3& brick) const;  // relative to the reference node's
 
-    // What a kernel needs: a flag per brick of a box, with a rim that stands for all around.
+    // The data that a kernel needs: a flag per brick of a box, with a rim that represents everything outside.
     struct View {
         const std::int32_t* even;
         std::int32_t min_brick[3];

@@ -5,10 +5,10 @@
 
 namespace brisance {
 
-// Local [m], axes parallel to the world's; of all bricks, whatever way the lattice is turned or sheared.
+// Local [m], axes parallel to the world's; of all bricks, however the lattice is rotated or sheared.
 struct LocalBounds {
     vec3 low{1e30f}, high{-1e30f};
-    // To a point; 0 inside.
+    // The distance to a point; 0 inside.
     float distance(const vec3& p) const { return glm::length(glm::max(glm::max(low - p, p - high), vec3(0.0f))); }
     vec3 middle() const { return 0.5f * (low + high); }
     float diagonal() const { return glm::distance(low, high); }

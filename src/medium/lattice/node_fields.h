@@ -23,8 +23,9 @@ struct NodeFields {
     Rgb uniform_albedo{0.0f};
 };
 
-// The sum of what the volumes scatter, absorb and emit at each node. Source functions and albedos are means weighted by
-// extinction, which makes the sums exact at nodes; between nodes they are interpolated like those of one volume.
+// Sums the scattering, absorption and emission of the volumes at each node. Source functions and albedos are means
+// weighted by extinction, which makes the sums exact at nodes. Between nodes they are interpolated like those of one
+// volume.
 NodeFields fill_fields(const BrickLattice& lattice, std::span<const Sources> volumes);
 
 }  // namespace brisance

@@ -1,6 +1,6 @@
-// Ways of light through a medium, counted at its nodes: the track-length estimator (Spanier, Two Pairs of Families of
-// Estimators for Transport Problems, SIAM J. Appl. Math. 14(4), 1966). The length of ways times power, transmitted,
-// over the volume around a node is the fluence there.
+// The track-length estimator at a medium's nodes (Spanier, Two Pairs of Families of Estimators for Transport Problems,
+// SIAM J. Appl. Math. 14(4), 1966). The fluence at a node is the track length times transmitted power over the volume
+// around the node.
 #pragma once
 
 #include "medium/attenuation.h"
@@ -16,13 +16,12 @@ public:
           cells_(voxel_lattice(medium)),
           index_from_local_(glm::inverse(dmat3(medium.local_from_index))) {}
 
-    // Cuts the way up to `end` [m] in parts, each of which counts for the node nearest to it: calls visit(node, length)
-    // with the node's index and the part's length times what smoke has left of the light [m], until next to nothing is
-    // left.
+    // Cuts the ray up to `end` [m] into segments, each of which counts for its nearest node. Calls visit(node, length)
+    // with the node's index and the segment's length times the transmittance [m], until the light is almost extinct.
     template <class Visit>
     void along(const Ray& ray, double end, const Visit& visit) const;
 
-    // What lies around a node and in cells whose ways count, over the whole of a voxel: 0 to 1.
+    // The share, from 0 to 1, of the voxel around a node that lies in cells whose track lengths count.
     float part_in_voxels(const ivec3& node) const {
         int cells = 0;
         for (int k = 0; k < 8; ++k)
@@ -31,7 +30,7 @@ public:
     }
 
 private:
-    static constexpr int kParts = 2;  // of a way through a cell
+    static constexpr int kParts = 2;  // of a segment through a cell
 
     const Medium& medium_;
     BrickLattice cells_;
@@ -44,8 +43,9 @@ void TrackLengths::along(const Ray& ray, double end, const Visit& visit) const {
     const auto in_voxel = [&](const VoxelSegment& s) {
         const double length = (s.end - s.begin) / kParts;
         for (int part = 0; part < kParts; ++part) {
-            const dvec3 place = s.origin + s.direction * (s.begin + (part + 0.5) * length);
-            const std::int64_t node = medium_.lattice.find_node(cells_.first_node(s.brick) + ivec3(glm::round(place)));
+            const dvec3 position = s.origin + s.direction * (s.begin + (part + 0.5) * length);
+            const std::int64_t node =
+                medium_.lattice.find_node(cells_.first_node(s.brick) + ivec3(glm::round(position)));
             if (node < 0)
                 continue;
             const float tau = medium_.extinction[node] * float(length);

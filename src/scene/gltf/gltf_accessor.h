@@ -1,4 +1,4 @@
-// Numbers of a glTF file's buffers, with all bounds checked.
+// Reads numbers from a glTF file's buffers (glTF 2.0, section 3.6) and checks all bounds.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 namespace brisance {
 
 // Each function rejects the file in a line that says `what` was read, when the accessor, its bufferView or its buffer
-// does not exist or is too short, or its type is not what is asked for.
+// does not exist or is too short, or its type is not the expected one.
 
-// The number of elements, all of which are there. Allocates nothing, so that a file may claim any number.
+// Returns the number of elements, all of which exist. Allocates nothing, so that a file may claim any number.
 std::size_t element_count(const GltfFile& file, int accessor, const std::string& what);
 
 // All elements of `components` numbers each, one after the other; normalised integers as 0..1 or -1..1.

@@ -36,7 +36,7 @@ SceneCamera camera_of(const GltfFile& file, const tinygltf::Camera& camera, cons
     SceneCamera result;
     result.name = name;
     result.vertical_fov_degrees = yfov * 180.0 / kPi;
-    if (aspect > 0.0)  // 0: tinygltf's way to say that there is none
+    if (aspect > 0.0)  // 0: tinygltf's value for none
         result.aspect = aspect;
     return result;
 }

@@ -1,4 +1,4 @@
-// Cameras and lights of a glTF file.
+// Cameras (glTF 2.0, section 3.10) and lights of a glTF file.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace brisance {
 
-// In the order of the nodes. Orthographic ones are left out with a notice, and so is a camera whose node has shrunk to
-// a point or a plane, with a warning.
+// Returns cameras in the order of the nodes. Leaves out orthographic cameras with a notice, and cameras whose node has
+// shrunk to a point or a plane with a warning.
 std::vector<SceneCamera> read_cameras(const GltfFile& file, const std::vector<PlacedNode>& nodes, Progress& progress);
 
 // KHR_lights_punctual. As with materials that emit, a file's numbers are taken as radiometric: 1 cd is 1 W/sr, 1 lx is

@@ -27,8 +27,8 @@ struct GltfFile {
     std::filesystem::path resolved(const std::string& uri) const;
 };
 
-// .glb or .gltf, told apart by how they begin; with all buffers, whose bytes are claimed from `budget` first. Throws
-// Error MissingInput, BadData (also where an extension is required that is not known here) or Temporary.
+// Reads .glb or .gltf, distinguished by their first bytes, with all buffers, whose bytes are claimed from `budget`
+// first. Throws Error MissingInput, BadData (also for an unknown required extension) or Temporary.
 GltfFile read_gltf(const std::filesystem::path& path, MemoryBudget& budget, Progress& progress);
 
 // "material 3 (Floor)": for messages. Names come from files: what cannot be printed is left out.

@@ -11,9 +11,10 @@
 
 namespace brisance {
 
-// Adds materials and their textures to a scene when they are first asked for. Factors beyond their range are clamped
-// with a warning. KHR_materials_unlit becomes a Lambertian surface of the base colour: "unlit" is no property of a
-// surface that light falls on. Vertex colours, occlusion and absorption within volumes are left out with a notice.
+// Adds materials (glTF 2.0, section 3.9) and their textures to a scene when they are first used. Factors beyond their
+// range are clamped with a warning. KHR_materials_unlit becomes a Lambertian surface of the base colour: "unlit" is no
+// property of a surface that light falls on. Vertex colours, occlusion and absorption within volumes are left out with
+// a notice.
 class GltfMaterials {
 public:
     GltfMaterials(const GltfFile& file, Scene& scene, MemoryBudget& budget, Progress& progress)

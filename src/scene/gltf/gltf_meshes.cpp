@@ -54,20 +54,20 @@ uvec3 triangle_at(int mode, std::uint32_t i) {
 // Drops vertices that no triangle uses.
 void compact(SceneMesh& mesh) {
     constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::uint32_t> place(mesh.positions.size(), kUnused);
+    std::vector<std::uint32_t> new_index(mesh.positions.size(), kUnused);
     SceneMesh kept;
     for (uvec3& t : mesh.triangles)
         for (int c = 0; c < 3; ++c) {
             const std::uint32_t old = t[c];
-            if (place[old] == kUnused) {
-                place[old] = static_cast<std::uint32_t>(kept.positions.size());
+            if (new_index[old] == kUnused) {
+                new_index[old] = static_cast<std::uint32_t>(kept.positions.size());
                 kept.positions.push_back(mesh.positions[old]);
                 if (!mesh.normals.empty())
                     kept.normals.push_back(mesh.normals[old]);
                 if (!mesh.uv.empty())
                     kept.uv.push_back(mesh.uv[old]);
             }
-            t[c] = place[old];
+            t[c] = new_index[old];
         }
     mesh.positions = std::move(kept.positions);
     mesh.normals = std::move(kept.normals);

@@ -1,4 +1,4 @@
-// Triangles of a glTF file.
+// Triangles of a glTF file (glTF 2.0, section 3.7).
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace brisance {
 
-// What was left out of a file or a quick shape, and why.
+// Counts of triangles left out of a file or a quick shape, by reason.
 struct LeftOut {
     std::size_t without_area = 0, not_finite = 0;
     void tell(const std::string& where, Progress& progress) const;

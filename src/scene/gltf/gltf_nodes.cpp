@@ -17,7 +17,7 @@ namespace {
 using glm::dquat;
 using glm::dvec4;
 
-// A node's own transform, before its parents': `matrix` stands in place of the others.
+// A node's own transform, before its parents'; `matrix` replaces the others (glTF 2.0, section 3.5.3).
 struct Pose {
     dvec3 translation{0.0}, scale{1.0};
     dvec4 rotation{0.0, 0.0, 0.0, 1.0};  // quaternion x y z w
@@ -105,7 +105,7 @@ Keys read_keys(const GltfFile& file, const tinygltf::AnimationSampler& sampler, 
 dvec4 slerp(dvec4 a, dvec4 b, double t) {
     const double la = glm::length(a), lb = glm::length(b);
     if (!(la > 0.0) || !(lb > 0.0))
-        return a;  // matrix_of tells
+        return a;  // matrix_of reports it
     const dquat q =
         glm::slerp(dquat(a.w / la, a.x / la, a.y / la, a.z / la), dquat(b.w / lb, b.x / lb, b.y / lb, b.z / lb), t);
     return {q.x, q.y, q.z, q.w};
@@ -148,7 +148,7 @@ public:
         const std::string what = label("animation of node", channel_.target_node, channel_.target_path);
         const std::string& path = channel_.target_path;
         if (path == "weights")
-            return;  // told with the meshes, which keep their base shape
+            return;  // reported with the meshes, which keep their base shape
         if (path != "translation" && path != "rotation" && path != "scale") {
             progress.notice(fmt::format("{}: {} is left out", file_.path.string(), what));
             return;

@@ -1,4 +1,4 @@
-// Where the nodes of a glTF file are at a moment.
+// The transforms of a glTF file's nodes at one moment (glTF 2.0, sections 3.5 and 3.11).
 #pragma once
 
 #include <vector>

@@ -12,7 +12,7 @@
 
 namespace brisance {
 
-// What a key decides: the true picture, which every method must come to, or how that is computed and written down.
+// What a key affects: the true picture, on which every method must agree, or how it is computed and written.
 enum class Affects { Picture, Method };
 
 struct Key {
@@ -42,7 +42,7 @@ Key make_key(const std::string& path, const std::string& help, const Codec<T>& c
                 return value.has_value();
             },
             [codec, at](const Shot& shot) -> std::optional<Json> {
-                Shot copy = shot;  // so that one accessor serves both ways
+                Shot copy = shot;  // so that one accessor reads and writes
                 return codec.write(at(copy));
             },
             codec.complain};

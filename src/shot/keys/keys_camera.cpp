@@ -7,7 +7,7 @@ bool& placed(Shot& shot) {
     return shot.camera_given;
 }
 
-// Written only when no matrix takes their place, so that what is written can be read.
+// These keys are written only when no matrix replaces them, so that the written shot can be read.
 Key unless_matrix(Key key) {
     key.get = [get = key.get](const Shot& shot) { return shot.camera.world_from_camera ? std::nullopt : get(shot); };
     return key;

@@ -20,7 +20,7 @@ struct Member {
     bool required = false;
 };
 
-// `at(object)`: the value's place.
+// `at(object)` returns a reference to the value.
 template <class T, class V, class At>
 Member<T> member(const std::string& name, const Codec<V>& codec, At at, bool required = false) {
     Codec<Json> untyped{
@@ -29,7 +29,7 @@ Member<T> member(const std::string& name, const Codec<V>& codec, At at, bool req
         [](const Json& json) { return json; }, codec.complain};
     return {name, untyped, [codec, at](T& object, const Json& json) { at(object) = *codec.read(json); },
             [codec, at](const T& object) {
-                T copy = object;  // so that one accessor serves both ways
+                T copy = object;  // so that one accessor reads and writes
                 return codec.write(at(copy));
             },
             required};
