@@ -65,7 +65,7 @@ TEST(Keys, TellWhatWasGivenAndWhatIsExpected) {
               "\"many\" (text)");
 }
 
-TEST(Keys, BoundsAreChecked) {
+TEST(Keys, ValuesOutOfBoundsAreRefused) {
     const std::vector<std::string> wrong = {
         "smoke.extinction_per_metre=-1",
         "smoke.albedo=-0.1",
@@ -108,6 +108,9 @@ TEST(Keys, BoundsAreChecked) {
     };
     for (const std::string& setting : wrong)
         EXPECT_NE(complaint_about({setting}), "") << setting;
+}
+
+TEST(Keys, ValuesAtTheBoundsAreAccepted) {
     const std::vector<std::string> right = {
         "smoke.extinction_per_metre=0",
         "smoke.albedo=0",

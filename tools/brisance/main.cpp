@@ -6,9 +6,12 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <cstdio>
+#include <functional>
 #include <map>
 #include <new>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "compare_command.h"
 #include "compare_report.h"
@@ -202,82 +205,98 @@ void add_trace_path_options(CLI::App& command, TracePathOptions& options) {
     add_common_options(command, options);
 }
 
-int run(int argc, char** argv) {
-    CLI::App app("Brisance renders OpenVDB fire and smoke: the fire lights its own smoke.", "brisance");
-    app.set_version_flag("--version", "brisance " BRISANCE_VERSION);
-    app.require_subcommand(1);
-    app.footer(kExitCodes);
-
-    RenderOptions options;
-    CLI::App* const render = app.add_subcommand("render", "Renders a shot, or a bare .vdb, to OpenEXR");
-    add_render_options(*render, options);
-    render->footer(kExitCodes);
-
-    CLI::App* const plan = app.add_subcommand("plan", "Prints what a render would read, run and leave out");
-    add_shot_options(*plan, options);
-
-    std::string file;
-    bool as_json = false;
-    CLI::App* const inspect = app.add_subcommand("inspect", "Prints a .vdb file's grids and suggests a shot");
-    inspect->add_option("FILE", file, "The .vdb file")->required();
-    inspect->add_flag("--json", as_json, "As JSON");
-
-    CompareOptions comparison;
-    CLI::App* const compare = app.add_subcommand("compare", "Measures how far an EXR is from a reference");
-    add_compare_options(*compare, comparison);
-    compare->footer(kExitCodes);
-
-#ifdef BRISANCE_REPORT
-    ReportOptions reported;
-    CLI::App* const report = app.add_subcommand("report", "Measures methods against a reference: page, CSV and JSON");
-    add_report_options(*report, reported);
-    report->footer(kExitCodes);
-    reported.command_line = {"brisance"};
-    reported.command_line.insert(reported.command_line.end(), argv + 1, argv + argc);
-#endif
-
-    TracePathOptions traced;
-    StabilityOptions extreme;
-    CLI::App* const stability =
-        app.add_subcommand("stability", "Stiff and extreme cases through every method: a table");
-    stability->add_option("--methods", extreme.methods, fmt::format("{}", fmt::join(extreme.methods, ", ")))
-        ->check(CLI::IsMember(stability_methods()))
-        ->delimiter(',');
-    stability->add_option("--case", extreme.part, "Only cases whose name has this in it");
-    stability->add_flag("--markdown", extreme.markdown, "As a table for a document");
-    stability->add_flag("--json", extreme.json, "As JSON");
-
-    CLI::App* const trace_path = app.add_subcommand("trace-path", "Prints one path of method path, vertex by vertex");
-    add_trace_path_options(*trace_path, traced);
-
-    bool keys = false;
-    CLI::App* const schema = app.add_subcommand("schema", "Prints the JSON Schema of shots");
-    schema->add_flag("--keys", keys, "Prints all keys of a shot for people instead");
-
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::Usage);
+// All commands with their options; what was parsed decides which of them runs.
+class CommandLine {
+public:
+    CommandLine(int argc, char** argv) : argc_(argc), argv_(argv) {
+        app_.set_version_flag("--version", "brisance " BRISANCE_VERSION);
+        app_.require_subcommand(1);
+        app_.footer(kExitCodes);
+        add_rendering();
+        add_comparing();
+        add_studies();
     }
-    if (render->parsed())
-        return run_render(options);
-    if (plan->parsed())
-        return run_plan(options);
-    if (inspect->parsed())
-        return run_inspect(file, as_json);
-    if (compare->parsed())
-        return run_compare(comparison);
-    if (stability->parsed())
-        return run_stability(extreme);
-    if (trace_path->parsed())
-        return run_trace_path(traced);
+
+    int run() {
+        try {
+            app_.parse(argc_, argv_);
+        } catch (const CLI::ParseError& error) {
+            return app_.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::Usage);
+        }
+        for (const auto& [command, run] : commands_)
+            if (command->parsed())
+                return run();
+        return static_cast<int>(ExitCode::Usage);  // a subcommand is required
+    }
+
+private:
+    CLI::App& add(const char* name, const char* help, const std::function<int()>& run) {
+        CLI::App* const command = app_.add_subcommand(name, help);
+        commands_.emplace_back(command, run);
+        return *command;
+    }
+
+    void add_rendering() {
+        CLI::App& render =
+            add("render", "Renders a shot, or a bare .vdb, to OpenEXR", [this] { return run_render(options_); });
+        add_render_options(render, options_);
+        render.footer(kExitCodes);
+        add_shot_options(
+            add("plan", "Prints what a render would read, run and leave out", [this] { return run_plan(options_); }),
+            options_);
+        CLI::App& inspect = add("inspect", "Prints a .vdb file's grids and suggests a shot",
+                                [this] { return run_inspect(file_, as_json_); });
+        inspect.add_option("FILE", file_, "The .vdb file")->required();
+        inspect.add_flag("--json", as_json_, "As JSON");
+    }
+
+    void add_comparing() {
+        CLI::App& compare =
+            add("compare", "Measures how far an EXR is from a reference", [this] { return run_compare(comparison_); });
+        add_compare_options(compare, comparison_);
+        compare.footer(kExitCodes);
 #ifdef BRISANCE_REPORT
-    if (report->parsed())
-        return run_report(reported);
+        CLI::App& report = add("report", "Measures methods against a reference: page, CSV and JSON",
+                               [this] { return run_report(reported_); });
+        add_report_options(report, reported_);
+        report.footer(kExitCodes);
+        reported_.command_line = {"brisance"};
+        reported_.command_line.insert(reported_.command_line.end(), argv_ + 1, argv_ + argc_);
 #endif
-    std::fputs((keys ? shot_keys_text() : shot_schema()).c_str(), stdout);
-    return static_cast<int>(ExitCode::Success);
-}
+    }
+
+    void add_studies() {
+        CLI::App& stability = add("stability", "Stiff and extreme cases through every method: a table",
+                                  [this] { return run_stability(extreme_); });
+        stability.add_option("--methods", extreme_.methods, fmt::format("{}", fmt::join(extreme_.methods, ", ")))
+            ->check(CLI::IsMember(stability_methods()))
+            ->delimiter(',');
+        stability.add_option("--case", extreme_.part, "Only cases whose name has this in it");
+        stability.add_flag("--markdown", extreme_.markdown, "As a table for a document");
+        stability.add_flag("--json", extreme_.json, "As JSON");
+        add_trace_path_options(add("trace-path", "Prints one path of method path, vertex by vertex",
+                                   [this] { return run_trace_path(traced_); }),
+                               traced_);
+        add("schema", "Prints the JSON Schema of shots", [this] {
+            std::fputs((keys_ ? shot_keys_text() : shot_schema()).c_str(), stdout);
+            return static_cast<int>(ExitCode::Success);
+        }).add_flag("--keys", keys_, "Prints all keys of a shot for people instead");
+    }
+
+    int argc_;
+    char** argv_;
+    CLI::App app_{"Brisance renders OpenVDB fire and smoke: the fire lights its own smoke.", "brisance"};
+    std::vector<std::pair<CLI::App*, std::function<int()>>> commands_;
+    RenderOptions options_;
+    std::string file_;
+    bool as_json_ = false, keys_ = false;
+    CompareOptions comparison_;
+#ifdef BRISANCE_REPORT
+    ReportOptions reported_;
+#endif
+    StabilityOptions extreme_;
+    TracePathOptions traced_;
+};
 
 int fail(ExitCode code, const std::string& line) {
     fmt::print(stderr, "brisance: error: {}\n", line);
@@ -289,7 +308,7 @@ int fail(ExitCode code, const std::string& line) {
 int main(int argc, char** argv) {
     install_signal_handlers();
     try {
-        const int code = run(argc, argv);
+        const int code = CommandLine(argc, argv).run();
         if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
             return fail(ExitCode::OutputFailed, "cannot write to standard output");
         return code;
