@@ -1,5 +1,6 @@
 // Optical depth of one voxel from 1e-8 to 1e8, without and with scattering.
 #include <cmath>
+#include <limits>
 
 #include "stability/closed_forms.h"
 #include "stability/scenes.h"
@@ -38,6 +39,13 @@ Case scattering(int decade) {
     c.tolerance = {0.03, 0.005,
                    thin ? "the ball's rim is a voxel wide, an eighth of its radius"
                         : "the hierarchy does not resolve the skin that is seen"};
+    if (decade > 0) {
+        // Nearly all light ends within a part of a voxel: what a flight or a track leaves is known per voxel only.
+        c.tolerance.limits["ray_lights"] = {1.0, "flights are far shorter than the skin's voxel, which few rays meet"};
+        c.tolerance.limits["volumetric_photons"] = {
+            std::numeric_limits<double>::infinity(),
+            "track lengths are counted for whole voxels, of which only a skin is seen: take the lighting grid"};
+    }
     c.scene = [=] {
         if (thin)
             return scene_of(isothermal_ball(kBallNodes, radius, kAlbedo), camera_on_centre(8), 1024);
