@@ -51,11 +51,7 @@ struct SphereKind {
         }
 
         Rgb connect(const Connection& c, const PathVertex& vertex, float factor, Rng& rng) const {
-            const ShadowRay shadow = shadow_ray(set_.scene(), vertex, set_.lights[c.light]);
-            if (!shadow.clear)
-                return Rgb(0.0f);
-            const double transmittance = set_.scene().lines().transmittance(shadow.ray, shadow.distance, rng);
-            return c.scattered.value * c.radiance * (factor * float(transmittance));
+            return connect_by_shadow_ray(set_.scene(), vertex, set_.lights[c.light], c, factor, rng);
         }
 
         Rgb estimate(std::size_t index, double probability, const PathVertex& vertex, Rng& rng) const {
