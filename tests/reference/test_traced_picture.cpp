@@ -2,8 +2,10 @@
 // shot.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "../volume/temp_folder.h"
 #include "core/parallel.h"
@@ -47,6 +49,14 @@ struct Render {
     TracedPicture picture;
     Statistics statistics;
     Listener told;
+    // What the stage of the paths says of them.
+    const nlohmann::ordered_json& paths() const {
+        const auto stage = std::find_if(statistics.stages.begin(), statistics.stages.end(),
+                                        [](const StageCost& s) { return s.name == "path tracing"; });
+        if (stage == statistics.stages.end())
+            throw std::logic_error("no stage tells of paths");
+        return stage->detail;
+    }
 };
 
 Render render(const Shot& shot, const Medium& medium, const Checkpoint& checkpoint = {}) {
@@ -221,7 +231,7 @@ TEST(TracedPicture, MorePathsAreLessNoise) {
     const Medium medium = cloud();
     const auto error = [&](int samples) {
         const Render r = render(shot_of(samples), medium);
-        return r.statistics.stages.at(0).detail["relative_standard_error"].get<double>();
+        return r.paths().at("relative_standard_error").get<double>();
     };
     const double ratio = error(4) / error(64);
     EXPECT_GT(ratio, 3.2);
@@ -232,7 +242,7 @@ TEST(TracedPicture, StopsAtTheErrorAskedFor) {
     Shot shot = shot_of(0);
     shot.tracing.error = 0.05;
     const Render r = render(shot, cloud());
-    const double error = r.statistics.stages.at(0).detail["relative_standard_error"].get<double>();
+    const double error = r.paths().at("relative_standard_error").get<double>();
     EXPECT_LE(error, 0.05);
     EXPECT_GT(error, 0.03);
 }
@@ -251,7 +261,7 @@ void expect_left_out(float brightness) {
     Medium medium = cloud();
     medium.source.at(medium.lattice.find_node(ivec3(1, 2, -3))) = Rgb(brightness);
     const Render r = render(shot_of(2), medium);
-    const auto bad = r.statistics.stages.at(0).detail["not_finite_paths"].get<std::uint64_t>();
+    const auto bad = r.paths().at("not_finite_paths").get<std::uint64_t>();
     EXPECT_GT(bad, 0u);
     EXPECT_LT(bad, std::uint64_t(kWidth) * kHeight);
     ASSERT_EQ(r.told.warnings.size(), 1u);
