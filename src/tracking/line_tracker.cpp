@@ -173,7 +173,7 @@ LineResult LineTracker::follow_path(const Ray& ray, Rng& rng, double end) const 
             return meet_in_brick(field_, brick, out, rng);
         // The exponential distribution has no memory: every brick samples it anew.
         double left = exponential(rng);
-        return walk_cubes<1>(brick, [&](const VoxelSegment& cell) {
+        return walk_cubics(field_, brick, [&](const VoxelSegment& cell) {
             const Cubic sigma = field_.extinction_along(cell);
             const double tau = std::max(0.0, sigma.integral(1.0) * (cell.end - cell.begin));
             if (burns && field_.voxel_burns(cell))
@@ -198,7 +198,7 @@ Rgb LineTracker::follow_line(const Ray& ray, Rng& rng, double end) const {
     double depth = 0.0;
     walk_bricks(field_.bricks(), path, [&](const VoxelSegment& brick) {
         const bool burns = field_.burns(brick.brick);
-        return walk_cubes<1>(brick, [&](const VoxelSegment& cell) {
+        return walk_cubics(field_, brick, [&](const VoxelSegment& cell) {
             const Cubic sigma = field_.extinction_along(cell);
             const double tau = std::max(0.0, sigma.integral(1.0) * (cell.end - cell.begin));
             if (burns && field_.voxel_burns(cell))
@@ -220,7 +220,7 @@ void LineTracker::follow_camera(const Ray& ray, Rng& rng, CameraLine& line, doub
     double depth = 0.0;
     walk_bricks(field_.bricks(), field_.enter(ray, end), [&](const VoxelSegment& brick) {
         const bool burns = field_.burns(brick.brick);
-        return walk_cubes<1>(brick, [&](const VoxelSegment& cell) {
+        return walk_cubics(field_, brick, [&](const VoxelSegment& cell) {
             const Cubic sigma = field_.extinction_along(cell);
             const double tau = std::max(0.0, sigma.integral(1.0) * (cell.end - cell.begin));
             if (burns && field_.voxel_burns(cell))

@@ -23,7 +23,7 @@ bool stiff(const TrackingField& field, const VoxelSegment& in_brick) {
 // Inverts the optical depth voxel by voxel; `depth` is what remains up to the collision.
 std::optional<Collision> flight_in_brick(const TrackingField& field, const VoxelSegment& in_brick, double& depth) {
     std::optional<Collision> found;
-    walk_cubes<1>(in_brick, [&](const VoxelSegment& cell) {
+    walk_cubics(field, in_brick, [&](const VoxelSegment& cell) {
         const Cubic sigma = field.extinction_along(cell);
         const double metres = cell.end - cell.begin;
         const double tau = std::max(0.0, sigma.integral(1.0) * metres);
@@ -52,7 +52,7 @@ std::optional<Collision> woodcock_in_brick(const TrackingField& field, const Vox
 
 double depth_of_brick(const TrackingField& field, const VoxelSegment& in_brick) {
     double depth = 0.0;
-    walk_cubes<1>(in_brick, [&](const VoxelSegment& cell) {
+    walk_cubics(field, in_brick, [&](const VoxelSegment& cell) {
         depth += field.extinction_along(cell).integral(1.0) * (cell.end - cell.begin);
         return true;
     });

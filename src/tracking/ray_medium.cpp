@@ -38,7 +38,7 @@ void RayMedium::look(const TrackingField& field, const Ray& ray, double end) {
     cells_.clear();
     double depth = 0.0;
     walk_bricks(field.bricks(), field.enter(ray, end), [&](const VoxelSegment& brick) {
-        return walk_cubes<1>(brick, [&](const VoxelSegment& cell) {
+        return walk_cubics(field, brick, [&](const VoxelSegment& cell) {
             const Cubic sigma = field.extinction_along(cell);
             const double tau = std::max(0.0, sigma.integral(1.0) * (cell.end - cell.begin));
             if (tau > 0.0)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "core/parallel.h"
 
@@ -22,15 +23,42 @@ Corner corner_of(std::size_t records, const vec3& p) {
     return {records + (base.x * kSide + base.y) * kSide + base.z, p - vec3(base)};
 }
 
-template <class T>
-T trilinear(const T* v, const vec3& f) {
-    const auto along_z = [&](int at) { return v[at] + f.z * (v[at + 1] - v[at]); };
+// `load(i)`: the i-th record from the cell's first corner.
+template <class Load>
+auto trilinear(const Load& load, const vec3& f) {
+    const auto along_z = [&](int at) {
+        const auto low = load(at);
+        return low + f.z * (load(at + 1) - low);
+    };
     const auto plane = [&](int at) {
-        const T low = along_z(at);
+        const auto low = along_z(at);
         return low + f.y * (along_z(at + kSide) - low);
     };
-    const T low = plane(0);
+    const auto low = plane(0);
     return low + f.x * (plane(kSide * kSide) - low);
+}
+
+float interpolate(const float* v, const vec3& f) {
+    return trilinear([v](int i) { return v[i]; }, f);
+}
+
+// A colour and whatever follows it, in one register: kPadding records behind a field's last may be read.
+typedef float Float4 __attribute__((vector_size(16)));
+constexpr std::size_t kPadding = 1;
+
+Rgb interpolate(const Rgb* v, const vec3& f) {
+    const auto load = [v](int i) {
+        Float4 record;
+        std::memcpy(&record, v + i, sizeof record);
+        return record;
+    };
+    const Float4 c = trilinear(load, f);
+    return {c[0], c[1], c[2]};
+}
+
+// Of a colour field with that many records; none: empty.
+std::size_t padded(std::size_t records) {
+    return records > 0 ? records + kPadding : 0;
 }
 
 void copy_rgb(const Medium& medium, const std::vector<Rgb>& field, const ivec3& low, Rgb* out) {
@@ -55,7 +83,7 @@ TrackingField::TrackingField(const Medium& medium)
       index_from_local_(glm::inverse(dmat3(medium.world_from_index))),
       bricks_(voxel_lattice(medium)),
       extinction_(bricks_.brick_count() * kRecords),
-      albedo_(medium.albedo_nodes.empty() ? 0 : bricks_.brick_count() * kRecords),
+      albedo_(medium.albedo_nodes.empty() ? 0 : padded(bricks_.brick_count() * kRecords)),
       fire_index_(bricks_.brick_count(), -1),
       minimum_(bricks_.brick_count()),
       majorant_(bricks_.brick_count()) {
@@ -63,8 +91,8 @@ TrackingField::TrackingField(const Medium& medium)
     std::int32_t burning = 0;
     for (std::int32_t& f : fire_index_)
         f = f < 0 ? -1 : burning++;
-    source_.resize(medium.source.empty() ? 0 : burning * std::size_t(kRecords));
-    emission_.resize(medium.emission.empty() ? 0 : burning * std::size_t(kRecords));
+    source_.resize(medium.source.empty() ? 0 : padded(burning * std::size_t(kRecords)));
+    emission_.resize(medium.emission.empty() ? 0 : padded(burning * std::size_t(kRecords)));
     burning_voxel_.resize(burning * std::size_t(BrickLattice::kNodes));
     parallel_for(bricks_.brick_count(), [&](std::size_t b) { copy_fire(b); });
 }
@@ -107,24 +135,24 @@ void TrackingField::copy_fire(std::size_t brick) {
 
 float TrackingField::extinction(std::size_t brick, const vec3& p) const {
     const Corner c = corner_of(brick * kRecords, p);
-    return trilinear(&extinction_[c.first], c.fraction);
+    return interpolate(&extinction_[c.first], c.fraction);
 }
 
 Rgb TrackingField::albedo(std::size_t brick, const vec3& p) const {
     if (albedo_.empty())
         return medium_->albedo;
     const Corner c = corner_of(brick * kRecords, p);
-    return trilinear(&albedo_[c.first], c.fraction);
+    return interpolate(&albedo_[c.first], c.fraction);
 }
 
 Rgb TrackingField::source(std::size_t brick, const vec3& p) const {
     const Corner c = corner_of(fire_index_[brick] * std::size_t(kRecords), p);
-    return trilinear(&source_[c.first], c.fraction);
+    return interpolate(&source_[c.first], c.fraction);
 }
 
 Rgb TrackingField::emission(std::size_t brick, const vec3& p) const {
     const Corner c = corner_of(fire_index_[brick] * std::size_t(kRecords), p);
-    return trilinear(&emission_[c.first], c.fraction);
+    return interpolate(&emission_[c.first], c.fraction);
 }
 
 // The trilinear polynomial a + bx + cy + dz + exy + fxz + gyz + hxyz of the cell, along p(u) = q + u w.

@@ -31,6 +31,8 @@ public:
     float minimum(std::size_t brick) const { return minimum_[brick]; }    // of extinction over the brick's cells
     float majorant(std::size_t brick) const { return majorant_[brick]; }  // [1/m]
     bool burns(std::size_t brick) const { return fire_index_[brick] >= 0; }
+    // Whether all cells of the brick have one extinction, and nothing glows in them.
+    bool homogeneous(std::size_t brick) const { return minimum_[brick] == majorant_[brick] && !burns(brick); }
     float mean_cosine() const { return medium_->mean_cosine; }
     const Medium& medium() const { return *medium_; }
     double smoke_volume() const;  // of all bricks that hold some [m^3]
@@ -43,7 +45,7 @@ public:
     Rgb source(std::size_t brick, const vec3& p) const;
     Rgb emission(std::size_t brick, const vec3& p) const;
 
-    // Extinction along a segment that lies in one cell [1/m]; never negative beyond rounding.
+    // Extinction along a segment that lies in one cell, or in a homogeneous brick [1/m]; never negative beyond rounding.
     Cubic extinction_along(const VoxelSegment& segment) const;
     // Whether anything can glow inside the cell of the segment.
     bool voxel_burns(const VoxelSegment& segment) const;
@@ -65,6 +67,13 @@ private:
     std::vector<std::uint8_t> burning_voxel_;  // 8^3 to a burning brick
     std::vector<float> minimum_, majorant_;
 };
+
+// Calls visit(part) for the parts of a brick's segment along which the extinction is one cubic, in order, until visit
+// returns false: its cells, or all of it where the brick is homogeneous. Returns false when visit did.
+template <class Visit>
+bool walk_cubics(const TrackingField& field, const VoxelSegment& in_brick, const Visit& visit) {
+    return field.homogeneous(in_brick.brick) ? visit(in_brick) : walk_cubes<1>(in_brick, visit);
+}
 
 // The point at distance t of a segment, in nodes from its brick's first node, inside the brick in spite of rounding.
 inline vec3 point_in_brick(const VoxelSegment& s, double t) {

@@ -151,9 +151,10 @@ void expect_fluence(Rows& rows, int first, int distance) {
 
 TEST(PointSource, LightsAnInfiniteMediumAsCaseAndZweifelSay) {
     Rows rows("point source");
-    for (const int first : {0, 3})
-        for (const int distance : {2, 3, 4, 5})
-            expect_fluence(rows, first, distance);
+    // Every albedo, and every distance from one mean free path on: near and middling ones in dark smoke, where few
+    // paths get any further; others in bright smoke.
+    for (const auto& [first, distance] : {std::pair(0, 2), {0, 4}, {3, 3}, {3, 5}})
+        expect_fluence(rows, first, distance);
 }
 
 // One glowing node, so small that lines are drawn toward it: a tent of two voxels' width. Voxels of an eighth of a mean
@@ -212,7 +213,8 @@ TEST(PointSource, ThatIsSmallLightsTheMediumTheSame) {
         settings.transmittance = transmittance;
         const Traced traced(one_node(), settings);
         const double power = emitted_power(*traced.medium).x;
-        for (const int i : {1, 2}) {
+        const bool exact = transmittance == TransmittanceEstimator::Exact;
+        for (const int i : exact ? std::vector<int>{1, 2} : std::vector<int>{2}) {
             const dvec3 from_node = kRadii[i] * glm::normalize(dvec3(0.64, 0.36, -0.68));
             const Estimate e = fluence_at(traced, from_node, sharp);
             for (int c = 0; c < 3; ++c) {

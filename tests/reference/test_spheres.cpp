@@ -64,7 +64,8 @@ void expect_ball(Rows& rows, const Fireball* three) {
 
 TEST(ModelFireballs, AreAsBrightAsTheIntegralEquationSays) {
     Rows rows("isothermal scattering balls");
-    for (std::size_t i = 0; i < std::size(kFireballs); i += 3)
+    // Every radius and every albedo: dark smoke at radii 0.5 and 2, bright smoke at 1 and 5.
+    for (const std::size_t i : {0, 9, 12, 21})
         expect_ball(rows, &kFireballs[i]);
 }
 

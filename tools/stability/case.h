@@ -52,6 +52,9 @@ struct Case {
     std::function<Scene()> scene;
     Measure measure;
     bool quick = false;  // of the subset that every test run renders
+    // Of a method that shares its noise: their mean is judged, and their spread is its noise. Pictures that ought to be
+    // the same number by number have no noise, and one of them is enough.
+    int pictures = 4;
 
     std::string family() const { return name.substr(0, name.find('/')); }
 

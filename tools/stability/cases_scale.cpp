@@ -41,6 +41,7 @@ Case scaled(double scale) {
     c.tolerance = {1e-4, 1e-4, "rounding; the tracer's random numbers are the same"};
     c.scene = [=] { return moved(scale, dvec3(0.0)); };
     c.measure = same_paths_as(unmoved);
+    c.pictures = 1;
     c.quick = scale == 1e-4;
     return c;
 }
@@ -60,6 +61,7 @@ Case far_away(const std::string& name, double scale, const dvec3& shift) {
     c.tolerance = {1e-4, 1e-4, "rounding; the levels' lattices are anchored to the world every 2^20 voxels"};
     c.scene = [=] { return moved(scale, shift); };
     c.measure = same_paths_as([=] { return moved(scale, dvec3(0.0)); });
+    c.pictures = 1;
     c.quick = scale == 1.0;
     return c;
 }

@@ -15,9 +15,6 @@ namespace {
 constexpr double kMostImbalance = 0.01;
 constexpr double kStandardErrors = 4.0;
 
-// Pictures of a method that shares its noise; their spread has three degrees of freedom.
-constexpr int kPictures = 4;
-
 RenderedFrame rendered_once(const Scene& scene, const Method& method, int seed) {
     Shot shot = scene.shot;
     method.apply_to(shot, seed);
@@ -35,12 +32,12 @@ void set_mean(Image& image, const std::vector<Image>& pictures) {
         }
 }
 
-RenderedFrame rendered(const Scene& scene, const Method& method) {
+RenderedFrame rendered(const Scene& scene, const Method& method, int pictures) {
     RenderedFrame frame = rendered_once(scene, method, 0);
     if (!method.shares_noise())
         return frame;
     frame.halves = {frame.image};
-    for (int seed = 1; seed < kPictures; ++seed)
+    for (int seed = 1; seed < pictures; ++seed)
         frame.halves.push_back(rendered_once(scene, method, seed).image);
     set_mean(frame.image, frame.halves);
     return frame;
@@ -104,11 +101,12 @@ std::optional<Result> run_case(const Case& c, const Method& method) {
         const Scene scene = c.scene();
         if (!owns_a_cell(method, scene))
             return std::nullopt;
-        const RenderedFrame frame = rendered(scene, method);
+        const Render render = [&c](const Scene& s, const Method& m) { return rendered(s, m, c.pictures); };
+        const RenderedFrame frame = render(scene, method);
         result.seconds = watch.seconds();
         result.finite = all_finite(frame.image);
         read_balances(frame.statistics, result);
-        result.measured = c.measure(scene, frame, method, rendered);
+        result.measured = c.measure(scene, frame, method, render);
     } catch (const std::exception& error) {
         result.seconds = watch.seconds();
         result.trouble = error.what();
