@@ -64,7 +64,7 @@ TEST(Photons, ConserveEnergy) {
     EXPECT_LT(photons.unshared_fraction(), 0.35);  // the front wall, which the camera has at its back
 }
 
-// The lights' areas make up the surface that they speak for.
+// The areas of the lights sum to the area of the surface that they cover.
 TEST(Areas, AddUpToTheSurface) {
     SceneSettings scene = furnace(0.5f);
     const Room room(scene);

@@ -185,7 +185,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
     command
         .add_option("--debug", options.debug,
                     "virtual-lights: pictures of the method beside the EXR, STEM.virtual_lights.*: the virtual lights "
-                    "of surfaces as points (.ply), as the camera sees them (.exr, .png), how many speak for each pixel "
+                    "of surfaces as points (.ply), as the camera sees them (.exr, .png), how many cover each pixel "
                     "(.count.png), how long paths are (.path_length.png), and the glossy ones' profiles "
                     "(.profiles.exr, .profiles.png); the same as --set output.virtual_lights=true")
         ->check(CLI::IsMember({kDebugVirtualLights}))
