@@ -249,7 +249,7 @@ TEST(ReadShot, VolumesThatCannotBeAreFound) {
     EXPECT_EQ(told(R"({"box": {"low": [0, 0, 0], "high": [1, 0, 1]}})"),
               "a.json:1: volumes: volume [0] is a box whose low is not below its high on every axis");
     EXPECT_EQ(told(R"({"box": {"low": [0, 0, 0], "high": [1, 1, 1]}, "fire_model": "flame"})"),
-              "a.json:1: volumes: volume [0] is a box of haze, which does not burn");
+              "a.json:1: volumes: volume [0] is a homogeneous box, which cannot emit; remove its fire_model");
     EXPECT_EQ(told(R"({"file": "a.vdb", "albdo": 1})"),
               "a.json:1: volumes[0]: expected keys it knows, such as \"albedo\", got \"albdo\" (text)");
 }
