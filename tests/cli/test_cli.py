@@ -325,7 +325,7 @@ class Rendering(VolumeCase):
             with subprocess.Popen([BINARY, "render", self.volume, "--set", "camera.width=4096", "--set",
                                    "camera.height=4096", "-o", self.out, "--progress", "plain"], stdout=subprocess.PIPE,
                                   stderr=subprocess.PIPE, cwd=self.folder) as process:
-                process.stderr.readline()  # handlers are in place once it speaks
+                process.stderr.readline()  # signal handlers are installed before the first line
                 process.send_signal(sent)
                 process.communicate(timeout=60)
             self.assertEqual(process.returncode, code)

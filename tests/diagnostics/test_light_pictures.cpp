@@ -301,7 +301,7 @@ TEST(LightPictures, PathsHaveOneVertexWithoutExtensionAndMoreWithIt) {
     Shot shot = shot_of_box();
     shot.virtual_lights.count = 2000;
     shot.virtual_lights.radius = LightRadius::Uniform;
-    shot.virtual_lights.radius_factor = 2.5;  // no place between lights is left out
+    shot.virtual_lights.radius_factor = 2.5;  // no gaps between the lights
     shot.virtual_lights.path_extension = false;
     const RenderedFrame plain = render(shot, heard);
     for (const float length : plain.light_pictures->image.layer("path_length").pixels)

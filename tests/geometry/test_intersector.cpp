@@ -43,11 +43,11 @@ TEST(Intersector, HitsLieWhereTheyShould) {
 }
 
 // Scale of the set [m], and how far from the local origin it stands, in its own size.
-struct Place {
+struct ScaleAndOffset {
     float scale, away;
 };
 
-class AtAnyScale : public ::testing::TestWithParam<Place> {
+class AtAnyScale : public ::testing::TestWithParam<ScaleAndOffset> {
 protected:
     vec3 centre() const { return GetParam().scale * GetParam().away * vec3(0.6f, -0.64f, 0.48f); }
 };
@@ -129,12 +129,13 @@ TEST_P(AtAnyScale, NearSurfacesAreStillApart) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Intersector, AtAnyScale,
-                         ::testing::Values(Place{1.0f, 0.0f}, Place{1e-6f, 0.0f}, Place{1e6f, 0.0f},
-                                           Place{1.0f, 100.0f}, Place{1e-3f, 100.0f}, Place{1e3f, 30.0f}));
+                         ::testing::Values(ScaleAndOffset{1.0f, 0.0f}, ScaleAndOffset{1e-6f, 0.0f},
+                                           ScaleAndOffset{1e6f, 0.0f}, ScaleAndOffset{1.0f, 100.0f},
+                                           ScaleAndOffset{1e-3f, 100.0f}, ScaleAndOffset{1e3f, 30.0f}));
 
 // Coincident faces: one of them is met, and the same one whoever asks.
-// What any ray finds within a ball, nobody is told to be farther away; and of a ball of triangles, few are said to be
-// near that are not.
+// any_within() must find every surface that a ray hits within the radius. Inside a mesh of a ball it may report few
+// surfaces that are farther away.
 TEST_P(AtAnyScale, NothingNearIsOverlooked) {
     const double size = GetParam().scale;
     Scene scene;
@@ -145,16 +146,16 @@ TEST_P(AtAnyScale, NothingNearIsOverlooked) {
     Rng rng(Stream::Points, 5);
     int found = 0, far = 0, said_near = 0;
     for (int i = 0; i < 20000; ++i) {
-        const dvec3 place = dvec3(centre()) + 2.5 * size * rng.next_double() * uniform_direction(rng);
+        const dvec3 point = dvec3(centre()) + 2.5 * size * rng.next_double() * uniform_direction(rng);
         const double radius = size * rng.next_double() * rng.next_double();
-        const bool near = intersector.any_within(place, radius);
+        const bool near = intersector.any_within(point, radius);
         bool hit = false;
         for (int k = 0; k < 8 && !hit; ++k)
-            hit = intersector.first_hit({place, uniform_direction(rng)}, radius).has_value();
-        EXPECT_TRUE(near || !hit) << "a surface within " << radius;
+            hit = intersector.first_hit({point, uniform_direction(rng)}, radius).has_value();
+        EXPECT_TRUE(near || !hit) << "a surface is hit within " << radius;
         found += hit;
-        const double from_ball = glm::distance(place, dvec3(centre())) / size;
-        if (from_ball < 0.9 && from_ball + radius / size < 0.9 && place.z > centre().z + 0.5 * size) {
+        const double from_ball = glm::distance(point, dvec3(centre())) / size;
+        if (from_ball < 0.9 && from_ball + radius / size < 0.9 && point.z > centre().z + 0.5 * size) {
             ++far;
             said_near += near;
         }

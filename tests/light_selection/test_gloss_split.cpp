@@ -100,7 +100,7 @@ TEST(GlossSplit, PartsOfADirectionAddUp) {
             EXPECT_GE(of_rays, 0.0);
             EXPECT_LE(of_rays, 1.0);
             EXPECT_NEAR(split.of_lights(to).x + of_rays * whole.x, whole.x, 1e-5 * whole.x);
-            // What makes a place bright is bounded, however sharp the lobe.
+            // The contribution of one light is bounded, however sharp the lobe.
             EXPECT_LE(split.of_lights(to).x, 1.0001 * kPlaces / (2.0 * std::numbers::pi));
         }
         EXPECT_EQ(split.of_rays({0.0, 0.6, -0.8}), 1.0);

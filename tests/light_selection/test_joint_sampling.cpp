@@ -15,7 +15,7 @@ namespace {
 
 using namespace testing;
 
-// A density's integral from 0, on a mesh that is fine around a place, down to 1e-13 of the length.
+// A density's integral from 0, on a mesh that is fine around `centre`, down to 1e-13 of the length.
 class Cumulative {
 public:
     template <class Density>
@@ -46,7 +46,7 @@ private:
     std::vector<double> places_, sums_;
 };
 
-// Integrates to one, and samples follow: their place in the cumulative density is uniform.
+// The density integrates to one, and samples follow it: their cumulative density is uniform.
 template <class Density>
 void expect_density(const Density& density, double length, double centre, const char* what) {
     const Cumulative cumulative(length, centre, [&](double t) { return density.pdf(t); });
@@ -180,10 +180,10 @@ struct Geometry {
 };
 
 double integrand(const Geometry& geometry, double g, double u, double v) {
-    const dvec3 way = geometry.camera.at(u) - geometry.light.at(v);
-    const double w = glm::length(way);
-    return std::exp(-u - v - w) / (w * w) * phase_about(geometry.light.direction, way / w, g) *
-           phase_about(way / w, -geometry.camera.direction, g);
+    const dvec3 offset = geometry.camera.at(u) - geometry.light.at(v);
+    const double w = glm::length(offset);
+    return std::exp(-u - v - w) / (w * w) * phase_about(geometry.light.direction, offset / w, g) *
+           phase_about(offset / w, -geometry.camera.direction, g);
 }
 
 enum class Strategy { Uniform, EquiAngular, Joint, FromTheCamera };

@@ -34,17 +34,17 @@ TEST(Schema, TheCommittedFileIsTheOneThatIsPrinted) {
 TEST(Schema, KnowsEveryKeyAndForbidsOthers) {
     const Json schema = Json::parse(shot_schema());
     for (const Key& key : shot_keys()) {
-        const Json* place = &schema;
+        const Json* object = &schema;
         std::size_t begin = 0;
         while (begin != std::string::npos) {
-            EXPECT_EQ((*place)["additionalProperties"], false) << key.path;
+            EXPECT_EQ((*object)["additionalProperties"], false) << key.path;
             const std::size_t point = key.path.find('.', begin);
             const std::string part = key.path.substr(begin, point == std::string::npos ? point : point - begin);
-            ASSERT_TRUE((*place)["properties"].contains(part)) << key.path;
-            place = &(*place)["properties"][part];
+            ASSERT_TRUE((*object)["properties"].contains(part)) << key.path;
+            object = &(*object)["properties"][part];
             begin = point == std::string::npos ? point : point + 1;
         }
-        EXPECT_EQ((*place)["description"], key.help);
+        EXPECT_EQ((*object)["description"], key.help);
     }
 }
 

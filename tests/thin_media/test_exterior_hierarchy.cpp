@@ -46,8 +46,8 @@ double brute_force(const Medium& medium, const PointDepths& depths, const std::v
         std::fill(to.begin() + n, to.end(), to[0]);
         depths.between(at.local, to.data(), depth.data());
         for (int k = 0; k < n; ++k) {
-            const vec3 way = to[k] - at.local;
-            const double square = glm::dot(way, way), cosine = glm::dot(way, at.normal) / std::sqrt(square);
+            const vec3 offset = to[k] - at.local;
+            const double square = glm::dot(offset, offset), cosine = glm::dot(offset, at.normal) / std::sqrt(square);
             sum += std::max(0.0, cosine) * light[k] * std::exp(-double(depth[k])) / square;
         }
         n = 0;

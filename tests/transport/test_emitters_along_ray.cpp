@@ -56,9 +56,9 @@ double expected(const dvec3& lamp, const Ray& ray, double end, const Falloff& fa
     double sum = 0.0;
     for (int i = 0; i < kSteps; ++i) {
         const double t = (i + 0.5) / kSteps * end;
-        const dvec3 way = ray.origin + t * ray.direction - lamp;
-        const double distance = glm::length(way);
-        const dvec3 direction = way / distance;
+        const dvec3 offset = ray.origin + t * ray.direction - lamp;
+        const double distance = glm::length(offset);
+        const dvec3 direction = offset / distance;
         sum += falloff(direction) * henyey_greenstein(float(glm::dot(direction, -ray.direction)), kG) *
                std::exp(-kExtinction * (t + distance)) / (distance * distance);
     }

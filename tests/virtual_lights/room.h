@@ -44,7 +44,7 @@ struct Room {
     PathTracer tracer;
 };
 
-// Smoke in a ball of 0.45 m around a place of the room, that glows with source function `glow` (or not, for 0).
+// Smoke in a ball of 0.45 m around a point of the room, which glows with source function `glow` (or not, for 0).
 Medium smoke_ball(const dvec3& centre, float density, const Rgb& albedo, float glow);
 
 // Few lights and photons, for tests that compare with each other.

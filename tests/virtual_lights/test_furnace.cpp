@@ -18,9 +18,8 @@ SceneSettings furnace(float albedo) {
 }
 
 double mean_of(const Room& room, const VirtualLights& lights, double& error) {
-    const Estimate e = estimate(1, 64, [&](const dvec3& place, Rng& rng, double* out) {
-        out[0] = room.by_lights(lights, place.x, place.y, rng).x;
-    });
+    const Estimate e = estimate(
+        1, 64, [&](const dvec3& u, Rng& rng, double* out) { out[0] = room.by_lights(lights, u.x, u.y, rng).x; });
     error = e.error[0];
     return e.mean[0];
 }

@@ -45,7 +45,8 @@ std::string coordinates(const dvec3& p) {
 
 void print_vertices(const TracedPath& path) {
     fmt::print(
-        "vertices: scatterings, place [m], throughput, radiance gathered along the segment that leaves it, by a line "
+        "vertices: scatterings, position [m], throughput, radiance gathered along the segment that leaves it, by a "
+        "line "
         "toward the fire, and by a ray toward an emitter:\n");
     for (const TracedVertex& vertex : path.vertices)
         fmt::print("  {:<6} {} {}  throughput {}  along {}  from fire {}  from emitters {}{}\n",

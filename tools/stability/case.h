@@ -42,7 +42,7 @@ struct Limit {
 struct Tolerance {
     std::optional<double> lighting_grid, path;  // empty: the method does not render this case
     std::string reason;                         // why no smaller
-    std::map<std::string, Limit> limits = {};   // by the method's name, in place of those above
+    std::map<std::string, Limit> limits = {};   // by the method's name, instead of those above
 };
 
 struct Case {

@@ -26,7 +26,7 @@ export function nameOf(id) {
 }
 
 // What a plot can show of a method: [{run, seconds, error}], by time. An error of 0 is one too small to be told from
-// the reference, and has no place on a logarithmic axis.
+// the reference, and cannot be drawn on a logarithmic axis.
 export function pointsOf(method, layer, measure, clock) {
     return method.runs
         .map((run) => ({ run, seconds: run[clocks[clock].key], error: run.errors[layer]?.[measure] }))
