@@ -30,15 +30,15 @@ Differences measure_differences(std::span<const Rgb> image, std::span<const Rgb>
 struct HalvesDifferences {
     // sqrt(max(0, sum (I - A)(I - B) / sum A B)). The noise of A and of B is independent of each other and of I, so its
     // square has the expectation of the true squared rRMSE, without what the noise of (A + B) / 2 adds to rRMSE. 0 also
-    // where chance makes the sum negative: then the error is below what the halves can tell.
+    // where chance makes the sum negative: then the error is below what the halves resolve.
     double noise_free = 0.0;
     double reference_noise = 0.0;  // rRMSE of (A + B) / 2 by its noise: ||A - B|| / 2 / ||(A + B) / 2||
 };
 
 HalvesDifferences measure_halves(std::span<const Rgb> image, std::span<const Rgb> a, std::span<const Rgb> b);
 
-// An rRMSE against (A + B) / 2 that tells about the reference rather than about the image: below kNoiseMargin times the
-// reference's noise. Says nothing about the noise-free error, which may be far smaller.
+// An rRMSE against (A + B) / 2 that measures the noise of the reference rather than the image: below kNoiseMargin times
+// the reference's noise. Says nothing about the noise-free error, which may be far smaller.
 inline bool below_noise(double rrmse, double reference_noise) {
     return rrmse < kNoiseMargin * reference_noise;
 }

@@ -220,7 +220,7 @@ const EnergyTables& energy_tables(float ior) {
         if (const auto found = kept.find(ior); found != kept.end())
             return *found->second;
     }
-    // Made outside the lock: a thread that waits for its parallel loop may be given work that asks for tables too.
+    // Made outside the lock: a thread that waits for its parallel loop may be given work that needs tables, too.
     auto made = std::make_unique<const EnergyTables>(ior);
     const std::unique_lock lock(mutex);
     return *kept.try_emplace(ior, std::move(made)).first->second;

@@ -12,7 +12,7 @@
 namespace brisance {
 
 struct ComparedFrame {
-    std::optional<int> frame;  // absent: the file does not tell
+    std::optional<int> frame;  // absent: the file does not say
     std::filesystem::path image;
     std::vector<std::filesystem::path> references;           // one, or two halves
     std::optional<double> render_seconds;                    // of the image

@@ -29,7 +29,7 @@ std::string order_name(int order, bool has_cells) {
     return fmt::format("{}{} {}", order, order + 1 == kPathOrders ? "+" : "", has_cells ? "" : cell_name(order));
 }
 
-// Where there are surroundings the number of scatterings does not tell the cell.
+// With surroundings the number of scatterings does not determine the cell.
 std::string vertex_name(const TracedVertex& vertex, bool has_cells) {
     return has_cells ? std::to_string(vertex.order) : fmt::format("{} {}", vertex.order, cell_name(vertex.order));
 }

@@ -26,7 +26,7 @@ struct LayerErrors {
     Differences differences;
     double flip = 0.0;
     NotFinite not_finite;
-    bool below_noise = false;  // differences.rrmse tells about the reference rather than about the image
+    bool below_noise = false;  // differences.rrmse measures the noise of the reference rather than the image
 };
 
 struct MeasuredRun {

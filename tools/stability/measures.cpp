@@ -74,8 +74,8 @@ Measured of_pixels(const std::vector<dvec3>& found, const std::vector<dvec3>& wa
     return {relative(std::sqrt(error), std::sqrt(square)), 0.0};
 }
 
-// Of a picture whose pixels are sampled independently of each other: of its mean, with the noise that their spread
-// tells.
+// Of a picture whose pixels are sampled independently of each other: of its mean, with the noise
+// from their spread.
 Measured of_sampled_pixels(const std::vector<dvec3>& found, const std::vector<dvec3>& wanted) {
     dvec3 sum(0.0), square(0.0);
     for (std::size_t i = 0; i < found.size(); ++i) {

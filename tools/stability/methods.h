@@ -23,7 +23,7 @@ public:
     bool is_path() const { return scattering_.empty(); }
     bool is_grid() const { return scattering_ == kLightingGridMethod; }
 
-    // All pixels see the same random lights or particles: only other seeds tell how noisy they are.
+    // All pixels see the same random lights or particles: only other seeds show their noise.
     bool shares_noise() const { return !is_path() && !is_grid(); }
 
     // The same shot by this method. `seed`: other ones draw other lights and particles. Throws Error Usage where the

@@ -25,7 +25,7 @@ export function nameOf(id) {
     return `${method.label}, ${run.label}`;
 }
 
-// What a plot can show of a method: [{run, seconds, error}], by time. An error of 0 is one too small to be told from
+// What a plot can show of a method: [{run, seconds, error}], by time. An error of 0 is one too small to be distinguished from
 // the reference, and cannot be drawn on a logarithmic axis.
 export function pointsOf(method, layer, measure, clock) {
     return method.runs
