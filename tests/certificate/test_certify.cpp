@@ -209,7 +209,7 @@ TEST_F(Certificates, HoldTheTruthAsOftenAsTheySay) {
     expect_coverage(of_bad, true_errors(bad, truth));
     expect_coverage(of_good, true_errors(good, truth));
     for (const Certificate& c : of_bad)
-        EXPECT_GT(c.errors.front().error_interval.low, 0.0) << "six per cent are told from none";
+        EXPECT_GT(c.errors.front().error_interval.low, 0.0) << "an error of 6 % is distinguished from none";
     for (const Certificate& c : of_good)
         EXPECT_LT(c.errors.front().error_interval.high, 0.06) << "a good picture is known to be one";
 }

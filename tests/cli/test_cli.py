@@ -296,7 +296,7 @@ class Rendering(VolumeCase):
     def test_frame_outside_the_sequence(self):
         pattern = self.make_sequence([1, 2, 4])
         self.expect(66, "render", pattern, *SMALL, "-f", "2-4", "-o", self.out, says=["frame 3", "1-2, 4"])
-        self.assertEqual(self.outputs(), [])  # told before the first frame is rendered
+        self.assertEqual(self.outputs(), [])  # reported before the first frame is rendered
         self.expect(2, "render", pattern, "-f", "1:4", says="':'")
 
     def test_frames_get_their_numbers(self):

@@ -89,7 +89,7 @@ TEST_P(AtAnyScale, SurfacesDoNotMeetThemselves) {
             add_box(scene, centre() - s, centre() + s, lambert(0.5f));
         const Intersector intersector(scene);
         Rng rng(Stream::Points, 2);
-        int met = 0, asked = 0;
+        int met = 0, tested = 0;
         for (int i = 0; i < 30000; ++i) {
             const dvec3 inward = uniform_direction(rng);
             const auto hit = intersector.first_hit({dvec3(centre()) - 3.0 * double(s) * inward, inward});
@@ -103,11 +103,11 @@ TEST_P(AtAnyScale, SurfacesDoNotMeetThemselves) {
                     d = glm::normalize(d - (1.0 - 1e-3) * glm::dot(d, point.geometric_normal) * point.geometric_normal);
                 if (glm::dot(d, point.geometric_normal) < 0.0)
                     d = -d;
-                ++asked;
+                ++tested;
                 met += intersector.occluded(point.leaving(d));
             }
         }
-        EXPECT_GT(asked, 50000);
+        EXPECT_GT(tested, 50000);
         EXPECT_EQ(met, 0) << (round ? "ball" : "box");
     }
 }
@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(Intersector, AtAnyScale,
                                            ScaleAndOffset{1e6f, 0.0f}, ScaleAndOffset{1.0f, 100.0f},
                                            ScaleAndOffset{1e-3f, 100.0f}, ScaleAndOffset{1e3f, 30.0f}));
 
-// Coincident faces: one of them is met, and the same one whoever asks.
+// Of coincident faces every intersector finds the same one.
 // any_within() must find every surface that a ray hits within the radius. Inside a mesh of a ball it may report few
 // surfaces that are farther away.
 TEST_P(AtAnyScale, NothingNearIsOverlooked) {

@@ -282,7 +282,7 @@ TEST(PairSampling, SpreadOfOneEstimate) {
     row(0.5, 90.0, 0.63);
     row(0.05, 90.0, 0.43);
     row(0.005, 90.0, 0.35);
-    row(0.005, 30.0, 0.43);  // not asked for
+    row(0.005, 30.0, 0.43);  // no bound is required here
 }
 
 }  // namespace

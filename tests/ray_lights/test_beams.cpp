@@ -223,7 +223,7 @@ TEST(Beams, TakeAwayNoiseOfGlossySurfaces) {
     }
 }
 
-// Of one light's estimate at a point of the floor, the lights being asked in turn by the tree.
+// Of one light's estimate at a point of the floor; the tree chooses the light.
 double spread_on_floor(float mean_cosine, const SurfaceMaterial& material, double radius) {
     const Stage stage(coloured_ball(8, 1.0f, mean_cosine), {});
     RayLightSettings settings;

@@ -1,4 +1,4 @@
-// Light is neither made nor lost on the way: what is emitted leaves, or is absorbed.
+// Energy is conserved: what is emitted leaves, or is absorbed.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -121,7 +121,8 @@ TEST(Surfaces, WhiteThingsVanishUnderAnEvenSky) {
     }
 }
 
-// Smoke that burns at one temperature, between walls of the same: nobody can tell them apart, whatever either scatters.
+// Smoke that burns at one temperature, between walls of the same temperature: nothing distinguishes them, whatever
+// either scatters.
 TEST(Surfaces, SmokeAndWallsInEquilibriumHaveOneRadiance) {
     Rows rows("equilibrium");
     for (const float rho : {0.0f, 0.8f})

@@ -1,4 +1,4 @@
-// A path's vertices tell all that the path brings, and looking at them changes nothing.
+// The vertices of a path account for all of its radiance, and recording them does not change the path.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -259,8 +259,8 @@ TEST_P(LightsInSmokePictures, NothingIsTracedForWhatIsNotThere) {
 
 // By the shot, not by what a frame holds.
 TEST(ScatteringMethods, AreChosenByTheShotAlone) {
-    const auto chosen = [](float mean_cosine, bool box, bool file, const std::string& asked) {
-        Shot shot = small_shot(RenderMethod::LightingGrid, asked);
+    const auto chosen = [](float mean_cosine, bool box, bool file, const std::string& method) {
+        Shot shot = small_shot(RenderMethod::LightingGrid, method);
         if (box)
             shot.volumes.emplace_back().volume.box = FogBox{{-1, -1, -1}, {1, 1, 1}, 0.1};
         if (file)

@@ -34,7 +34,7 @@ TEST(Balance, EscapeFromABallIsAsTabulated) {
     }
 }
 
-// The mean way out of a ball is 3/4 of its radius; however little collides there, it is known as well as ever.
+// The mean distance out of a ball is 3/4 of its radius; however little collides there, it is known as well as ever.
 TEST(Balance, CollisionsInTheThinnestSmokeKeepTheirDigits) {
     for (const float depth : {1e-3f, 1e-6f, 1e-12f}) {
         const Lit lit(make_medium(glowing_ball(16, depth)));

@@ -1,4 +1,4 @@
-// What a shot's text is answered with.
+// Shots parsed from text, and the error messages.
 #pragma once
 
 #include <string>

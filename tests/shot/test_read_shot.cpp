@@ -1,4 +1,4 @@
-// Reading a shot: layers, places in the file, and complaints that say what to do.
+// Reading a shot: layers, positions in the file, and error messages that say what to do.
 
 #include <gtest/gtest.h>
 
@@ -225,42 +225,44 @@ TEST(ReadShot, ScenesAreListsOfThings) {
 }
 
 // A long list is no help unless the part that is wrong is named.
-TEST(ReadShot, MistakesInListsNameTheirPlace) {
-    const auto told = [](const std::string& scene) { return complaint(R"({"scene": )" + scene + "}"); };
-    EXPECT_EQ(told(R"({"spheres": [{"centre": [0, 0, 0], "radius": 1}, {"centre": [0, 0, 0], "radius": -2}]})"),
+TEST(ReadShot, MistakesInListsNameTheirPosition) {
+    const auto message_for = [](const std::string& scene) { return complaint(R"({"scene": )" + scene + "}"); };
+    EXPECT_EQ(message_for(R"({"spheres": [{"centre": [0, 0, 0], "radius": 1}, {"centre": [0, 0, 0], "radius": -2}]})"),
               "a.json:1: scene.spheres[1].radius: expected a number above 0, got -2 (a number)");
-    EXPECT_EQ(told(R"({"files": [{"file": "a.glb", "upp": "z"}]})"),
+    EXPECT_EQ(message_for(R"({"files": [{"file": "a.glb", "upp": "z"}]})"),
               "a.json:1: scene.files[0]: expected keys it knows, such as \"up\", got \"upp\" (text)");
-    EXPECT_EQ(told(R"({"files": [{"up": "z"}]})"),
+    EXPECT_EQ(message_for(R"({"files": [{"up": "z"}]})"),
               "a.json:1: scene.files[0]: expected \"file\", which is missing: text in quotes that is not empty, got "
               "{\"up\":\"z\"} (an object)");
-    EXPECT_EQ(told(R"({"lights": [{"kind": "lamp"}]})"),
+    EXPECT_EQ(message_for(R"({"lights": [{"kind": "lamp"}]})"),
               "a.json:1: scene.lights[0].kind: expected one of \"point\", \"spot\", \"sun\", \"quad\", "
               "\"environment\", got \"lamp\" (text)");
-    EXPECT_EQ(told(R"({"quads": {}})"),
+    EXPECT_EQ(message_for(R"({"quads": {}})"),
               "a.json:1: scene.quads: expected a list of quads [{\"corners\": ...}], got {} (an object)");
 }
 
 TEST(ReadShot, VolumesThatCannotBeAreFound) {
-    const auto told = [](const std::string& v) { return complaint(R"({"volumes": [)" + v + "]}"); };
-    EXPECT_EQ(told("{}"), "a.json:1: volumes: volume [0] needs either a file or a box");
-    EXPECT_EQ(told(R"({"file": "a.vdb", "box": {"low": [0, 0, 0], "high": [1, 1, 1]}})"),
+    const auto message_for = [](const std::string& v) { return complaint(R"({"volumes": [)" + v + "]}"); };
+    EXPECT_EQ(message_for("{}"), "a.json:1: volumes: volume [0] needs either a file or a box");
+    EXPECT_EQ(message_for(R"({"file": "a.vdb", "box": {"low": [0, 0, 0], "high": [1, 1, 1]}})"),
               "a.json:1: volumes: volume [0] needs either a file or a box");
-    EXPECT_EQ(told(R"({"box": {"low": [0, 0, 0], "high": [1, 0, 1]}})"),
+    EXPECT_EQ(message_for(R"({"box": {"low": [0, 0, 0], "high": [1, 0, 1]}})"),
               "a.json:1: volumes: volume [0] is a box whose low is not below its high on every axis");
-    EXPECT_EQ(told(R"({"box": {"low": [0, 0, 0], "high": [1, 1, 1]}, "fire_model": "flame"})"),
+    EXPECT_EQ(message_for(R"({"box": {"low": [0, 0, 0], "high": [1, 1, 1]}, "fire_model": "flame"})"),
               "a.json:1: volumes: volume [0] is a homogeneous box, which cannot emit; remove its fire_model");
-    EXPECT_EQ(told(R"({"file": "a.vdb", "albdo": 1})"),
+    EXPECT_EQ(message_for(R"({"file": "a.vdb", "albdo": 1})"),
               "a.json:1: volumes[0]: expected keys it knows, such as \"albedo\", got \"albdo\" (text)");
 }
 
 TEST(ReadShot, LightsThatCannotBeAreFound) {
-    const auto told = [](const std::string& light) { return complaint(R"({"scene": {"lights": [)" + light + "]}}"); };
-    EXPECT_EQ(told(R"({"kind": "sun", "direction": [0, 0, 0]})"),
+    const auto message_for = [](const std::string& light) {
+        return complaint(R"({"scene": {"lights": [)" + light + "]}}");
+    };
+    EXPECT_EQ(message_for(R"({"kind": "sun", "direction": [0, 0, 0]})"),
               "a.json:1: scene.lights: light [0] has a direction of no length");
-    EXPECT_EQ(told(R"({"kind": "spot", "inner_degrees": 50, "outer_degrees": 40})"),
+    EXPECT_EQ(message_for(R"({"kind": "spot", "inner_degrees": 50, "outer_degrees": 40})"),
               "a.json:1: scene.lights: light [0] has inner_degrees above outer_degrees");
-    EXPECT_EQ(told(R"({"kind": "environment"}, {"kind": "environment"})"),
+    EXPECT_EQ(message_for(R"({"kind": "environment"}, {"kind": "environment"})"),
               "a.json:1: scene.lights: light [1] is a second environment; there can be only one");
 }
 
