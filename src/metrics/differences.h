@@ -1,4 +1,5 @@
-// How far an image is from its reference, as single numbers. All are relative: units and exposure do not matter.
+// Errors of an image against its reference, each a single number. All are relative: they depend neither on the unit nor
+// on the exposure.
 #pragma once
 
 #include <cstddef>
@@ -10,10 +11,10 @@ namespace brisance {
 
 constexpr double kEpsilonShare = 1e-2;  // of the reference's mean: what relMSE and MAPE add to small denominators
 constexpr double kTrimmedShare = 1e-3;  // of the pixels, those of largest error, that relMSE leaves out
-constexpr double kNoiseMargin = 2.0;    // errors below so many times the reference's noise are not the image's
+constexpr double kNoiseMargin = 2.0;  // errors below this multiple of the reference's noise say nothing about the image
 
-// Of an image I from a reference R, over all pixels and channels. Infinite where a reference without light leaves
-// something to be divided by nothing.
+// Of an image I from a reference R, over all pixels and channels. Infinite where the denominator is 0 and the numerator
+// is not, as with a black reference.
 struct Differences {
     double rrmse = 0.0;    // ||I - R|| / ||R||
     double relmse = 0.0;   // mean of (I - R)^2 / (R^2 + epsilon^2), channels averaged first, without the trimmed pixels
