@@ -51,10 +51,10 @@ TEST(Schema, KnowsEveryKeyAndForbidsOthers) {
 TEST(Schema, BoundsAreThoseOfTheReader) {
     const Json schema = Json::parse(shot_schema());
     const Json& width = schema["properties"]["camera"]["properties"]["width"];
-    EXPECT_EQ(testing::complaint_about({"camera.width=" + width["maximum"].dump()}), "");
-    EXPECT_NE(testing::complaint_about({"camera.width=" + std::to_string(width["maximum"].get<int>() + 1)}), "");
+    EXPECT_EQ(testing::message_of_overrides({"camera.width=" + width["maximum"].dump()}), "");
+    EXPECT_NE(testing::message_of_overrides({"camera.width=" + std::to_string(width["maximum"].get<int>() + 1)}), "");
     const Json& fov = schema["properties"]["camera"]["properties"]["vertical_fov_degrees"];
-    EXPECT_NE(testing::complaint_about({"camera.vertical_fov_degrees=" + fov["exclusiveMaximum"].dump()}), "");
+    EXPECT_NE(testing::message_of_overrides({"camera.vertical_fov_degrees=" + fov["exclusiveMaximum"].dump()}), "");
 }
 
 TEST(Schema, ShotsThatComeWithTheProgramAreRead) {
