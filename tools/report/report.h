@@ -1,4 +1,4 @@
-// What a report holds: methods measured against a reference, at several steps each.
+// The data of a report: methods measured against a reference, at several steps each.
 #pragma once
 
 #include <map>
@@ -32,7 +32,7 @@ struct LayerErrors {
 struct MeasuredRun {
     std::string id;  // of its pictures in the page
     MethodStep step;
-    std::string command;  // that renders it again
+    std::string command;  // that repeats the render
     Cost cost;            // median of the repeats, by wall time
     double samples_per_pixel = 0.0;
     Statistics statistics;

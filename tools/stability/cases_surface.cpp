@@ -1,4 +1,4 @@
-// Surfaces where they are awkward: walls against the fire, two coincident walls, walls that reflect nothing or
+// Difficult surfaces: walls against the fire, two coincident walls, walls that reflect nothing or
 // everything, mirrors, and walls behind smoke that is hardly there or hides all.
 #include <algorithm>
 #include <cmath>

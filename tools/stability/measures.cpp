@@ -29,7 +29,7 @@ double norm(const dvec3& v) {
     return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
 }
 
-// Where nothing is wanted, whatever is found is the error itself [W/(m^2 sr)].
+// Where the truth is 0, the error is absolute [W/(m^2 sr)].
 double relative(double error, double wanted) {
     return wanted > 0.0 ? error / wanted : error;
 }

@@ -1,5 +1,5 @@
-// What renders the cases: the path tracer, and the lighting grid with each of the owners of light that was scattered
-// more than once (MM and SM).
+// The methods that render the cases: the path tracer, and the lighting grid with each method for light scattered more
+// than once (MM and SM).
 #pragma once
 
 #include <string>
@@ -36,8 +36,8 @@ private:
     std::string scattering_;  // empty: paths
 };
 
-// The lighting grid first, then the path tracer, which every case knows; then the others, which have a part in those
-// cases alone whose light is scattered twice.
+// The lighting grid first, then the path tracer, which render every case; then the others, which contribute only to
+// cases with light scattered twice.
 const std::vector<Method>& all_methods();
 
 }  // namespace brisance::stability
