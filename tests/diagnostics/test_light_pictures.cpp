@@ -1,4 +1,4 @@
-// Pictures of virtual lights: where they are drawn, what the files say, and when there are none.
+// Pictures of virtual lights: positions in the picture, contents of the files, and cases without pictures.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Input that nobody would wish for.
+// Degenerate and invalid input.
 #include <gtest/gtest.h>
 
 #include <cmath>

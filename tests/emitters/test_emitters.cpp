@@ -1,5 +1,5 @@
-// All that shines but the fire: what arrives at a point, by sampling lights, by sampling directions, and by closed
-// forms.
+// Emitters other than fire: the light that arrives at a point, by sampling lights, by sampling directions, and by
+// closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>

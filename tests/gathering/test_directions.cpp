@@ -1,4 +1,4 @@
-// Where light comes from matters where smoke scatters forward.
+// Directions of arriving light, for anisotropic phase functions.
 #include <gtest/gtest.h>
 
 #include "gather_fixture.h"

@@ -1,4 +1,4 @@
-// Rays and triangles: nothing slips through, nothing meets itself, at any scale and far from anywhere.
+// Rays and triangles: no leaks and no self-intersections, at any scale and far from the origin.
 #include <gtest/gtest.h>
 
 #include <cmath>

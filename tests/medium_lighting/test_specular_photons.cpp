@@ -1,4 +1,4 @@
-// Light that mirrors cast on smoke.
+// Light that mirrors reflect onto smoke.
 #include <gtest/gtest.h>
 
 #include "fixtures/media.h"

@@ -1,4 +1,4 @@
-// All measures together: halves, pixels that are no numbers, and change from frame to frame.
+// All measures together: halves, pixels that are not finite, and change from frame to frame.
 
 #include "metrics/comparison.h"
 

@@ -1,4 +1,4 @@
-// Virtual beam lights: what their blur keeps, the bias that it is, and the noise that it takes away.
+// Virtual beam lights: the energy that their blur conserves, its bias, and the noise that it removes.
 #include <gtest/gtest.h>
 
 #include <cmath>

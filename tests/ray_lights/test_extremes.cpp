@@ -1,4 +1,4 @@
-// Ray lights where formulas meet their ends: no length, one line, sharp phase functions, endless smoke, smoke around
+// Ray lights in limiting cases: no length, one line, sharp phase functions, endless smoke, smoke around
 // everything. All is finite, and right where there is something to compare with.
 #include <gtest/gtest.h>
 

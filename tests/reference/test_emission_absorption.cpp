@@ -1,4 +1,4 @@
-// Lines through smoke that glows and absorbs and does not scatter, against closed forms.
+// Rays through smoke that emits and absorbs and does not scatter, against closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -95,7 +95,7 @@ TEST(Estimators, AgreeOrderByOrder) {
         found.push_back(look_by_orders(variant.settings));
     for (std::size_t i = 0; i < variants.size(); ++i)
         for (int k = 0; k < kPathOrders + 3; ++k) {
-            // Against the mean of all others, weighted by what they are known to.
+            // Against the mean of all others, weighted by their precision.
             double sum = 0.0, weights = 0.0;
             for (std::size_t j = 0; j < variants.size(); ++j) {
                 const double weight = i == j ? 0.0 : 1.0 / (found[j].error[k] * found[j].error[k]);

@@ -162,7 +162,7 @@ TEST_P(LightsInSmokePictures, ThreadsChangeNothing) {
     }
 }
 
-// Passes are pictures that know nothing of each other, so that their mean has the less noise.
+// Passes are independent pictures, so that their mean has less noise.
 TEST(RayLightPasses, HaveLessNoise) {
     const Medium medium = smoke(0.0f);
     Shot shot = small_shot(RenderMethod::LightingGrid);

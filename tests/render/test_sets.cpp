@@ -63,7 +63,7 @@ Whole whole(const Layer& layer) {
     return {sum / (double(kWidth) * kHeight), 0.0};
 }
 
-// The picture's mean in every cell. What the methods are known to: hierarchies 2 %, and noise, by the tracer's halves.
+// The mean of the picture in every cell. Tolerances: 2 % for hierarchies, and noise, from the tracer's halves.
 TEST(Sets, EveryCellIsThePathTracers) {
     const Medium medium = make_medium([] {
         Recipe r = glowing_ball(20, 3.0f);

@@ -1,4 +1,5 @@
-// Files that cannot be used say so in one line, whatever they claim; and files that can, wherever their parts are.
+// Files that cannot be used are rejected with one line, whatever their headers claim. Files that can be used load,
+// wherever their parts are.
 #include <gtest/gtest.h>
 
 #include <cstring>

@@ -1,4 +1,4 @@
-// What is published of shots agrees with what is read: the schema, the shots that come with the program, and shots
+// Everything published about shots agrees with the reader: the schema, the shots that come with the program, and shots
 // written back.
 
 #include <gtest/gtest.h>

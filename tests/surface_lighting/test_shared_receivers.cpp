@@ -1,4 +1,4 @@
-// Which surface samples of a pixel share a receiver.
+// Sharing of receivers by the surface samples of a pixel.
 #include "surface_lighting/shared_receivers.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// What surfaces outside of the smoke receive from the lighting grid, against the sum over all its voxels with marched
-// transmittance.
+// The light that surfaces outside of the smoke receive from the lighting grid, against the sum over all its voxels with
+// marched transmittance.
 #include <gtest/gtest.h>
 
 #include <algorithm>

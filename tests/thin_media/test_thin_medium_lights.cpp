@@ -1,4 +1,4 @@
-// Even haze's lights stand for all its nodes.
+// The lights of homogeneous haze represent all its nodes.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Directions toward the fire and directions of scattering: samples follow the densities that say they do.
+// Directions toward the fire and directions of scattering: samples follow their stated densities.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -138,7 +138,7 @@ TEST(FireDirections, TheirInverseDensityFillsTheSphere) {
     rows.expect("inside", e.mean[0], e.error[0], 4.0 * kPi64, 1e-6);
 }
 
-// Any integral over directions may be sampled by them: here of a function that knows nothing of the fire.
+// Any integral over directions may be sampled by them: here of a function that is unrelated to the fire.
 TEST(FireDirections, MeasureWhatUniformDirectionsMeasure) {
     const Fire fire(true);
     Rows rows("some function of directions");

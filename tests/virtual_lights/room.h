@@ -31,7 +31,7 @@ struct Room {
     PixelCamera camera() const;
     VirtualLights lights(const VirtualLightSettings& settings) const;
 
-    // What virtual lights, or the path tracer, bring to the cell SS along one ray of the camera through [0, 1]^2.
+    // The radiance in the cell SS along one camera ray through [0, 1]^2, by virtual lights or the path tracer.
     Rgb by_lights(const VirtualLights& lights, double x, double y, Rng& rng) const;
     Rgb by_paths(double x, double y, Rng& rng, Cell cell = Cell::SS) const;
     // The cell MS: a collision is forced on the ray.

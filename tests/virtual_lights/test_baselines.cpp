@@ -1,4 +1,4 @@
-// The kinds of virtual lights that others use: what they lose, what they keep, and that all gatherers agree.
+// Other kinds of virtual lights: the energy that they lose or conserve, and the agreement of all gatherers.
 #include <gtest/gtest.h>
 
 #include "core/error.h"

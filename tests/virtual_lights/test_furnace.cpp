@@ -1,4 +1,4 @@
-// Closed rooms whose light is known, and where the photons' power stays.
+// Closed rooms with a known solution, and the balance of the photons' power.
 #include <gtest/gtest.h>
 
 #include "room.h"

@@ -1,4 +1,4 @@
-// All gatherers of the same lights have one mean, and threads change nothing.
+// All gatherers of the same lights have the same mean, for any number of threads.
 #include <gtest/gtest.h>
 
 #include "core/parallel.h"

@@ -27,8 +27,7 @@ struct PowerLaw {
 enum class ReadingKind {
     Interpolated,  // between two runs, or at one
     Extrapolated,  // beyond the longest run, by the law of averages after the start-up
-    AtMost,        // the cheapest run is better already, or the method had finished, or the error was too small to
-                   // distinguish from 0
+    AtMost,        // the cheapest run is better already, or the method had finished, or the error is 0
     NotReached     // by no run, nor by more time; or before the first run
 };
 
