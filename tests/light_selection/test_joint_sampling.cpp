@@ -265,7 +265,8 @@ TEST(PairSampling, FindsThePeaksOfAlmostStraightScattering) {
         }
 }
 
-// What is asked: at 90 degrees at most 0.43 at a distance of 0.05, and 0.35 at 0.005; uniform samples have 3.95 and 22.
+// The required bounds: at 90 degrees at most 0.43 at a distance of 0.05, and 0.35 at 0.005; uniform samples have 3.95
+// and 22.
 TEST(PairSampling, SpreadOfOneEstimate) {
     std::printf("distance  angle  uniform  equi-angular  joint\n");
     const auto row = [](double distance, double degrees, double at_most) {
