@@ -541,7 +541,7 @@ class Glb:
         return known.index(item) if item in known else self.append("accessors", item)
 
     def floats(self, rows, limits=False):
-        """An accessor of vectors, with their bounds where glTF asks for them."""
+        """An accessor of vectors, with their bounds where glTF requires them."""
         data = b"".join(struct.pack(f"<{len(row)}f", *row) for row in rows)
         stored = [struct.unpack_from(f"<{len(rows[0])}f", data, i * 4 * len(rows[0])) for i in range(len(rows))]
         bounds = {"min": list(map(min, zip(*stored))), "max": list(map(max, zip(*stored)))} if limits else {}

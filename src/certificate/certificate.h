@@ -28,10 +28,10 @@ struct Certificate {
     std::uint64_t pixels = 0;            // drawn; some perhaps more than once
     std::uint64_t samples_per_pixel = 0;
     int seed = 0;
-    std::uint64_t not_finite_pixels = 0;   // of the picture: the certificate is about the others
+    std::uint64_t not_finite_pixels = 0;   // of the picture; the certificate leaves them out
     std::uint64_t not_finite_samples = 0;  // counted as 0
 
-    // Without times: equal renders have equal certificates.
+    // Contains no times, so that equal renders have equal certificates.
     nlohmann::ordered_json to_json() const;
     // "error 0.8 % (0.6 to 1.0 %), mean +0.1 % (-0.1 to +0.3 %) at 95 % confidence; V ...", for people.
     std::string line() const;

@@ -36,8 +36,8 @@ std::size_t draws_of(int samples) {
     return std::clamp<std::size_t>(std::lround(draws), 2, std::max(2, samples / 2));
 }
 
-// Pictures of one or several orders of scattering: the beauty, and its cells. With surroundings, paths are filed by
-// cell.
+// Layers that are certified: the beauty and its cells, each of one or several orders of scattering. With surroundings,
+// paths are recorded by cell.
 constexpr std::size_t kMostTargets = 1 + kCells;
 
 struct Target {
@@ -149,7 +149,7 @@ private:
     std::atomic<std::uint64_t> not_finite_ = 0;
 };
 
-// The picture as a population of pixels: which of them can be sampled, and how often each should be.
+// The picture as a population of pixels: the pixels that can be sampled, and how often each should be.
 class Population {
 public:
     Population(const Image& image, const std::vector<Target>& targets)
@@ -210,9 +210,9 @@ private:
 };
 
 // Of sqrt(s.a / (norm - s.b)).
-void judge_error(CertifiedError& e, const SurveyedSums& s, double norm) {
+void estimate_error(CertifiedError& e, const SurveyedSums& s, double norm) {
     const double t = half_width(s.strata), t2 = t * t, below = norm - s.b;
-    // Beale's ratio is unbiased to first order. The plain ratio is too large because of the noise of the truth.
+    // Beale's ratio is unbiased to first order. The plain ratio is too large because the truth is noisy.
     e.square = below > 0.0 ? (s.a * below - s.ab) / (below * below + s.bb) : kInfinity;
     e.error = std::sqrt(std::max(0.0, e.square));
     e.error_interval = {0.0, kInfinity};
@@ -230,7 +230,7 @@ void judge_error(CertifiedError& e, const SurveyedSums& s, double norm) {
 }
 
 // The mean of the truth is that of the picture less the difference, and only the difference is random.
-void judge_mean(CertifiedError& e, const SurveyedSums& s, double total) {
+void estimate_mean(CertifiedError& e, const SurveyedSums& s, double total) {
     const double width = half_width(s.strata) * std::sqrt(s.aa);
     const auto relative = [total](double difference) {
         return total - difference > 0.0 ? difference / (total - difference) : kInfinity;
@@ -241,8 +241,8 @@ void judge_mean(CertifiedError& e, const SurveyedSums& s, double total) {
         e.mean_interval.low = -kInfinity;
 }
 
-CertifiedError conclude(const Population& population, const Target& target, std::span<const AllEstimates> estimates,
-                        std::size_t index) {
+CertifiedError certified_error(const Population& population, const Target& target,
+                               std::span<const AllEstimates> estimates, std::size_t index) {
     std::vector<double> square, difference, energy;
     for (const AllEstimates& all : estimates) {
         square.push_back(all[index].square);
@@ -251,15 +251,15 @@ CertifiedError conclude(const Population& population, const Target& target, std:
     }
     CertifiedError e;
     e.cell = target.layer->name;
-    judge_error(e, surveyed_sums(square, energy),
-                population.total([&](std::size_t p) { return glm::dot(target.pixel(p), target.pixel(p)); }));
-    judge_mean(e, surveyed_sums(difference, difference),
-               population.total([&](std::size_t p) { return sum_of(target.pixel(p)); }));
+    estimate_error(e, surveyed_sums(square, energy),
+                   population.total([&](std::size_t p) { return glm::dot(target.pixel(p), target.pixel(p)); }));
+    estimate_mean(e, surveyed_sums(difference, difference),
+                  population.total([&](std::size_t p) { return sum_of(target.pixel(p)); }));
     return e;
 }
 
-// The result for a target that is rightly black, for which no ratio is defined.
-CertifiedError nothing_missing(const Target& target) {
+// The result for a target whose truth is black as well, so that no ratio is defined.
+CertifiedError error_of_black(const Target& target) {
     CertifiedError e;
     e.cell = target.layer->name;
     return e;
@@ -268,15 +268,15 @@ CertifiedError nothing_missing(const Target& target) {
 void warn(const Certificate& c, Progress& progress) {
     if (c.not_finite_pixels > 0)
         progress.warning("certificate", std::to_string(c.not_finite_pixels) +
-                                            " pixels are not finite: the certificate is about the others");
+                                            " pixels are not finite: the certificate leaves them out");
     if (c.not_finite_samples > 0)
         progress.warning("certificate", std::to_string(c.not_finite_samples) +
-                                            " samples of the certificate were not finite and count as dark");
-    // Intervals lean on sums over many pixels.
-    constexpr double kFewDecide = 0.5;
-    if (c.errors.front().largest_share > kFewDecide)
+                                            " samples of the certificate were not finite and count as 0");
+    // Intervals assume a sum over many pixels.
+    constexpr double kLargeShare = 0.5;
+    if (c.errors.front().largest_share > kLargeShare)
         progress.warning("certificate",
-                         "one or two pixels decide about the error: its interval may be too narrow; raise "
+                         "one or two pixels dominate the error: its interval may be too narrow; raise "
                          "certify.samples");
 }
 
@@ -306,8 +306,8 @@ Certificate certify(const Image& image, const CertifiedScene& scene, const Certi
     out.not_finite_samples = sampler.not_finite();
     for (std::size_t t = 0; t < targets.size(); ++t) {
         const bool black = population.total([&](std::size_t p) { return sum_of(targets[t].pixel(p)); }) == 0.0;
-        out.errors.push_back(black && !scene.shines ? nothing_missing(targets[t])
-                                                    : conclude(population, targets[t], estimates, t));
+        out.errors.push_back(black && !scene.shines ? error_of_black(targets[t])
+                                                    : certified_error(population, targets[t], estimates, t));
     }
     warn(out, progress);
     return out;

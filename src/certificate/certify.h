@@ -3,12 +3,12 @@
 //
 // The squared error is unbiased. Two independent samples x and y of a pixel both have the pixel's true value R as their
 // mean, so the mean of (I - x)(I - y) is (I - R)^2. Averaged over all pairs of a pixel's samples and summed over the
-// picture by a survey of its pixels, it is the numerator of
+// picture by a survey of its pixels, the result is the numerator of
 //     error^2 = sum (I - R)^2 / sum R^2,
-// and as R^2 = I^2 - 2 I (I - R) + (I - R)^2, the same numbers turn the picture's own sum of squares into the
+// and because R^2 = I^2 - 2 I (I - R) + (I - R)^2, the same samples and the picture's own sum of squares give the
 // denominator. The interval of the ratio is Fieller's (Some Problems in Interval Estimation, 1954).
 //
-// The samples have their own random stream, independent of all that made the picture.
+// The samples have their own random stream, independent of that of the picture.
 #pragma once
 
 #include "camera/camera.h"
@@ -35,8 +35,8 @@ struct CertifiedScene {
 // of scene.tracing. The result is the same to the bit for any number of threads. Warns of pixels and samples that are
 // not finite, and when few pixels decide.
 //
-// It cannot detect light that none of its samples met, nor errors in few pixels. A share s of the pixels that is
-// wrongly dark goes unnoticed with probability (1 - s)^(draws / 5); one that is wrongly bright hardly ever does.
+// It cannot detect light that none of its samples found, nor errors in few pixels. If a share s of the pixels is too
+// dark, it remains undetected with probability (1 - s)^(draws / 5). Pixels that are too bright are nearly always found.
 Certificate certify(const Image& image, const CertifiedScene& scene, const CertifySettings& settings,
                     Progress& progress);
 

@@ -16,15 +16,14 @@ class PixelSurvey {
 public:
     struct Draw {
         std::size_t pixel;
-        double weight;  // one over the number of times the pixel is drawn on average
+        double weight;  // one over the expected number of draws of the pixel
     };
 
     // `size`: at least 0, one for each pixel; pixels of size 0 are never drawn. `draws` is made even.
     PixelSurvey(const std::vector<double>& size, int width, std::size_t draws, std::uint64_t seed);
 
     // Draws 2 h and 2 h + 1 belong to stratum h and are independent of each other and of all others. There are none
-    // when
-    // all sizes are 0.
+    // when all sizes are 0.
     const std::vector<Draw>& draws() const { return draws_; }
 
 private:

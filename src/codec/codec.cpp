@@ -19,7 +19,7 @@ std::optional<double> number(const Json& json, const Range& range) {
 }
 
 // As number, and representable in single precision.
-std::optional<float> small_number(const Json& json, const Range& range) {
+std::optional<float> float_number(const Json& json, const Range& range) {
     const std::optional<double> value = number(json, range);
     if (!value || std::abs(*value) > static_cast<double>(std::numeric_limits<float>::max()))
         return std::nullopt;
@@ -49,14 +49,14 @@ Json array_schema(const Json& items, std::size_t count) {
 }
 
 std::optional<Rgb> read_rgb(const Json& json, const Range& range) {
-    if (const std::optional<float> gray = small_number(json, range))
+    if (const std::optional<float> gray = float_number(json, range))
         return Rgb(*gray);
-    const auto values = numbers(json, 3, [&](const Json& item) { return small_number(item, range); });
+    const auto values = numbers(json, 3, [&](const Json& item) { return float_number(item, range); });
     return values.empty() ? std::nullopt : std::optional<Rgb>(Rgb(values[0], values[1], values[2]));
 }
 
 Json write_rgb(const Rgb& value) {
-    return {plain(value.x), plain(value.y), plain(value.z)};
+    return {shortest_decimal(value.x), shortest_decimal(value.y), shortest_decimal(value.z)};
 }
 
 Json rgb_schema(const Range& range) {
@@ -70,7 +70,7 @@ std::optional<std::vector<RampStop>> read_ramp(const Json& json) {
     for (const Json& item : json) {
         if (!item.is_array() || item.size() != 2)
             return std::nullopt;
-        const std::optional<float> value = small_number(item[0], any_number());
+        const std::optional<float> value = float_number(item[0], any_number());
         const std::optional<Rgb> colour = read_rgb(item[1], at_least(0.0));
         if (!value || !colour || (!stops.empty() && !(*value > stops.back().value)))
             return std::nullopt;
@@ -81,7 +81,7 @@ std::optional<std::vector<RampStop>> read_ramp(const Json& json) {
 
 }  // namespace
 
-double plain(float value) {
+double shortest_decimal(float value) {
     return std::stod(fmt::format("{}", value));
 }
 
@@ -122,8 +122,8 @@ Codec<double> real(const Range& range) {
 
 Codec<float> real_float(const Range& range) {
     return {number_schema(range), "a number " + range.words(),
-            [range](const Json& json) { return small_number(json, range); },
-            [](const float& value) { return Json(plain(value)); }};
+            [range](const Json& json) { return float_number(json, range); },
+            [](const float& value) { return Json(shortest_decimal(value)); }};
 }
 
 Codec<int> whole(int low, int high) {
@@ -200,11 +200,11 @@ Codec<dvec3> point() {
 Codec<vec2> pair_of(const Range& range) {
     return {array_schema(number_schema(range), 2), "two numbers " + range.words(),
             [range](const Json& json) -> std::optional<vec2> {
-                const auto v = numbers(json, 2, [&](const Json& item) { return small_number(item, range); });
+                const auto v = numbers(json, 2, [&](const Json& item) { return float_number(item, range); });
                 return v.empty() ? std::nullopt : std::optional<vec2>(vec2(v[0], v[1]));
             },
             [](const vec2& value) {
-                return Json{plain(value.x), plain(value.y)};
+                return Json{shortest_decimal(value.x), shortest_decimal(value.y)};
             }};
 }
 
@@ -248,7 +248,7 @@ Codec<std::vector<RampStop>> ramp() {
             [](const std::vector<RampStop>& stops) {
                 Json list = Json::array();
                 for (const RampStop& stop : stops)
-                    list.push_back(Json::array({plain(stop.value), write_rgb(stop.colour)}));
+                    list.push_back(Json::array({shortest_decimal(stop.value), write_rgb(stop.colour)}));
                 return list;
             }};
 }

@@ -1,4 +1,5 @@
-// One JSON value to one setting and back: what it accepts, in code, in words and as JSON Schema.
+// A codec converts one JSON value to one setting and back. It states what it accepts: in code, in words and as JSON
+// Schema.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +17,8 @@ namespace brisance {
 
 using Json = nlohmann::ordered_json;
 
-// What is wrong inside a value that was not accepted.
-struct Complaint {
+// The part of a value that was not accepted.
+struct Mismatch {
     std::string path;  // from the value: "[2].radius"; empty: the value itself
     std::string expected;
     Json value;
@@ -29,7 +30,7 @@ struct Codec {
     std::string expected;                               // the same in words, after "expected"
     std::function<std::optional<T>(const Json&)> read;  // absent: not accepted
     std::function<Json(const T&)> write;
-    std::function<std::optional<Complaint>(const Json&)> complain = {};  // of values with parts; else empty
+    std::function<std::optional<Mismatch>(const Json&)> find_mismatch = {};  // of values with parts; else empty
 };
 
 // Bounds are included unless the flag beside them says otherwise.
@@ -63,7 +64,7 @@ Codec<std::vector<RampStop>> ramp();  // [[value, [r, g, b]], ...], values risin
 Codec<char> up_axis();  // 'y' or 'z'
 Codec<FireModel> fire_model();
 
-// A value that may be left open: null.
+// A value that may be absent: null.
 template <class T>
 Codec<std::optional<T>> if_given(const Codec<T>& codec) {
     Codec<std::optional<T>> result;
@@ -79,10 +80,10 @@ Codec<std::optional<T>> if_given(const Codec<T>& codec) {
     return result;
 }
 
-// A float as the shortest decimal that means it, not as the double next to it.
-double plain(float value);
+// The shortest decimal that reads back as this float.
+double shortest_decimal(float value);
 
-// One of some words. The first word of a value is the one written; others of the same value are understood.
+// One of several words. A value may have several words: all of them are read, and the first is written.
 template <class E>
 Codec<E> choice(std::vector<std::pair<std::string, E>> words) {
     Codec<E> codec;
@@ -108,7 +109,7 @@ Codec<E> choice(std::vector<std::pair<std::string, E>> words) {
     return codec;
 }
 
-// Either a word that stands for `value`, or what `codec` takes.
+// Either a word that denotes `value`, or a value that `codec` accepts.
 template <class T>
 Codec<T> or_word(Codec<T> codec, const std::string& word, const T& value) {
     Codec<T> result;

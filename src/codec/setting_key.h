@@ -1,5 +1,5 @@
-// A key of one module's settings: its name, what it accepts, and where its value lives. Modules describe their own keys
-// with it; the shot puts them under a section of its own (shot/keys/keys.h).
+// A key of one module's settings: its name, the values it accepts, and the member that holds its value. Modules
+// describe their own keys with it; the shot puts them under a section of its own (shot/keys/keys.h).
 #pragma once
 
 #include <functional>

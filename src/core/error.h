@@ -15,7 +15,7 @@ enum class ExitCode : int {
     MissingInput = 66,  // a file or frame that is not there
     CannotCreate = 73,  // output folder or file cannot be made
     OutputFailed = 74,  // writing failed half way: the disk is full
-    Temporary = 75,     // out of memory: worth a retry elsewhere
+    Temporary = 75,     // out of memory: a retry on a larger machine may succeed
     Interrupted = 130
 };
 

@@ -83,7 +83,7 @@ std::vector<float> counts(const VirtualLights& lights, const Surroundings& surro
         const std::optional<SurfaceHit> hit = surroundings.intersector().first_hit(ray);
         if (hit)
             out[p] = static_cast<float>(
-                lights.speaking_for(*hit, surface_point(surroundings.scene(), *hit, -ray.direction)));
+                lights.count_covering(*hit, surface_point(surroundings.scene(), *hit, -ray.direction)));
     });
     return out;
 }

@@ -1,4 +1,4 @@
-// Points in leaves of sixteen, with boxes over them that tell which leaves may hold neighbours.
+// Points in leaves of sixteen, with boxes over them that show which leaves may hold neighbours.
 #pragma once
 
 #include <cstdint>

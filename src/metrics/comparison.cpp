@@ -12,7 +12,7 @@ bool is_finite(const Rgb& pixel) {
     return std::isfinite(pixel.x) && std::isfinite(pixel.y) && std::isfinite(pixel.z);
 }
 
-// Which pixels take part.
+// The pixels that are finite in all pictures.
 struct Usable {
     std::vector<bool> pixel;
     NotFinite not_finite;
@@ -64,7 +64,7 @@ void check_size(const Picture& a, const Picture& b) {
         throw Error(ExitCode::BadData, "pictures of different sizes cannot be compared");
 }
 
-// What FLIP looks at: black where a picture is not usable.
+// The input of FLIP: pixels that are not usable are black.
 Picture cleaned(const Picture& picture, const std::vector<bool>& usable) {
     Picture result = picture;
     for (std::size_t i = 0; i < result.pixels.size(); ++i)
@@ -94,14 +94,14 @@ std::vector<Rgb> change(const Picture& frame, const Picture& next, const std::ve
     return result;
 }
 
-void check_frames(const Judged& frame, const Judged& next) {
-    for (const Judged* judged : {&frame, &next}) {
-        check_size(judged->image, frame.image);
-        for (const Picture* half : pictures_of(judged->reference))
+void check_frames(const FrameAndReference& frame, const FrameAndReference& next) {
+    for (const FrameAndReference* pair : {&frame, &next}) {
+        check_size(pair->image, frame.image);
+        for (const Picture* half : pictures_of(pair->reference))
             check_size(*half, frame.image);
     }
     if (frame.reference.second.has_value() != next.reference.second.has_value())
-        throw Error(ExitCode::BadData, "one frame's reference has two halves, the other's has not");
+        throw Error(ExitCode::BadData, "the reference of one frame has two halves, that of the other has one picture");
 }
 
 }  // namespace
@@ -125,7 +125,7 @@ Comparison compare(const Picture& image, const Reference& reference, double pixe
     return result;
 }
 
-TemporalError compare_changes(const Judged& frame, const Judged& next) {
+TemporalError compare_changes(const FrameAndReference& frame, const FrameAndReference& next) {
     check_frames(frame, next);
     const std::vector<const Picture*> images = {&frame.image, &next.image};
     std::vector<const Picture*> references = pictures_of(frame.reference);

@@ -1,4 +1,4 @@
-// One image, or the step from one frame to the next, against its reference, by every measure.
+// Every measure of one image, or of the change from one frame to the next, against its reference.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,8 @@ struct Reference {
     std::optional<Picture> second;
 };
 
-// Pixels with a channel that is NaN or infinite. A pixel that is so in any of the pictures is left out of the sums of
-// all measures, and is wholly different (1) to FLIP, so that it is never taken for a good one.
+// Pixels with a channel that is NaN or infinite. A pixel that is not finite in any of the pictures is left out of
+// the sums of all measures. Its FLIP error is 1, so that it never counts as correct.
 struct NotFinite {
     std::size_t image = 0;
     std::size_t reference = 0;  // in either half
@@ -34,20 +34,20 @@ struct Comparison {
 // Pictures of one size. Throws Error as flip_errors.
 Comparison compare(const Picture& image, const Reference& reference, double pixels_per_degree = kPixelsPerDegree);
 
-// A frame and what it should have been.
-struct Judged {
+// A frame and its reference.
+struct FrameAndReference {
     Picture image;
     Reference reference;
 };
 
-// How far the image's change from one frame to the next is from the reference's: flicker that a still does not show.
+// The error of the image's change from one frame to the next: flicker that a still does not show.
 struct TemporalError {
     NotFinite not_finite;                     // in either frame
-    double error = 0.0;                       // ||(I' - I) - (R' - R)|| / ||R' - R||; infinite where R stands still
+    double error = 0.0;                       // ||(I' - I) - (R' - R)|| / ||R' - R||; infinite where R does not change
     std::optional<HalvesDifferences> halves;  // the same of the changes, with two halves
 };
 
 // All of one size and with as many halves. Throws Error BadData when they are not.
-TemporalError compare_changes(const Judged& frame, const Judged& next);
+TemporalError compare_changes(const FrameAndReference& frame, const FrameAndReference& next);
 
 }  // namespace brisance

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kSteps = 256;
 
-// As colourful as sRGB allows along the way: every point lies inside its gamut, nothing is clipped.
+// As colourful as sRGB allows: every colour of the map lies inside its gamut, and nothing is clipped.
 Rgb linear_colour(float error) {
     constexpr float pi = std::numbers::pi_v<float>;
     const float chroma = 58.0f * std::sin(pi * error) + 20.0f * error;

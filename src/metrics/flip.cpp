@@ -117,7 +117,7 @@ vec3 hunt_lab(const Rgb& linear) {
     return {lab.x, 0.01f * lab.x * lab.y, 0.01f * lab.x * lab.z};
 }
 
-// The colours that are left of a picture when the eye does not resolve more.
+// The colours that the eye resolves at this distance.
 std::vector<vec3> perceived(const Planes& ycxcz, double pixels_per_degree) {
     const Taps achromatic = contrast_filter(kAchromatic, pixels_per_degree).taps;
     const Taps red_green = contrast_filter(kRedGreen, pixels_per_degree).taps;
@@ -189,7 +189,7 @@ Plane flip_errors(const Picture& image, const Picture& reference, double pixels_
         const float edge = std::abs(found[0].values[i] - expected[0].values[i]);
         const float point = std::abs(found[1].values[i] - expected[1].values[i]);
         const float feature = std::pow(std::max(edge, point) / std::numbers::sqrt2_v<float>, kFeaturePower);
-        // A difference of features makes that of colours count for more: the exponent falls below 1.
+        // A difference of features amplifies that of colours: the exponent falls below 1.
         errors.values[i] = std::pow(colour, 1.0f - std::min(feature, 1.0f));
     });
     return errors;

@@ -1,7 +1,7 @@
 // [1] P. Andersson, J. Nilsson, P. Shirley, T. Akenine-Moeller, Visualizing Errors in Rendered High Dynamic Range
 // Images, Eurographics Short Papers, 2021. [2] K. Narkowicz, ACES Filmic Tone Mapping Curve, 2016.
-// Departs from [1]: where the median luminance is black or next to it, kDarkest below the brightest pixel, it is the
-// median of the brighter rest. Fire before black would else be shown at exposures without end.
+// Departs from [1]: where the median luminance is black or nearly so, kDarkest below the brightest pixel, the median of
+// the brighter pixels replaces it. Otherwise fire before a black background would need unbounded exposures.
 #include "metrics/hdr_flip.h"
 
 #include <algorithm>
@@ -16,14 +16,14 @@ namespace {
 constexpr double kA = 2.51 * 0.36, kB = 0.03 * 0.6, kC = 2.43 * 0.36, kD = 0.59 * 0.6, kE = 0.14;
 constexpr double kShownNearWhite = 0.85;
 constexpr float kDarkest = 0x1p-20f;
-constexpr double kBrightest = 1e6;  // beyond it the curve is at its end to single precision, and squares stay finite
+constexpr double kBrightest = 1e6;  // above it the curve is 1 in single precision; squares stay finite
 
 float tone(double x) {
     x = x > 0.0 ? std::min(x, kBrightest) : 0.0;  // NaN compares false
     return static_cast<float>(std::min((kA * x + kB) * x / ((kC * x + kD) * x + kE), 1.0));
 }
 
-// Where the curve reaches `value`.
+// The argument at which the curve has this value.
 double inverse_tone(double value) {
     const double a = kA - kC * value, b = kB - kD * value, c = -kE * value;
     return (-b + std::sqrt(b * b - 4.0 * a * c)) / (2.0 * a);
@@ -39,7 +39,7 @@ Picture shown(const Picture& picture, double exposure_stops) {
     return result;
 }
 
-// The lower of the two where there are two in the middle.
+// The lower median where the number of values is even.
 float median(std::vector<float> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
     std::nth_element(values.begin(), middle, values.end());
@@ -73,7 +73,7 @@ Exposures hdr_flip_exposures(const Picture& reference) {
 }
 
 HdrFlip hdr_flip(const Picture& image, const Picture& reference, double pixels_per_degree) {
-    // Light where none should be has to be seen at its own exposures.
+    // Against a black reference the image itself decides the exposures, so that its light is visible.
     HdrFlip result;
     result.exposures = hdr_flip_exposures(has_light(reference) ? reference : image);
     const std::size_t count = reference.pixels.size();

@@ -1,4 +1,4 @@
-// HDR-FLIP: FLIP over all exposures at which the reference shows something, each pixel at its worst.
+// HDR-FLIP: FLIP at all exposures at which the reference is visible. Each pixel keeps its largest error.
 #pragma once
 
 #include <vector>
@@ -16,14 +16,14 @@ struct Exposures {
     double at(int index) const { return start + (stop - start) * index / (count - 1); }
 };
 
-// From where the largest luminance of the reference is shown near white to where its median is. Unit by unit: a
-// reference twice as bright is exposed one stop less. A reference without light has no exposures: 0, twice.
+// From the exposure that shows the largest luminance of the reference near white to the one that shows its median so.
+// A reference twice as bright is exposed one stop less. For a black reference both are 0.
 Exposures hdr_flip_exposures(const Picture& reference);
 
 struct HdrFlip {
     Exposures exposures;
     Plane errors;                      // in [0, 1]
-    std::vector<int> worst_exposures;  // per pixel, of which exposure its error is
+    std::vector<int> worst_exposures;  // per pixel, index of the exposure with the largest error
     double mean = 0.0;
 };
 

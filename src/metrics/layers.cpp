@@ -11,13 +11,13 @@ namespace {
 
 const char* const kGray = "Y";
 
-std::size_t place_of(const Layer& layer, const std::string& channel) {
+std::size_t channel_index(const Layer& layer, const std::string& channel) {
     const auto found = std::find(layer.channels.begin(), layer.channels.end(), channel);
     return static_cast<std::size_t>(found - layer.channels.begin());
 }
 
 bool has(const Layer& layer, const std::string& channel) {
-    return place_of(layer, channel) < layer.channels.size();
+    return channel_index(layer, channel) < layer.channels.size();
 }
 
 bool is_colour(const Layer& layer) {
@@ -44,9 +44,9 @@ const Layer& find(const Image& image, const std::string& name) {
 void add(const Layer& layer, Picture& picture) {
     const std::size_t n = layer.channels.size();
     const bool gray = is_gray(layer);
-    const std::size_t r = place_of(layer, gray ? kGray : "R");
-    const std::size_t g = place_of(layer, gray ? kGray : "G");
-    const std::size_t b = place_of(layer, gray ? kGray : "B");
+    const std::size_t r = channel_index(layer, gray ? kGray : "R");
+    const std::size_t g = channel_index(layer, gray ? kGray : "G");
+    const std::size_t b = channel_index(layer, gray ? kGray : "B");
     for (std::size_t i = 0; i < picture.pixels.size(); ++i)
         picture.pixels[i] += Rgb(layer.pixels[n * i + r], layer.pixels[n * i + g], layer.pixels[n * i + b]);
 }
@@ -76,7 +76,7 @@ LayerPicture picture_of(const Image& image, const std::vector<std::string>& laye
 
 void to_gray(Picture& picture) {
     for (Rgb& pixel : picture.pixels)
-        // Equal channels stay what they are, to the bit: the weights add up to 1 but for rounding.
+        // Equal channels keep their bits: the weights add up to 1 only up to rounding.
         if (pixel.x != pixel.y || pixel.y != pixel.z)
             pixel = Rgb(luminance(pixel));
 }

@@ -9,18 +9,18 @@
 
 namespace brisance {
 
-// Layers that hold colour (R, G, B) or gray (Y), the beauty first and called "" whatever its channels. Depth and
-// coverage are none.
+// Names of the layers that hold colour (R, G, B) or gray (Y). The beauty comes first and is called "" whatever its
+// channels. Depth and coverage are left out.
 std::vector<std::string> picture_layers(const Image& image);
 
-// The sum of the named layers, which are among picture_layers; alpha is left out. Gray as soon as one of them is.
+// The sum of the named layers, which are among picture_layers; alpha is left out. Gray if any of them is.
 struct LayerPicture {
     Picture picture;
     bool gray = false;
 };
 LayerPicture picture_of(const Image& image, const std::vector<std::string>& layers);
 
-// Every pixel becomes its Rec. 709 luminance: what a gray reference is compared with.
+// Replaces every pixel by its Rec. 709 luminance, to compare it with a gray reference.
 void to_gray(Picture& picture);
 
 }  // namespace brisance

@@ -1,4 +1,4 @@
-// Filters that are one along the rows times one along the columns.
+// Separable filters: the product of a filter along the rows and one along the columns.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace brisance {
 // Weights of the offsets -radius ... radius.
 using Taps = std::vector<float>;
 
-// Sums of plane(x + i, y + j) across(i) down(j). Beyond the border the nearest pixel goes on.
+// Sums of plane(x + i, y + j) across(i) down(j). Beyond the border the nearest pixel is repeated.
 Plane filtered(const Plane& plane, const Taps& across, const Taps& down);
 
 // Calls body(i) for every pixel, row by row in parallel.

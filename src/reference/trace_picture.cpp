@@ -110,7 +110,7 @@ private:
             film_.work.rows = std::min(row + kRowsAtOnce, height) % height;
             film_.work.passes += film_.work.rows == 0;
             film_.work.seconds = before_ + watch_.seconds();
-            tell();
+            report_progress();
             if (!checkpoint_.file.empty() && since_save_.seconds() >= settings_.checkpoint_seconds)
                 save();
         }
@@ -143,7 +143,7 @@ private:
         }
     }
 
-    void tell() {
+    void report_progress() {
         const TracingSettings& t = settings_;
         const double done = 2.0 * (film_.work.passes + double(film_.work.rows) / film_.height());
         double part = t.samples > 0 ? done / t.samples : 0.0;

@@ -51,7 +51,7 @@ MediumGrids read_grids(const VolumePart& part, const GridMapping& mapping, Progr
     if (!mapping.density)
         progress.notice("no density grid: nothing absorbs or scatters");
     if (black_body && !mapping.temperature)
-        progress.warning("no-temperature", "fire.model asks for a temperature grid and none is mapped: nothing emits");
+        progress.warning("no-temperature", "fire.model needs a temperature grid and none is mapped: nothing emits");
     if (fire.model == FireModel::Flame && !mapping.flame)
         progress.warning("no-flame", "fire.model is flame and no flame grid is mapped: nothing emits");
     return grids;

@@ -66,10 +66,12 @@ Choice choose_scattering(const Shot& shot, const Medium& medium) {
     if (method != kAutomaticMethod)
         return {method, "scattering.method is " + method};
     if (!haze_alone(shot))
-        return {kLightingGridMethod, "scattering.method is auto: smoke from files is the grid's"};
+        return {kLightingGridMethod, "scattering.method is auto: media from files use the lighting grid"};
     if (!scatters_sharply(medium))
-        return {kLightingGridMethod, "scattering.method is auto: haze with a mean cosine of at most 0.5 is the grid's"};
-    return {VolumetricPhotonsMethod::kName, "scattering.method is auto, and haze alone has a mean cosine above 0.5"};
+        return {kLightingGridMethod,
+                "scattering.method is auto: homogeneous boxes with abs(mean_cosine) up to 0.5 use the lighting grid"};
+    return {VolumetricPhotonsMethod::kName,
+            "scattering.method is auto: all media are homogeneous boxes with abs(mean_cosine) above 0.5"};
 }
 
 // Names of all methods but the grid, to report those that are skipped.

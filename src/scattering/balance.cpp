@@ -159,7 +159,7 @@ std::vector<float> collision_probabilities(const ExtinctionPyramid& pyramid, con
     for (std::size_t first = 0; first < vertices.size(); first += batch) {
         const std::size_t count = std::min(batch, vertices.size() - first);
         EscapeRays escape(pyramid, pyramid.occluders(), count * directions);
-        std::vector<vec3> way(count * directions);
+        std::vector<vec3> escape_direction(count * directions);
         parallel_blocks(count, 256, [&](std::size_t begin, std::size_t end) {
             FootprintPicker picker(medium, medium.extinction, level);
             for (std::size_t k = begin; k < end; ++k) {
@@ -168,9 +168,10 @@ std::vector<float> collision_probabilities(const ExtinctionPyramid& pyramid, con
                 const double turn_u = rng.next(), turn_v = rng.next();
                 for (std::size_t d = 0; d < starts.size(); ++d) {
                     const std::size_t ray = k * directions + d;
-                    way[ray] = uniform_sphere_direction(std::fmod((d + turn_u) / directions, 1.0),
-                                                        std::fmod(turn_v + d * kGoldenRatio, 1.0));
-                    escape.set(ray, vec3(starts[start_of(d, starts.size())] - medium.reference_node), way[ray]);
+                    escape_direction[ray] = uniform_sphere_direction(std::fmod((d + turn_u) / directions, 1.0),
+                                                                     std::fmod(turn_v + d * kGoldenRatio, 1.0));
+                    escape.set(ray, vec3(starts[start_of(d, starts.size())] - medium.reference_node),
+                               escape_direction[ray]);
                 }
             }
         });
@@ -182,7 +183,7 @@ std::vector<float> collision_probabilities(const ExtinctionPyramid& pyramid, con
                 sums[0] += share;
                 if (numbers == 1)
                     continue;
-                const auto basis = sh_basis(way[ray]);
+                const auto basis = sh_basis(escape_direction[ray]);
                 for (int m = 0; m < kShMoments; ++m)
                     sums[1 + m] += share * basis[m];
             }

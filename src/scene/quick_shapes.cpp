@@ -94,7 +94,7 @@ void add_quad(const QuickQuad& quad, const std::string& name, Scene& scene, Prog
         progress.warning("no-area", name + " has no area, it is left out");
         return;
     }
-    left_out.tell(name, progress);
+    left_out.warn(name, progress);
     if (out_of_plane(quad.corners) > 1e-4)
         progress.warning("not-flat", name + " is not flat, it is two triangles that meet between corners 0 and 2");
     mesh.material = add_material(quad.material, name, true, scene);

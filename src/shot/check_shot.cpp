@@ -21,8 +21,9 @@ void check_matrix(const Given& given, const dmat4& m) {
     const std::string key = "camera.world_from_camera";
     for (const char* other : {"camera.eye", "camera.target", "camera.up"})
         if (given.contains(other))
-            reject(given, key,
-                   fmt::format("takes the place of {}, which is given too ({}); remove one", other, given.at(other)));
+            reject(
+                given, key,
+                fmt::format("cannot be combined with {}, which is given too ({}); remove one", other, given.at(other)));
     if (m[0][3] != 0.0 || m[1][3] != 0.0 || m[2][3] != 0.0 || m[3][3] != 1.0)
         reject(given, key,
                "the last row must be 0 0 0 1; the 16 numbers are row after row, translation at the rows' ends");
@@ -93,7 +94,7 @@ void check_volumes(const Given& given, const std::vector<FurtherVolume>& volumes
         if (v.box && !glm::all(glm::lessThan(v.box->low, v.box->high)))
             refuse("is a box whose low is not below its high on every axis");
         if (v.box && volumes[i].changes.model.value_or(FireModel::None) != FireModel::None)
-            refuse("is a box of haze, which does not burn");
+            refuse("is a homogeneous box, which cannot emit; remove its fire_model");
     }
 }
 

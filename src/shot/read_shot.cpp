@@ -61,8 +61,8 @@ std::string shortened(const Json& value) {
 [[noreturn]] void reject_value_of(const Key& key, const std::string& where, const Json& value) {
     if (const std::optional<std::string> renamed = renamed_value(key.path, value.dump()))
         throw Error(ExitCode::Usage, fmt::format("{}: {}: {}", where, key.path, *renamed));
-    if (key.complain)
-        if (const std::optional<Complaint> part = key.complain(value))
+    if (key.find_mismatch)
+        if (const std::optional<Mismatch> part = key.find_mismatch(value))
             reject_value(where, key.path + part->path, part->expected, part->value);
     reject_value(where, key.path, key.expected, value);
 }

@@ -189,7 +189,7 @@ void SurfaceShader::shade_point(const SurfaceSample& sample, const SurfaceReceiv
     if (input_.virtual_lights) {
         out.at(Cell::SS) += input_.virtual_lights->shade(
             vertex, rng, &at.vertices,
-            samples_through_panes() ? VirtualLights::Panes::Asked : VirtualLights::Panes::Followed);
+            samples_through_panes() ? VirtualLights::Panes::Sampled : VirtualLights::Panes::Followed);
         return;
     }
     PathSum path{};

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kBelowOne = 1.0 - 0x1p-53;
 
-float most(const Rgb& c) {
+float max_channel(const Rgb& c) {
     return std::max({c.x, c.y, c.z});
 }
 
@@ -32,8 +32,9 @@ float mean(const Rgb& c) {
            m.specular_colour.z >= 0.0f;
 }
 
-// Of light that leaves one facet for another: reflected by F each time, of which `lost` goes on (Kulla and Conty).
-Rgb after_many_facets(const Rgb& fresnel, double lost) {
+// Albedo of light that one facet reflects to another: each reflects F of it, and `lost` of that meets a further facet
+// (Kulla and Conty).
+Rgb multiple_scattering_albedo(const Rgb& fresnel, double lost) {
     const float stays = static_cast<float>(lost), leaves = 1.0f - stays;
     return fresnel * fresnel * leaves / (Rgb(1.0f) - fresnel * stays);
 }
@@ -74,22 +75,22 @@ Bsdf::Bsdf(const SurfaceMaterial& m, const ShadingFrame& frame, const EnergyTabl
     assert(valid(m) && (tables ? tables->ior() == double(m.ior) : !needs_energy_tables(m)));
     if (!tables)
         return;
-    f0_most_ = most(f0_);
+    f0_max_ = max_channel(f0_);
     const float mean_blend = static_cast<float>(tables->mean_blend());
-    base_share_mean_ = 1.0f - specular_ * (f0_most_ + (1.0f - f0_most_) * mean_blend);
+    base_share_mean_ = 1.0f - specular_ * (f0_max_ + (1.0f - f0_max_) * mean_blend);
     const float crossing = base_share_mean_;
     if (smooth_)
         return;
     const Albedos means = tables->mean(ggx_.alpha);
     lost_mean_ = 1.0 - means.reflect;
-    metal_again_ = after_many_facets(mean_schlick_fresnel(base_), lost_mean_);
-    coat_again_ = after_many_facets(specular_ * (f0_ + (Rgb(1.0f) - f0_) * mean_blend), lost_mean_);
+    metal_multiple_ = multiple_scattering_albedo(mean_schlick_fresnel(base_), lost_mean_);
+    coat_multiple_ = multiple_scattering_albedo(specular_ * (f0_ + (Rgb(1.0f) - f0_) * mean_blend), lost_mean_);
     const double blended = means.reflect_blend;
-    base_share_mean_ = static_cast<float>(1.0 - specular_ * (f0_most_ * (means.reflect - blended) + blended) -
-                                          most(coat_again_) * lost_mean_);
+    base_share_mean_ = static_cast<float>(1.0 - specular_ * (f0_max_ * (means.reflect - blended) + blended) -
+                                          max_channel(coat_multiple_) * lost_mean_);
     for (int side = 0; side < 2; ++side)
         lost_both_mean_[side] = lost_both(side, means);
-    // As much as crosses without roughness, but no more than reciprocity grants the side that loses less.
+    // The share that crosses a smooth interface, scaled so that both sides are reciprocal and neither exceeds it.
     const double larger = std::max(lost_both_mean_[0], lost_both_mean_[1]);
     if (larger > 0.0) {
         crossing_[0] = crossing * lost_both_mean_[1] / larger;
@@ -102,17 +103,17 @@ Albedos Bsdf::albedos(double cosine) const {
 }
 
 double Bsdf::lost_both(int side, const Albedos& albedos) const {
-    const double a = specular_ * f0_most_, b = specular_ * (1.0 - f0_most_);
+    const double a = specular_ * f0_max_, b = specular_ * (1.0 - f0_max_);
     return std::max(0.0, 1.0 - albedos.all(side, a, b));
 }
 
-// Largest channel of all that the coat reflects, by one facet or more.
+// Largest channel of the albedo of the coat, by one facet or more.
 float Bsdf::coat_albedo(const Albedos& albedos, double cosine) const {
     if (smooth_)
-        return coat_fresnel_most(cosine, ior_);
+        return max_coat_fresnel(cosine, ior_);
     const double blended = albedos.reflect_blend;
-    return static_cast<float>(specular_ * (f0_most_ * (albedos.reflect - blended) + blended) +
-                              most(coat_again_) * (1.0 - albedos.reflect));
+    return static_cast<float>(specular_ * (f0_max_ * (albedos.reflect - blended) + blended) +
+                              max_channel(coat_multiple_) * (1.0 - albedos.reflect));
 }
 
 float Bsdf::blend(double cosine, double eta) const {
@@ -125,11 +126,11 @@ Rgb Bsdf::coat_fresnel(double cosine, double eta) const {
     return specular_ * (f0_ + (Rgb(1.0f) - f0_) * blend(cosine, eta));
 }
 
-float Bsdf::coat_fresnel_most(double cosine, double eta) const {
-    return most(coat_fresnel(cosine, eta));
+float Bsdf::max_coat_fresnel(double cosine, double eta) const {
+    return max_channel(coat_fresnel(cosine, eta));
 }
 
-// What one facet reflects, of everything that falls on it; `cosine` to its normal.
+// Reflectance of one facet; `cosine` to its normal.
 Rgb Bsdf::facet_reflectance(const View& view, double cosine) const {
     const Rgb coat = coat_fresnel(cosine, view.eta);
     if (view.side == 1)
@@ -140,7 +141,7 @@ Rgb Bsdf::facet_reflectance(const View& view, double cosine) const {
 Rgb Bsdf::facet_transmittance(const View& view, double cosine) const {
     if (matched_ || glass_ == 0.0f)
         return Rgb(0.0f);
-    return glass_ * base_ * (1.0f - coat_fresnel_most(cosine, view.eta));
+    return glass_ * base_ * (1.0f - max_coat_fresnel(cosine, view.eta));
 }
 
 double Bsdf::reflecting_probability(const View& view, double cosine) const {
@@ -175,7 +176,7 @@ Rgb Bsdf::base_albedo(const dvec3& wo) const {
     return view.side == 0 && has_base_ ? coated_ * base_ * view.base_share : Rgb(0.0f);
 }
 
-// What goes on as if there were no surface: through matched media, and through sheets.
+// The weight of light that continues as if there were no surface: through matched interfaces, and through sheets.
 Rgb Bsdf::straight_weight(const View& view) const {
     const float through = matched_ ? glass_ : 0.0f;
     return (view.side == 0 ? through + sheet_ * view.base_share : through) * base_;
@@ -189,7 +190,7 @@ void Bsdf::choose_lobes(View& view) const {
     const float crossing = static_cast<float>(crossing_[view.side]);
     Rgb up = glass_ * lost_both * (1.0f - crossing) * Rgb(1.0f);
     if (outside)
-        up += (metal_ * metal_again_ + (coated_ + sheet_) * coat_again_) * lost;
+        up += (metal_ * metal_multiple_ + (coated_ + sheet_) * coat_multiple_) * lost;
     const double base = outside ? mean(coated_ * base_ * view.base_share) : 0.0;
     const double straight = mean(straight_weight(view));
     const double down = mean(glass_ * lost_both * crossing * base_);
@@ -221,16 +222,16 @@ Rgb Bsdf::reflected(const View& view, const dvec3& wi) const {
         const double facets = ggx_.density(h) * ggx_.correlated_masking_per_cosines(view.wo.z, wi.z) * wi.z / 4.0;
         sum += facet_reflectance(view, std::clamp(glm::dot(view.wo, h), 0.0, 1.0)) * static_cast<float>(facets);
         if (glass_ > 0.0f && !matched_ && lost_both_mean_[view.side] > 0.0) {
-            const double again = view.lost_both * lost_both(view.side, there) / lost_both_mean_[view.side];
-            sum += glass_ * static_cast<float>(again * (1.0 - crossing_[view.side]) * cosine_density(wi.z));
+            const double multiple = view.lost_both * lost_both(view.side, there) / lost_both_mean_[view.side];
+            sum += glass_ * static_cast<float>(multiple * (1.0 - crossing_[view.side]) * cosine_density(wi.z));
         }
     }
     if (view.side == 1)
         return sum;
     const float lambert = static_cast<float>(cosine_density(wi.z));
     if (!smooth_ && has_specular_ && lost_mean_ > 0.0) {
-        const float again = static_cast<float>(view.lost * (1.0 - there.reflect) / lost_mean_) * lambert;
-        sum += (metal_ * metal_again_ + (coated_ + sheet_) * coat_again_) * again;
+        const float multiple = static_cast<float>(view.lost * (1.0 - there.reflect) / lost_mean_) * lambert;
+        sum += (metal_ * metal_multiple_ + (coated_ + sheet_) * coat_multiple_) * multiple;
     }
     if (has_base_ && coated_ > 0.0f && base_share_mean_ > 0.0f) {
         const float there_share = std::max(0.0f, 1.0f - coat_albedo(there, std::min(wi.z, 1.0)));
@@ -253,8 +254,8 @@ Rgb Bsdf::refracted(const View& view, const dvec3& wi) const {
     }
     const int other = 1 - view.side;
     if (lost_both_mean_[other] > 0.0) {
-        const double again = view.lost_both * lost_both(other, albedos(below)) / lost_both_mean_[other];
-        sum += glass_ * base_ * static_cast<float>(again * crossing_[view.side] * cosine_density(below));
+        const double multiple = view.lost_both * lost_both(other, albedos(below)) / lost_both_mean_[other];
+        sum += glass_ * base_ * static_cast<float>(multiple * crossing_[view.side] * cosine_density(below));
     }
     return sum;
 }
@@ -305,7 +306,7 @@ double Bsdf::pdf(const dvec3& wo, const dvec3& wi) const {
     return density(view, there);
 }
 
-// Reflected or refracted by a facet that wo sees, if that gets away.
+// Samples a facet visible from wo, and reflects or refracts by it. None where the direction meets another facet.
 std::optional<dvec3> Bsdf::draw_facet(const View& view, const dvec3& u, double choice) const {
     const dvec3 h = ggx_.sample_visible(view.wo, u.y, u.z);
     const double c = std::clamp(glm::dot(view.wo, h), 0.0, 1.0);
@@ -320,7 +321,7 @@ std::optional<dvec3> Bsdf::draw_facet(const View& view, const dvec3& u, double c
     return wi.z < 0.0 ? std::optional(wi) : std::nullopt;
 }
 
-// Smooth interfaces; `choice` in [0, 1) decides what happens there.
+// Samples a smooth interface; `choice` in [0, 1) selects reflection or refraction.
 std::optional<BsdfSample> Bsdf::draw_delta(const View& view, double choice) const {
     const double c = std::min(view.wo.z, 1.0), reflecting = reflecting_probability(view, c);
     BsdfSample s;
@@ -338,7 +339,7 @@ std::optional<BsdfSample> Bsdf::draw_delta(const View& view, double choice) cons
     return s;
 }
 
-// Turned back to world space, and weighted for what flows.
+// The sample in world space, with its weight for the transport.
 BsdfSample Bsdf::finished(const View& view, BsdfSample s, Transport transport) const {
     const bool bent = s.transmitted && !matched_ && sheet_ == 0.0f;
     if (bent && transport == Transport::Radiance)

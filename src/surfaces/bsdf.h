@@ -1,20 +1,20 @@
-// Scattering by surfaces of glTF's metallic-roughness materials: what reaches `wo` from `wi`, and directions drawn in
-// proportion. Directions are unit, in world space, and point away from the surface.
+// BSDFs of glTF's metallic-roughness materials: they are evaluated for a pair of directions, and sampled in proportion.
+// Directions are unit, in world space, and point away from the surface.
 //
-// The surface blends three, each of which conserves energy and is reciprocal (glTF 2.0, appendix B, for the blend):
+// A surface blends three BSDFs (glTF 2.0, appendix B). Each conserves energy and is reciprocal:
 //   metal           GGX with Schlick's Fresnel term;
 //   coated diffuse  a GGX dielectric over a Lambert base, which gets what the coat lets through both ways (Kelemen and
 //                   Szirmay-Kalos, A Microfacet Based Coupled Specular-Matte BRDF Model, EG 2001);
 //   rough interface a GGX dielectric that reflects and refracts (Walter et al., Microfacet Models for Refraction
-//                   through Rough Surfaces, EGSR 2007), tinting by the base colour what it refracts.
-// Where there is no thickness, a thin sheet replaces the interface: the coat, and light that it transmits continues
-// straight on, tinted, without a blur. The sheet must face the viewer, as opaque surfaces must.
-// Light that meets more than one facet comes back by lobes proportional to the cosine times what single scattering
-// misses in either direction (Kulla and Conty 2017, course notes "Revisiting Physically Based Shading at Imageworks").
-// Metal and coated diffuse are black from below.
+//                   through Rough Surfaces, EGSR 2007); the base colour tints refracted light.
+// A thin material has a sheet instead of the interface: it reflects as the coat does, and light that it transmits
+// continues straight on, tinted and without blur. The sheet must face the viewer, as opaque surfaces must.
+// Light that more than one facet scatters leaves by lobes proportional to the cosine times the energy that single
+// scattering loses in either direction (Kulla and Conty 2017, course notes "Revisiting Physically Based Shading at
+// Imageworks"). Metal and coated diffuse are black from below.
 //
-// Where roughness^2 < kSmoothAlpha the interface is smooth, and where ior < kMatchedIor there is none: those lobes are
-// deltas, which evaluate() and pdf() leave out and sample() draws.
+// Where roughness^2 < kSmoothAlpha the interface is smooth, and where ior < kMatchedIor there is none. Those lobes are
+// deltas: evaluate() and pdf() leave them out, and sample() includes them.
 #pragma once
 
 #include <optional>
@@ -27,9 +27,9 @@
 
 namespace brisance {
 
-// What flows along `wo`. Radiance grows by the square of the index of the side it enters, power does not: refracted
-// Radiance carries the factor (index on wo's side / index on wi's side)^2, Importance (photons that arrive along wo
-// and leave along wi) carries 1. Veach, Robust Monte Carlo Methods, 1997, section 5.2.
+// The quantity carried along `wo`. Radiance grows by the square of the index of the side it enters, power does not:
+// refracted Radiance carries the factor (index on wo's side / index on wi's side)^2, Importance (photons that arrive
+// along wo and leave along wi) carries 1. Veach, Robust Monte Carlo Methods, 1997, section 5.2.
 enum class Transport { Radiance, Importance };
 
 struct BsdfSample {
@@ -48,7 +48,7 @@ public:
     // Tables of the material's ior are looked up; the first such call makes them (energy_tables.h). Every number of the
     // material must lie in the range that its comment gives.
     Bsdf(const SurfaceMaterial& material, const ShadingFrame& frame, Lobes lobes = Lobes::All);
-    // With the tables of the material's ior at hand; none for a material that needs none.
+    // `tables`: of the material's ior; null for a material that needs none.
     Bsdf(const SurfaceMaterial& material, const ShadingFrame& frame, const EnergyTables* tables,
          Lobes lobes = Lobes::All);
 
@@ -59,23 +59,23 @@ public:
     // probabilities of delta lobes and of drawing nothing.
     double pdf(const dvec3& wo, const dvec3& wi) const;
 
-    // A direction from three numbers in [0, 1). None for wo that scatters nothing (opaque surfaces from below), and for
-    // facets that send light into their neighbours (its energy is in the lobes of evaluate()).
+    // Samples a direction from three numbers in [0, 1). None for wo from which nothing is scattered (opaque surfaces
+    // from below), and where a facet reflects into its neighbours (the lobes of evaluate() contain that energy).
     std::optional<BsdfSample> sample(const dvec3& wo, const dvec3& u, Transport transport = Transport::Radiance) const;
 
-    // What of the light against wo goes on as if there were no surface: through sheets and matched media.
+    // The share of light along -wo that continues as if there were no surface: through sheets and matched interfaces.
     Rgb straight_on(const dvec3& wo) const;
 
-    // Share of the power that arrives along wo which the Lambert base scatters.
+    // The share of the power arriving along wo that the Lambert base scatters.
     Rgb base_albedo(const dvec3& wo) const;
 
 private:
-    // What depends on wo alone. Directions are local and turned over where wo comes from inside: wo.z >= 0.
+    // Everything that depends on wo alone. Directions are local, and mirrored where wo lies inside: wo.z >= 0.
     struct View {
         dvec3 wo;
         int side;                                 // 0 outside, 1 inside
         double eta;                               // index of the other side relative to wo's
-        double lost;                              // what single scattering from wo misses: of metal and coat
+        double lost;                              // energy that single scattering from wo loses: of metal and coat
         double lost_both;                         // ... of the rough interface
         float base_share;                         // of light that the coat lets through to its base
         double facets, base, up, down, straight;  // probabilities of lobes
@@ -90,7 +90,7 @@ private:
 
     float blend(double cosine, double eta) const;
     Rgb coat_fresnel(double cosine, double eta) const;
-    float coat_fresnel_most(double cosine, double eta) const;
+    float max_coat_fresnel(double cosine, double eta) const;
     Rgb facet_reflectance(const View& view, double cosine) const;
     Rgb facet_transmittance(const View& view, double cosine) const;
     double reflecting_probability(const View& view, double cosine) const;
@@ -112,10 +112,10 @@ private:
     bool has_base_, has_specular_;
     Rgb base_;
     float metal_, coated_, glass_, sheet_;  // shares of the surface; their sum is 1
-    float specular_, f0_most_;              // the dielectric's F90, and its largest F0 / F90
+    float specular_, f0_max_;               // the dielectric's F90, and its largest F0 / F90
     Rgb f0_;                                // its F0 / F90
-    // Of light that met more than one facet: what comes back at last.
-    Rgb metal_again_{0.0f}, coat_again_{0.0f};
+    // Albedo of multiple scattering: the share that returns of light lost by single scattering.
+    Rgb metal_multiple_{0.0f}, coat_multiple_{0.0f};
     double lost_mean_ = 0.0;  // mean of View::lost
     double lost_both_mean_[2] = {0.0, 0.0};
     double crossing_[2] = {0.0, 0.0};  // share of View::lost_both that crosses to the other side

@@ -21,7 +21,7 @@ inline dvec3 sample_cosine(double u, double v) {
 
 // Light that met more than one facet leaves in proportion to cos (1 - E), and 1 - E about as alpha^2 / (cos^2 +
 // alpha^2) (masking loses alpha^2 tan^2 / 4 far from grazing angles): for low roughness almost along the surface, where
-// a cosine lobe would seldom look.
+// a cosine lobe has few samples.
 inline double grazing_density(double cosine, double alpha) {
     const double square = alpha * alpha;
     return cosine / (std::numbers::pi * (cosine * cosine + square) * std::log1p(1.0 / square));

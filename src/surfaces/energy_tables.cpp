@@ -66,7 +66,7 @@ std::vector<std::pair<double, double>> gauss_legendre(int n) {
     return points;
 }
 
-// Shares of what falls on one facet that get away from it, by side and without Fresnel terms.
+// Shares of the light on one facet that leave unmasked, by side and without Fresnel terms.
 struct Facet {
     double reflected, refracted, blend;
     bool total;  // beyond the critical angle
@@ -148,7 +148,7 @@ void add(const Entry& entry, double weight, Numbers& sum) {
 
 }  // namespace
 
-// A Fibonacci lattice is even along every line, which Fresnel's kinks and the horizon require.
+// A Fibonacci lattice is even along every line, as the kinks of Fresnel terms and the horizon require.
 Albedos integrate_albedos(double ior, double alpha, double cosine, int least) {
     int points = 1, step = 1;
     while (points < least)
@@ -177,7 +177,7 @@ EnergyTables::EnergyTables(double ior)
         a.reflect_blend = relative_blend(a, dielectric_blend(cosine, ior));
         store(numbers_of(a), table_[i]);
     });
-    // Means of the interpolated table, not of the truth: what one direction loses by them another gains.
+    // Means of the interpolated table, not of the exact integrals: errors of interpolation then cancel over directions.
     parallel_for(means_.size(), [&](std::size_t i) {
         const double alpha = alpha_of(double(i) / (kMeans - 1));
         Numbers sum{};
@@ -220,7 +220,7 @@ const EnergyTables& energy_tables(float ior) {
         if (const auto found = kept.find(ior); found != kept.end())
             return *found->second;
     }
-    // Made outside the lock: a thread that waits for its parallel loop may be given work that asks for tables too.
+    // Made outside the lock: a thread that waits for its parallel loop may be given work that needs tables, too.
     auto made = std::make_unique<const EnergyTables>(ior);
     const std::unique_lock lock(mutex);
     return *kept.try_emplace(ior, std::move(made)).first->second;

@@ -2,10 +2,10 @@
 // angle for one index of refraction. It is the basis of energy compensation (Kulla and Conty, Revisiting Physically
 // Based Shading at Imageworks, SIGGRAPH 2017 course).
 //
-// Tables hold directional albedos: shares, 0..1, of light from one direction that leave at once. For every
-// roughness that is not smooth and a Fresnel term of 1 beyond the critical angle they are within 1e-3 of the integrals
-// they stand for; with a weaker dielectric (specular below 1), seen from inside, within 4e-3, because its Fresnel term
-// jumps there.
+// Tables hold directional albedos: shares, 0..1, of light from one direction that leave after one facet. They are
+// within 1e-3 of the exact integrals for every roughness that is not smooth and a Fresnel term of 1 beyond the critical
+// angle. From inside a weaker dielectric (specular below 1) they are within 4e-3, because its Fresnel term jumps at
+// that angle.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@ namespace brisance {
 // Below this alpha (roughness 0.01) an interface is smooth: its lobes are deltas.
 constexpr double kSmoothAlpha = 1e-4;
 
-// Below this index inside and outside are alike: nothing is reflected (less than 3e-7 would be), and light goes
-// straight on.
+// Below this index of refraction the interface is matched: nothing is reflected (less than 3e-7 would be), and light
+// continues straight on.
 constexpr double kMatchedIor = 1.001;
 
 // With the blend s(angle) of fresnel.h, and a Fresnel term F = a + b s (1 beyond the critical angle):
@@ -28,7 +28,7 @@ struct Albedos {
     double reflect = 1.0, reflect_blend = 0.0;
     double first[2] = {1.0, 1.0}, second[2] = {0.0, 0.0}, third[2] = {0.0, 0.0};  // from outside, from inside
 
-    // Of everything, with F = a + b s.
+    // The total albedo with F = a + b s.
     double all(int side, double a, double b) const { return first[side] + a * second[side] + b * third[side]; }
 };
 
@@ -54,11 +54,12 @@ private:
     std::vector<Entry> means_;  // [finer roughness]
 };
 
-// The integrals themselves, by quadrature of at least so many points: what the tables are made of and tested against.
+// The exact integrals, by quadrature with at least this many points. The tables are made of them and tested against
+// them.
 Albedos integrate_albedos(double ior, double alpha, double cosine, int points = 4181);
 
-// Tables of one index, made at the first call for it (1.5 s of one core) and kept until the program ends. From any
-// thread. Throws Error for an index outside 1..10.
+// Tables of one index of refraction, made by the first call (1.5 s of one core) and kept until the program ends.
+// Thread-safe. Throws Error for an index outside 1..10.
 const EnergyTables& energy_tables(float ior);
 
 }  // namespace brisance

@@ -18,7 +18,7 @@ inline std::optional<double> refracted_cosine(double cosine, double eta) {
     return std::sqrt(square);
 }
 
-// Unpolarised reflectance of a dielectric; 1 where everything is reflected inside. Born and Wolf, Principles of
+// Unpolarised reflectance of a dielectric; 1 for total internal reflection. Born and Wolf, Principles of
 // Optics, section 1.5.
 inline double dielectric_fresnel(double cosine, double eta) {
     if (eta == 1.0)
@@ -36,7 +36,7 @@ inline double normal_reflectance(double eta) {
     return r * r;
 }
 
-// 0 at normal incidence, 1 at grazing incidence and beyond the critical angle: what blends F0 to F90 in place of
+// 0 at normal incidence, 1 at grazing incidence and beyond the critical angle: it blends F0 to F90 instead of
 // Schlick's (1 - cos)^5, so that a specular weight of 1 and a white colour are Fresnel's equations themselves.
 inline double dielectric_blend(double cosine, double eta) {
     const double f0 = normal_reflectance(eta);

@@ -36,8 +36,8 @@ struct Ggx {
         return masking_per_cosine(wo.z) * std::max(0.0, glm::dot(wo, h)) * density(h);
     }
 
-    // A normal distributed so, from two numbers in [0, 1); wo.z >= 0. Dupuy and Benyoub, Sampling Visible GGX Normals
-    // with Spherical Caps, HPG 2023.
+    // Samples a normal by that density, from two numbers in [0, 1); wo.z >= 0. Dupuy and Benyoub, Sampling Visible GGX
+    // Normals with Spherical Caps, HPG 2023.
     dvec3 sample_visible(const dvec3& wo, double u, double v) const;
 
 private:

@@ -14,10 +14,10 @@ struct SurfaceMaterial {
     float specular = 1.0f;      // [1] 0..1: factor of the dielectric's reflection at any angle
     Rgb specular_colour{1.0f};  // [1] >= 0: factor of its reflection at normal incidence, which stays below 1
     float transmission = 0.0f;  // [1] 0..1: share of the dielectric that refracts instead of scattering diffusely
-    bool thin = false;          // what is transmitted passes as through a sheet: nothing is bent
+    bool thin = false;          // light is transmitted as through a sheet, without refraction
 };
 
-// A plain Lambert surface does without energy tables.
+// A plain Lambert surface needs no energy tables.
 inline bool needs_energy_tables(const SurfaceMaterial& m) {
     return m.metallic > 0.0f || m.specular > 0.0f || m.transmission > 0.0f;
 }

@@ -37,7 +37,7 @@ public:
           lamps_along_(scene_.has_emitters() && aims_at_lamps(scene_) && !scene_.field().bricks().empty()) {}
 
     Rgb own_lights(const PathState& state, Rng& rng) const {
-        if (!lights_.asks_lights() || state.vertex.only_delta())
+        if (!lights_.samples_lights() || state.vertex.only_delta())
             return Rgb(0.0f);
         return lights_.from_lights(state.vertex, rng);
     }
@@ -50,7 +50,7 @@ public:
 
     SegmentMedium medium_along(const PathState& state, const PathStep& step, Rng& rng) {
         receiver_lit_ = state.order == 1 ||
-                        (receiver_lit_ && panes_ == Panes::Asked && goes_straight_on(state.vertex, *step.sample));
+                        (receiver_lit_ && panes_ == Panes::Sampled && goes_straight_on(state.vertex, *step.sample));
         if (receiver_lit_)
             return transmitted_along(state, step.segment, rng);
         const Rgb lamps = lamps_along_ ? lights_.lamps_on(step.segment, rng) : Rgb(0.0f);

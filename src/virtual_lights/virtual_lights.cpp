@@ -26,7 +26,7 @@ VirtualLights::VirtualLights(const DirectLight& scene, const PixelCamera& camera
 }
 
 bool VirtualLights::hold_base(const SurfaceHit& hit, const SurfacePoint& point) const {
-    return set_->complete ? holds_light(point.material) && !set_->lights.empty() : speaking_for(hit, point) > 0;
+    return set_->complete ? holds_light(point.material) && !set_->lights.empty() : count_covering(hit, point) > 0;
 }
 
 }  // namespace brisance

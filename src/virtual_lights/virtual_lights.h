@@ -34,15 +34,15 @@ public:
     // to the vertex is not part of it. Its mean is right up to the lights' own blur and noise; with path extension,
     // that is only found where many lights lie in a ray's footprint. `vertices`: is raised by the number of vertices of
     // the path, this one among them. `panes`: vertices may see fire and smoke straight through panes, which are
-    // surfaces; if Asked, the vertex has been lit by that already.
-    enum class Panes { Followed, Asked };
+    // surfaces. Sampled: the caller has already lit the vertex by what is seen through them.
+    enum class Panes { Followed, Sampled };
     Rgb shade(const PathVertex& vertex, Rng& rng, int* vertices = nullptr, Panes panes = Panes::Followed) const;
 
     const std::vector<VirtualLight>& lights() const { return set_->lights; }
     // Radiance of a light of its own surface's colour [W/(m^2 sr)]. `toward`: unit, world.
     Rgb radiance(const VirtualLight& light, const dvec3& toward) const { return set_->radiance(light, toward); }
     // How many lights cover a point where a ray has met a surface, up to LightShares::kMost; 0: paths continue there.
-    int speaking_for(const SurfaceHit& hit, const SurfacePoint& point) const {
+    int count_covering(const SurfaceHit& hit, const SurfacePoint& point) const {
         return set_->shares_at(hit, point).count;
     }
     // Whether the Lambert base of a point that a ray has met is among what the lights reflect, by their base_flux.
@@ -55,7 +55,7 @@ private:
     using Seen = CoveredHit;
 
     // What shade() reads along a path.
-    bool asks_lights() const { return !set_->lights.empty() && gatherer_->samples_lights(); }
+    bool samples_lights() const { return !set_->lights.empty() && gatherer_->samples_lights(); }
     Rgb from_lights(const PathVertex& vertex, Rng& rng) const { return gatherer_->from_lights(vertex, rng); }
     Seen seen_by(const RaySegment& segment) const { return set_->covered(segment); }
     double termination_probability(const Seen& seen, double pdf) const {

@@ -209,7 +209,7 @@ std::vector<FrameFile> resolve_sequence(const std::string& pattern, const std::o
         if (number && frames && frames->size() > 1)
             throw Error(
                 ExitCode::Usage,
-                fmt::format("{} is one file for one frame, but {} frames are asked for; write {} for the sequence",
+                fmt::format("{} is one file for one frame, but {} frames were requested; write {} for the sequence",
                             pattern, frames->size(), pattern_of(pattern).value_or(pattern)));
         std::vector<FrameFile> files;
         for (const int frame : frames.value_or(std::vector<int>{number.value_or(1)}))

@@ -41,7 +41,7 @@ auto guarded(const std::string& where, const Body& body) {
         throw;
     } catch (const std::bad_alloc&) {
         throw Error(ExitCode::BadData,
-                    fmt::format("{}: asks for more memory than there is: a damaged VDB, or one too large for this "
+                    fmt::format("{}: needs more memory than there is: a damaged VDB, or one too large for this "
                                 "machine; {} or try where there is more memory",
                                 where, remedy));
     } catch (const std::exception& error) {

@@ -1,4 +1,4 @@
-// Where a pixel looks.
+// Camera rays of pixels.
 #include <gtest/gtest.h>
 
 #include "camera/camera.h"

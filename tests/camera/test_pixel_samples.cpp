@@ -1,4 +1,4 @@
-// Samples of a pixel: stratified along both of its sides, and without a bias to either.
+// Samples of a pixel: stratified along both axes, and unbiased.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Edges of what shines: how well a pixel knows what part of it a lamp fills.
+// Edges of emitters: the error of the part of a pixel that a lamp covers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -79,7 +79,7 @@ TEST(Edges, PixelsKnowWhatPartOfThemALampFills) {
     EXPECT_LT(largest_error(lamp, picture(lamp, 1, 16)), 2.0 / 256.0);
 }
 
-// It lies in the gaps between most pixels' own rays, and is found by those of their neighbours that meet it.
+// It lies in the gaps between the rays of most pixels. Rays of neighbouring pixels that hit it find it.
 TEST(Edges, AStripThinnerThanTheGapsBetweenRaysIsWhole) {
     const Rectangle strip{2.37, 8.71, 4.45, 4.56};
     const std::vector<float> own = picture(strip, 3, 1), refined = picture(strip, 3, 8);

@@ -79,7 +79,7 @@ TEST(Picture, AnEvenGlowIsEvenUnderEveryFilter) {
 }
 
 TEST(Picture, AGaussianFilterWeighsTheMiddleMore) {
-    // One opaque half of the picture: how fast the edge turns dark tells the filter.
+    // One opaque half of the picture: how fast the edge turns dark shows the filter.
     Recipe r = cloud();
     r.density = [](const ivec3& n) { return n.x >= 0 ? 1.0f : 0.0f; };
     r.settings.smoke.extinction_per_metre = 1e4f;

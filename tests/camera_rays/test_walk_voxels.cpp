@@ -1,4 +1,4 @@
-// A ray's way through the cells has neither gaps nor overlaps.
+// The pieces of a ray in the cells have neither gaps nor overlaps.
 #include <gtest/gtest.h>
 
 #include <algorithm>

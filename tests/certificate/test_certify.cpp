@@ -1,4 +1,4 @@
-// Certificates: what they claim of a picture is as true as they say, for good pictures and bad ones.
+// Certificates: their intervals hold the true errors as often as they state, for good pictures and bad ones.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -87,7 +87,7 @@ struct TrueError {
     double mean;
 };
 
-// What a picture's errors are, from two halves of the truth that it has nothing to do with.
+// The errors of a picture, from two halves of the truth that are independent of it.
 TrueError true_error(const Image& image, const Image& a, const Image& b, const std::string& cell) {
     const auto& i = image.layer(cell).pixels;
     const auto &ra = a.layer(cell).pixels, &rb = b.layer(cell).pixels;
@@ -154,7 +154,7 @@ protected:
     PathTracer tracer_{medium_, shot_.tracing, shot_.scattering.bounces};
 };
 
-// How often intervals hold the truth, and what the estimates come to on average.
+// Checks how often intervals hold the truth, and the mean of the estimates.
 struct Coverage {
     int error = 0, below = 0, mean = 0, bound_only = 0;
     double square = 0.0, square_of_square = 0.0;
@@ -209,13 +209,13 @@ TEST_F(Certificates, HoldTheTruthAsOftenAsTheySay) {
     expect_coverage(of_bad, true_errors(bad, truth));
     expect_coverage(of_good, true_errors(good, truth));
     for (const Certificate& c : of_bad)
-        EXPECT_GT(c.errors.front().error_interval.low, 0.0) << "six per cent are told from none";
+        EXPECT_GT(c.errors.front().error_interval.low, 0.0) << "an error of 6 % is distinguished from none";
     for (const Certificate& c : of_good)
         EXPECT_LT(c.errors.front().error_interval.high, 0.06) << "a good picture is known to be one";
 }
 
-// A hundredth of the pixels, where nothing is to be seen, are as bright as the picture's mean: only pixels drawn evenly
-// can know.
+// A hundredth of the pixels, which should be black, are as bright as the mean of the picture. Only pixels drawn
+// uniformly can detect them.
 TEST_F(Certificates, FindLightWhereNoneShouldBe) {
     Image image = picture(32);
     double mean = 0.0;
@@ -276,7 +276,7 @@ TEST_F(Certificates, LeaveOutPixelsThatAreNotFiniteAndSaySo) {
                 std::isinf(none.to_json()["picture"]["error_interval"][1].get<double>()));
 }
 
-// Under a filter other than the picture's own the picture would seem wrong by more than its noise.
+// With a filter other than that of the picture, the estimated error would exceed the noise.
 TEST_F(Certificates, MeanThePicturesOwnPixelFilter) {
     const auto camera = [&](PixelFilter filter, float width) {
         CameraSettings settings = shot_.camera;
@@ -338,7 +338,7 @@ TEST_F(Certificates, GoWithTheFrameOfEitherMethod) {
     EXPECT_FALSE(render_medium(shot, medium_, silent).statistics.to_json().contains("certificate"));
 }
 
-// What the survey promises, whatever is summed.
+// The properties of the survey for any quantity.
 TEST(PixelSurvey, SumsAndTheirVariancesHaveNoBias) {
     constexpr int width = 40, height = 25, repeats = 2000;
     std::vector<double> size(width * height), value(size);

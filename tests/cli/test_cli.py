@@ -22,7 +22,7 @@ import unittest
 
 BINARY = pathlib.Path(sys.argv[1])
 SOURCE = pathlib.Path(sys.argv[2])
-# Seconds are spent on lighting: what concerns files and messages alone does without.
+# Lighting takes seconds; tests of files and messages run without it.
 SMALL = ["--set", "camera.width=16", "--set", "camera.height=12", "--preset", "draft", "--set", "scattering.bounces=0"]
 LIT = [*SMALL, "--set", "scattering.bounces=1"]
 
@@ -77,7 +77,7 @@ class VolumeCase(Case):
         if volume is None or not volume.exists():
             self.skipTest("no volume: neither volumes/*.vdb nor BRISANCE_DATA")
         self.volume = volume
-        # Where outputs go, apart from what is read.
+        # Outputs go to a folder without inputs.
         self.out = self.folder / "out"
         self.out.mkdir()
 
@@ -184,7 +184,7 @@ class Volumes(Case):
         self.expect(66, "render", "a.json", "-f", "1-2", says="dust_0001.vdb")
         self.assertEqual(self.names(), ["a.json"])
 
-    def test_folder_in_place_of_a_volume(self):
+    def test_folder_instead_of_a_volume(self):
         (self.folder / "a.vdb").mkdir()
         self.assertIn(self.run_program("render", "a.vdb").returncode, (65, 66))
 
@@ -257,7 +257,7 @@ class Rendering(VolumeCase):
         if os.geteuid() != 0:
             self.expect(73, "render", self.volume, *SMALL, "-o", self.out, says="no permission")
             return
-        # Root may write anywhere: be somebody else.
+        # Root may write anywhere, so the test runs as another user.
         shutil.copyfile(self.volume, self.folder / "a.vdb")
         self.folder.chmod(0o755)
         try:
@@ -296,7 +296,7 @@ class Rendering(VolumeCase):
     def test_frame_outside_the_sequence(self):
         pattern = self.make_sequence([1, 2, 4])
         self.expect(66, "render", pattern, *SMALL, "-f", "2-4", "-o", self.out, says=["frame 3", "1-2, 4"])
-        self.assertEqual(self.outputs(), [])  # told before the first frame is rendered
+        self.assertEqual(self.outputs(), [])  # reported before the first frame is rendered
         self.expect(2, "render", pattern, "-f", "1:4", says="':'")
 
     def test_frames_get_their_numbers(self):
@@ -325,7 +325,7 @@ class Rendering(VolumeCase):
             with subprocess.Popen([BINARY, "render", self.volume, "--set", "camera.width=4096", "--set",
                                    "camera.height=4096", "-o", self.out, "--progress", "plain"], stdout=subprocess.PIPE,
                                   stderr=subprocess.PIPE, cwd=self.folder) as process:
-                process.stderr.readline()  # handlers are in place once it speaks
+                process.stderr.readline()  # signal handlers are installed before the first line
                 process.send_signal(sent)
                 process.communicate(timeout=60)
             self.assertEqual(process.returncode, code)
@@ -395,7 +395,7 @@ class Compare(VolumeCase):
         forced = self.expect(0, "compare", image, other_scene, "--force", "--json", says="notice: a.exr and c.exr")
         self.assertIn("smoke.mean_cosine", json.loads(forced.stdout)["overruled_differences"][0])
 
-    def test_frames_are_told_apart(self):
+    def test_frames_are_distinguished(self):
         pattern = self.make_sequence([1, 2])
         for frame in (1, 2):
             self.expect(0, "render", pattern, *SMALL, "-f", frame, "-o", f"{frame}.exr")
@@ -409,7 +409,7 @@ class Compare(VolumeCase):
         reference = self.gray("y.exr", lambda x, y: 1)
         self.expect(65, "compare", reference, reference, "--cells", says="no layers besides the beauty")
 
-    def test_sizes_and_shots_are_complained_of_in_one_line(self):
+    def test_sizes_and_shots_are_reported_in_one_line(self):
         image = self.render("a.exr")
         larger = self.render("b.exr", "--set", "camera.width=20", "--set", "smoke.mean_cosine=0.25")
         done = self.expect(65, "compare", image, larger,
@@ -625,7 +625,7 @@ class VirtualLights(Case):
         self.assertEqual(sorted(pathlib.Path(line).name for line in done.stdout.split()), files)
         self.assertIn(b"\nelement vertex 2", (self.out / "a.virtual_lights.ply").read_bytes())
 
-    def test_only_where_asked_for(self):
+    def test_only_where_requested(self):
         self.expect(0, "render", self.shot, "-o", self.out / "a.exr")
         self.assertEqual(self.outputs(), ["a.exr", "a.png", "a.stats.json"])
 

@@ -1,4 +1,4 @@
-// Ledger cells: names and numbers agree, and their sums are channel by channel.
+// Ledger cells: names and indices agree, and sums are computed per channel.
 #include <gtest/gtest.h>
 
 #include <set>

@@ -1,4 +1,4 @@
-// Sums in fixed point: the same bits in whatever order, and as fine and as large as they are said to be.
+// Sums in fixed point: the same bits in any order, with the stated resolution and range.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// Parallel loops: every index once, fixed blocks, exceptions that arrive, and results that know no threads.
+// Parallel loops: every index once, fixed blocks, exceptions that reach the caller, and results that do not depend on
+// threads.
 #include <gtest/gtest.h>
 
 #include <atomic>

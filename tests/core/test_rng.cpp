@@ -1,4 +1,4 @@
-// Random streams are uniform, and those of different names know nothing of each other.
+// Random streams are uniform, and streams of different names are independent.
 //
 // Chi-square tests pass unless their statistic is among the one in ten thousand highest or lowest; correlations lie
 // within four standard errors, which one in sixteen thousand does not. Keys are fixed: what passes once passes always.

@@ -1,4 +1,4 @@
-// Pictures of virtual lights: where they are drawn, what the files say, and when there are none.
+// Pictures of virtual lights: positions in the picture, contents of the files, and cases without pictures.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -241,22 +241,22 @@ RenderedFrame render(const Shot& shot, Progress& progress, const SceneMaterial& 
 }
 
 TEST(LightPictures, FilesHoldAllLightsAndTheirFlux) {
-    Listener heard;
-    const RenderedFrame frame = render(shot_of_box(), heard, rough_metal());
-    EXPECT_TRUE(heard.warnings.empty());
+    Listener listener;
+    const RenderedFrame frame = render(shot_of_box(), listener, rough_metal());
+    EXPECT_TRUE(listener.warnings.empty());
     ASSERT_TRUE(frame.light_pictures);
     const TemporaryFolder folder;
     const LightPictureFiles files = light_picture_files(folder / "a.0001.exr", true);
-    std::vector<fs::path> told;
+    std::vector<fs::path> written;
     write_light_pictures(*frame.light_pictures, files, frame.metadata, 0.0f, ViewTransform::Filmic,
-                         [&](const fs::path& file) { told.push_back(file); });
+                         [&](const fs::path& file) { written.push_back(file); });
     std::vector<std::string> names = folder.names();
     std::sort(names.begin(), names.end());
     EXPECT_EQ(names, (std::vector<std::string>{"a.0001.virtual_lights.count.png", "a.0001.virtual_lights.exr",
                                                "a.0001.virtual_lights.path_length.png", "a.0001.virtual_lights.ply",
                                                "a.0001.virtual_lights.png", "a.0001.virtual_lights.profiles.exr",
                                                "a.0001.virtual_lights.profiles.png"}));
-    EXPECT_EQ(told.size(), names.size());
+    EXPECT_EQ(written.size(), names.size());
 
     std::size_t vertices = 0;
     auto ply = read_ply(files.ply, vertices);
@@ -285,29 +285,29 @@ TEST(LightPictures, FilesHoldAllLightsAndTheirFlux) {
 }
 
 TEST(LightPictures, DoNotChangeTheFrame) {
-    Listener heard;
+    Listener listener;
     Shot shot = shot_of_box();
-    const RenderedFrame asked = render(shot, heard);
+    const RenderedFrame with_pictures = render(shot, listener);
     shot.output.virtual_lights = false;
-    const RenderedFrame plain = render(shot, heard);
+    const RenderedFrame plain = render(shot, listener);
     EXPECT_FALSE(plain.light_pictures);
-    ASSERT_EQ(asked.image.layers.size(), plain.image.layers.size());
+    ASSERT_EQ(with_pictures.image.layers.size(), plain.image.layers.size());
     for (std::size_t l = 0; l < plain.image.layers.size(); ++l)
-        EXPECT_EQ(asked.image.layers[l].pixels, plain.image.layers[l].pixels) << plain.image.layers[l].name;
+        EXPECT_EQ(with_pictures.image.layers[l].pixels, plain.image.layers[l].pixels) << plain.image.layers[l].name;
 }
 
 TEST(LightPictures, PathsHaveOneVertexWithoutExtensionAndMoreWithIt) {
-    Listener heard;
+    Listener listener;
     Shot shot = shot_of_box();
     shot.virtual_lights.count = 2000;
     shot.virtual_lights.radius = LightRadius::Uniform;
-    shot.virtual_lights.radius_factor = 2.5;  // no place between lights is left out
+    shot.virtual_lights.radius_factor = 2.5;  // no gaps between the lights
     shot.virtual_lights.path_extension = false;
-    const RenderedFrame plain = render(shot, heard);
+    const RenderedFrame plain = render(shot, listener);
     for (const float length : plain.light_pictures->image.layer("path_length").pixels)
         ASSERT_EQ(length, 1.0f);
     shot.virtual_lights.path_extension = true;
-    const RenderedFrame extended = render(shot, heard);
+    const RenderedFrame extended = render(shot, listener);
     double sum = 0.0;
     for (const float length : extended.light_pictures->image.layer("path_length").pixels) {
         ASSERT_GE(length, 1.0f);
@@ -317,40 +317,40 @@ TEST(LightPictures, PathsHaveOneVertexWithoutExtensionAndMoreWithIt) {
 }
 
 TEST(LightPictures, WhatHasNoneSaysWhy) {
-    const auto told = [](const std::function<void(Shot&)>& change) {
+    const auto warning_of = [](const std::function<void(Shot&)>& change) {
         Shot shot = shot_of_box();
         change(shot);
-        Listener heard;
-        EXPECT_FALSE(render(shot, heard).light_pictures);
-        EXPECT_EQ(heard.warnings.size(), 1u);
-        return heard.warnings.empty() ? "" : heard.warnings.front();
+        Listener listener;
+        EXPECT_FALSE(render(shot, listener).light_pictures);
+        EXPECT_EQ(listener.warnings.size(), 1u);
+        return listener.warnings.empty() ? "" : listener.warnings.front();
     };
-    const auto path = told([](Shot& shot) {
+    const auto path = warning_of([](Shot& shot) {
         shot.method = RenderMethod::Path;
         shot.tracing.samples = 2;
     });
     EXPECT_NE(path.find("method path"), std::string::npos) << path;
-    const auto count = told([](Shot& shot) { shot.virtual_lights.count = 0; });
+    const auto count = warning_of([](Shot& shot) { shot.virtual_lights.count = 0; });
     EXPECT_NE(count.find("virtual_lights.count is 0"), std::string::npos) << count;
-    const auto photons = told([](Shot& shot) { shot.virtual_lights.photons = 0; });
+    const auto photons = warning_of([](Shot& shot) { shot.virtual_lights.photons = 0; });
     EXPECT_NE(photons.find("virtual_lights.photons is 0"), std::string::npos) << photons;
-    const auto bounces = told([](Shot& shot) { shot.scattering.bounces = 1; });
+    const auto bounces = warning_of([](Shot& shot) { shot.scattering.bounces = 1; });
     EXPECT_NE(bounces.find("scattering.bounces"), std::string::npos) << bounces;
     // Outside the box and turned away from it.
-    const auto away = told([](Shot& shot) { shot.camera = LitBox::camera_settings({0, 0, 50}, {0.1, 0.1, 60}); });
+    const auto away = warning_of([](Shot& shot) { shot.camera = LitBox::camera_settings({0, 0, 50}, {0.1, 0.1, 60}); });
     EXPECT_NE(away.find("none was placed"), std::string::npos) << away;
 
-    Listener heard;
+    Listener listener;
     const Medium fire = make_medium(glowing_ball(8, 3.0f));
-    EXPECT_FALSE(render_medium(shot_of_box(), fire, heard).light_pictures);
-    ASSERT_EQ(heard.warnings.size(), 1u);
-    EXPECT_NE(heard.warnings.front().find("no surfaces"), std::string::npos) << heard.warnings.front();
+    EXPECT_FALSE(render_medium(shot_of_box(), fire, listener).light_pictures);
+    ASSERT_EQ(listener.warnings.size(), 1u);
+    EXPECT_NE(listener.warnings.front().find("no surfaces"), std::string::npos) << listener.warnings.front();
 }
 
 // Frame by frame, file by file: what is there is whole.
 TEST(LightPictures, FilesThatHaveNoPlaceAreAbsent) {
-    Listener heard;
-    const RenderedFrame frame = render(shot_of_box(), heard);
+    Listener listener;
+    const RenderedFrame frame = render(shot_of_box(), listener);
     const TemporaryFolder folder;
     const auto write = [&](const LightPictureFiles& files) {
         write_light_pictures(*frame.light_pictures, files, frame.metadata, 0.0f, ViewTransform::Srgb,

@@ -1,4 +1,4 @@
-// Random points on domains of known measure, and how evenly chosen ones are spread.
+// Random points on domains of known measure, and measures of how evenly a selection of them is distributed.
 #pragma once
 
 #include <cstdint>

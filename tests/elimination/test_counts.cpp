@@ -1,4 +1,4 @@
-// How many survive, and who they are.
+// The number of survivors, and their identity.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What becomes of candidates that are not evenly dense.
+// Candidates of varying density.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Input that nobody would wish for.
+// Degenerate and invalid input.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -47,12 +47,12 @@ TEST(EdgeCases, AllPointsCoincide) {
     }
 }
 
-// Each point a hundred times: while there are places enough, no two survivors share one.
+// Each point a hundred times: while there are enough positions, no two survivors share one.
 TEST(EdgeCases, ManyDuplicates) {
-    const std::vector<vec3> places = testing::sphere(2'000, 40);
+    const std::vector<vec3> positions = testing::sphere(2'000, 40);
     std::vector<vec3> points;
     for (int k = 0; k < 100; ++k)
-        points.insert(points.end(), places.begin(), places.end());
+        points.insert(points.end(), positions.begin(), positions.end());
     for (const EliminationSettings& settings : {adaptive(), uniform(testing::kSphereArea)}) {
         std::set<std::uint32_t> found;
         for (const std::uint32_t i : eliminate(points, 500, settings).index)

@@ -1,4 +1,4 @@
-// In parallel, one by one, in another order, on any number of threads: the same survivors.
+// The survivors are the same in parallel and one by one, in any order, and for any number of threads.
 #include <gtest/gtest.h>
 
 #include <algorithm>

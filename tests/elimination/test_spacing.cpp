@@ -1,4 +1,4 @@
-// How evenly survivors are spread. Bounds are a little below what seeds other than these give.
+// The distances of survivors. Bounds are a little below the results of other seeds.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// All that shines but the fire: what arrives at a point, by sampling lights, by sampling directions, and by closed
-// forms.
+// Emitters other than fire: the light that arrives at a point, by sampling lights, by sampling directions, and by
+// closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -86,7 +86,8 @@ TEST(Emitters, QuadsHaveTheirFormFactor) {
     EXPECT_EQ(behind.mean[0], 0.0) << "its back is black";
 }
 
-// Two ways to the same light: places on emitters, and directions that may hit them. Both densities must be true.
+// The same light by two sampling techniques: points on emitters, and directions that may hit them. Both densities must
+// be right.
 TEST(Emitters, DensitiesOfHitsAreThoseOfSampling) {
     Scene scene;
     add_ball(scene, {0, 0, 3}, 1.0f, 8, emitting(Rgb(2.0f)));
@@ -101,8 +102,8 @@ TEST(Emitters, DensitiesOfHitsAreThoseOfSampling) {
         const bool seen = s && !set.intersector().occluded({point.position, s->direction}, s->distance * (1 - 1e-5));
         out[0] = seen ? s->weight.x : 0.0;
     });
-    const Estimate by_directions = estimate_to(3e-3, 3, [&](const dvec3& place, Rng&, double* out) {
-        const dvec3 d = uniform_direction(place.x, place.y);
+    const Estimate by_directions = estimate_to(3e-3, 3, [&](const dvec3& u, Rng&, double* out) {
+        const dvec3 d = uniform_direction(u.x, u.y);
         const auto hit = set.intersector().first_hit({point.position, d});
         const double density = 1.0 / (4.0 * kPi64);
         Rgb seen = set.emitters().background(d);
@@ -124,8 +125,8 @@ TEST(Emitters, DensitiesOfHitsAreThoseOfSampling) {
         out[0] = seen ? s->weight.x * s->pdf / (s->pdf + 1.0 / (4.0 * kPi64)) : 0.0;
     });
     // What the sum lacks: directions weigh by their own density over both.
-    const Estimate rest = estimate_to(3e-3, 1, [&](const dvec3& place, Rng&, double* out) {
-        const dvec3 d = uniform_direction(place.x, place.y);
+    const Estimate rest = estimate_to(3e-3, 1, [&](const dvec3& u, Rng&, double* out) {
+        const dvec3 d = uniform_direction(u.x, u.y);
         const auto hit = set.intersector().first_hit({point.position, d});
         const double density = 1.0 / (4.0 * kPi64);
         const Rgb seen = hit ? surface_point(set.scene(), *hit, -d).emission : set.emitters().background(d);

@@ -40,14 +40,14 @@ TEST(Environment, SamplesWithTheDensityItTells) {
         for (const char up : {'y', 'z'}) {
             const Environment environment(settings(up, 33.0), p);
             // Mean of 1 / pdf is the sphere; of radiance / pdf the same integral as by even directions.
-            const Estimate e = estimate_to(0.003, 2, [&](const dvec3& place, Rng&, double* out) {
-                const dvec3 d = environment.sample(place.x, place.y);
+            const Estimate e = estimate_to(0.003, 2, [&](const dvec3& u, Rng&, double* out) {
+                const dvec3 d = environment.sample(u.x, u.y);
                 EXPECT_NEAR(glm::length(d), 1.0, 1e-9);
                 out[0] = 1.0 / environment.pdf(d);
                 out[1] = environment.radiance(d).x / environment.pdf(d);
             });
-            const Estimate even = estimate_to(0.003, 1, [&](const dvec3& place, Rng&, double* out) {
-                out[0] = 4.0 * kPi64 * environment.radiance(uniform_direction(place.x, place.y)).x;
+            const Estimate even = estimate_to(0.003, 1, [&](const dvec3& u, Rng&, double* out) {
+                out[0] = 4.0 * kPi64 * environment.radiance(uniform_direction(u.x, u.y)).x;
             });
             EXPECT_NEAR(e.mean[0], 4.0 * kPi64, kSigmas * e.error[0] + 0.01);
             EXPECT_NEAR(e.mean[1], even.mean[0], kSigmas * std::hypot(e.error[1], even.error[0]));

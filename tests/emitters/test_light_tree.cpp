@@ -71,7 +71,7 @@ TEST(LightTree, ChoosesAsItSays) {
     }
 }
 
-// A light that reaches the point must not be given up anywhere on the way to it.
+// If a light reaches the point, no node on its path through the tree may have probability 0.
 TEST(LightTree, EveryLightThatReachesAPointCanBeChosen) {
     const std::vector<LightBounds> lights = some_lights(300);
     const LightTree tree(lights);
@@ -79,12 +79,12 @@ TEST(LightTree, EveryLightThatReachesAPointCanBeChosen) {
         for (std::size_t i = 0; i < lights.size(); ++i) {
             if (lights[i].intensity == 0.0)
                 continue;
-            const dvec3 place = 0.5 * (lights[i].low + lights[i].high), way = point.position - place;
-            double emitted = glm::dot(lights[i].axis, glm::normalize(way));
+            const dvec3 centre = 0.5 * (lights[i].low + lights[i].high), offset = point.position - centre;
+            double emitted = glm::dot(lights[i].axis, glm::normalize(offset));
             if (lights[i].two_sided)
                 emitted = std::abs(emitted);
             const bool emits = lights[i].spread == kPi || emitted > 0.01;
-            const double received = -glm::dot(point.normal, glm::normalize(way));
+            const double received = -glm::dot(point.normal, glm::normalize(offset));
             const bool receives = point.kind == LitPoint::Kind::Medium || received > 0.01 ||
                                   (point.kind == LitPoint::Kind::Transmitting && received < -0.01);
             if (emits && receives) {
@@ -99,7 +99,7 @@ TEST(LightTree, NearLightsAreFoundMoreOften) {
         l.intensity = 1.0, l.spread = kPi;
     const LightTree tree(lights);
     const LitPoint beside{0.5 * (lights[17].low + lights[17].high) + dvec3(0.05, 0.0, 0.0), {}, LitPoint::Kind::Medium};
-    // Boxes that hold the point do not tell the tree on which side the light is: no more than this can be asked.
+    // Where a box holds the point, the tree does not know on which side the light is. The bound is low for that reason.
     EXPECT_GT(tree.probability(beside, 17), 3.0 / 200.0);
 }
 
@@ -114,8 +114,8 @@ TEST(LightTree, OneLightAndNone) {
     EXPECT_EQ(choice->probability, 1.0);
 }
 
-// Lights at one place cannot be split by where they are.
-TEST(LightTree, LightsAtOnePlace) {
+// Lights at one position cannot be split by their positions.
+TEST(LightTree, LightsAtOnePosition) {
     std::vector<LightBounds> lights(50, some_lights(2)[1]);
     const LightTree tree(lights);
     double sum = 0.0;

@@ -1,4 +1,4 @@
-// Small pictures, and a folder that goes away again.
+// Small pictures, and a temporary folder.
 #pragma once
 
 #include <unistd.h>

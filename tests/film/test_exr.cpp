@@ -1,4 +1,4 @@
-// What is written to an EXR comes back, bit for bit, under the names other programs expect.
+// Pixels written to an EXR are read back bit for bit, under the names that other programs expect.
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>

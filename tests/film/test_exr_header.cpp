@@ -1,4 +1,4 @@
-// What an EXR says about itself.
+// Metadata in the header of an EXR.
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFloatAttribute.h>

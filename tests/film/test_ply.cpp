@@ -1,4 +1,4 @@
-// Points as PLY: what the header promises is what follows, bit by bit.
+// Points as PLY: the data agree with the header, bit by bit.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// The PNG shows the beauty the right way up, exposed as asked.
+// The PNG shows the beauty upright and at the given exposure.
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// How radiance becomes something to look at.
+// View transforms: from radiance to a displayed colour.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Asking a lit medium for what arrives.
+// Gathers the light that arrives in a lit medium.
 #pragma once
 
 #include <algorithm>
@@ -41,13 +41,13 @@ inline Gathered at_all_nodes(const Lit& lit, const LightingSettings& settings,
     return gather_at_nodes(field_of(lit, settings), {&needed, toward_camera, moments, mean_cosine}, costs, silent);
 }
 
-// The same, asked for by the nodes that `asks` picks alone.
-template <class Asks>
-Gathered at_nodes(const Lit& lit, const LightingSettings& settings, const Asks& asks) {
+// The same at the nodes for which `is_needed` returns true.
+template <class IsNeeded>
+Gathered at_nodes(const Lit& lit, const LightingSettings& settings, const IsNeeded& is_needed) {
     std::vector<std::uint8_t> needed(lit.medium.lattice.node_count());
     for (std::size_t i = 0; i < needed.size(); ++i)
-        needed[i] = asks(lit.medium.lattice.first_node(i / BrickLattice::kNodes) +
-                         BrickLattice::node_in_brick(static_cast<int>(i % BrickLattice::kNodes)));
+        needed[i] = is_needed(lit.medium.lattice.first_node(i / BrickLattice::kNodes) +
+                              BrickLattice::node_in_brick(static_cast<int>(i % BrickLattice::kNodes)));
     std::vector<LevelCost> costs;
     Progress silent;
     return gather_at_nodes(field_of(lit, settings), {&needed, nullptr, false, 0.0f}, costs, silent);
@@ -56,11 +56,11 @@ Gathered at_nodes(const Lit& lit, const LightingSettings& settings, const Asks& 
 // Fluence of the first channel at points, one block per run of up to 64 points.
 inline std::vector<float> at_points(const Lit& lit, const LightingSettings& settings, const std::vector<vec3>& points) {
     Receivers receivers;
-    std::vector<std::size_t> place;
+    std::vector<std::size_t> receiver_of_point;
     for (std::size_t first = 0; first < points.size(); first += 64) {
         const std::vector<vec3> block(points.begin() + first, points.begin() + std::min(points.size(), first + 64));
         for (std::size_t i = 0; i < block.size(); ++i)
-            place.push_back(receivers.size() + i);
+            receiver_of_point.push_back(receivers.size() + i);
         receivers.add_block(block, {});
     }
     std::vector<LevelCost> costs;
@@ -68,7 +68,7 @@ inline std::vector<float> at_points(const Lit& lit, const LightingSettings& sett
     const LightField field = field_of(lit, settings);
     const Gathered gathered = gather_at_points(field, bottom_level(field), receivers, 0.0f, costs, silent);
     std::vector<float> fluence;
-    for (const std::size_t i : place)
+    for (const std::size_t i : receiver_of_point)
         fluence.push_back(gathered.fluence[i]);
     return fluence;
 }

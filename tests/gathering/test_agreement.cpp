@@ -1,4 +1,4 @@
-// Different ways to the same light agree, and threads and memory do not show.
+// Different methods gather the same light; the number of threads and the memory do not change it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -76,26 +76,26 @@ TEST(Agreement, NodesThatAskAloneGetWhatTheyGetTogether) {
     EXPECT_EQ(costs.size(), lit.grid.levels.size() + 1);
 }
 
-TEST(Agreement, MapsMadeOnDemandAreThoseThatAreAsked) {
+TEST(Agreement, MapsMadeOnDemandGiveTheSameLight) {
     const Lit lit(make_medium(fireball(2.0f)));
-    LightField all = field_of(lit, lighting(ShadowMethod::Maps, 1.0f)), asked = all;
+    LightField all = field_of(lit, lighting(ShadowMethod::Maps, 1.0f)), on_demand = all;
     ShadowMapCache cache;
     cache.on_demand = true;
-    asked.cache = &cache;
+    on_demand.cache = &cache;
     const GridLevel bottom = bottom_level(all);
-    const auto gathered = [&](const LightField& field, const vec3& place, std::uint64_t& map_bytes) {
+    const auto gathered = [&](const LightField& field, const vec3& position, std::uint64_t& map_bytes) {
         Receivers receivers;
-        receivers.add_block({place, place + vec3(0.05f, 0.0f, 0.0f)}, {});
+        receivers.add_block({position, position + vec3(0.05f, 0.0f, 0.0f)}, {});
         std::vector<LevelCost> costs;
         Progress silent;
         const Gathered g = gather_at_points(field, bottom, receivers, 0.0f, costs, silent);
         map_bytes = costs[1].map_bytes;
         return g.fluence;
     };
-    // The second asks for more; the third for what is there.
+    // The second position needs further maps; the third only maps that exist.
     std::uint64_t before = 0, bytes = 0, of_all = 0;
-    for (const vec3 place : {vec3(0.4f, 0.1f, -0.2f), vec3(-0.5f, 0.3f, 0.1f), vec3(0.4f, 0.1f, -0.2f)}) {
-        EXPECT_EQ(gathered(asked, place, bytes), gathered(all, place, of_all));
+    for (const vec3 position : {vec3(0.4f, 0.1f, -0.2f), vec3(-0.5f, 0.3f, 0.1f), vec3(0.4f, 0.1f, -0.2f)}) {
+        EXPECT_EQ(gathered(on_demand, position, bytes), gathered(all, position, of_all));
         EXPECT_GE(bytes, before);
         EXPECT_LT(bytes, of_all);
         before = bytes;

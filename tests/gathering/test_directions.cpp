@@ -1,4 +1,4 @@
-// Where light comes from matters where smoke scatters forward.
+// Directions of arriving light, for anisotropic phase functions.
 #include <gtest/gtest.h>
 
 #include "gather_fixture.h"
@@ -48,10 +48,10 @@ TEST(Directions, OneLightScattersByItsAngle) {
     for (const float g : {0.6f, -0.4f, 0.9f}) {
         const Gathered got = at_all_nodes(*lit, lighting(ShadowMethod::None), &camera, false, g);
         for (std::size_t i = 0; i < camera.size(); ++i) {
-            const vec3 way = lit->medium.local_of_node(node_at(lit->medium, i)) - lit->medium.local_of_node(kLamp);
-            if (way == vec3(0.0f))
+            const vec3 offset = lit->medium.local_of_node(node_at(lit->medium, i)) - lit->medium.local_of_node(kLamp);
+            if (offset == vec3(0.0f))
                 continue;
-            const float phase = henyey_greenstein(glm::dot(glm::normalize(way), camera[i]), g);
+            const float phase = henyey_greenstein(glm::dot(glm::normalize(offset), camera[i]), g);
             ASSERT_NEAR(got.scattered[i] / got.fluence[i] / phase, 1.0f, 2e-3f) << "g = " << g;
         }
     }
@@ -62,10 +62,10 @@ TEST(Directions, MomentsOfOneLightAreItsFluenceTimesTheHarmonics) {
     const Gathered got = at_all_nodes(*lit, lighting(ShadowMethod::None), nullptr, true);
     const std::size_t nodes = lit->medium.lattice.node_count();
     for (std::size_t i = 0; i < nodes; ++i) {
-        const vec3 way = lit->medium.local_of_node(node_at(lit->medium, i)) - lit->medium.local_of_node(kLamp);
-        if (way == vec3(0.0f))
+        const vec3 offset = lit->medium.local_of_node(node_at(lit->medium, i)) - lit->medium.local_of_node(kLamp);
+        if (offset == vec3(0.0f))
             continue;
-        const auto basis = sh_basis(glm::normalize(way));
+        const auto basis = sh_basis(glm::normalize(offset));
         for (int m = 0; m < kShMoments; ++m)
             for (int c = 0; c < 3; ++c)
                 ASSERT_NEAR(got.moments[(3 * m + c) * nodes + i] / got.fluence[c * nodes + i], basis[m], 2e-4f);
@@ -121,15 +121,15 @@ TEST(Directions, ADirectionalLightShinesAsItsHarmonicsSay) {
     const Gathered got = gather_at_nodes(field, {&needed, nullptr, false, 0.0f}, costs, silent);
     const std::size_t nodes = lit->intensity.size();
     for (std::size_t i = 0; i < nodes; ++i) {
-        const vec3 way = lit->medium.local_of_node(node_at(lit->medium, i)) - lit->medium.local_of_node(kLamp);
-        if (way == vec3(0.0f))
+        const vec3 offset = lit->medium.local_of_node(node_at(lit->medium, i)) - lit->medium.local_of_node(kLamp);
+        if (offset == vec3(0.0f))
             continue;
-        const auto basis = sh_basis(glm::normalize(way));
+        const auto basis = sh_basis(glm::normalize(offset));
         for (int c = 0; c < 3; ++c) {
             float expected = 1.0f;
             for (int m = 0; m < kShMoments; ++m)
                 expected += directional[lamp * 24 + 3 * m + c] * basis[m];
-            ASSERT_NEAR(got.fluence[c * nodes + i] * glm::dot(way, way), expected, 5e-4f);
+            ASSERT_NEAR(got.fluence[c * nodes + i] * glm::dot(offset, offset), expected, 5e-4f);
         }
     }
 }

@@ -1,4 +1,4 @@
-// The lattice's own near field: lines through voxels, and the light a node gives itself.
+// The lattice's own near field: lines through voxels, and the light of a node on itself.
 #include <gtest/gtest.h>
 
 #include "gather_fixture.h"

@@ -1,4 +1,4 @@
-// One point light: every level hands it on to the next, and none of it is lost or counted twice.
+// One point light: adjacent levels of the hierarchy share it, and none of it is lost or counted twice.
 #include <gtest/gtest.h>
 
 #include "gather_fixture.h"

@@ -1,4 +1,4 @@
-// Rays and triangles: nothing slips through, nothing meets itself, at any scale and far from anywhere.
+// Rays and triangles: no leaks and no self-intersections, at any scale and far from the origin.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -43,11 +43,11 @@ TEST(Intersector, HitsLieWhereTheyShould) {
 }
 
 // Scale of the set [m], and how far from the local origin it stands, in its own size.
-struct Place {
+struct ScaleAndOffset {
     float scale, away;
 };
 
-class AtAnyScale : public ::testing::TestWithParam<Place> {
+class AtAnyScale : public ::testing::TestWithParam<ScaleAndOffset> {
 protected:
     vec3 centre() const { return GetParam().scale * GetParam().away * vec3(0.6f, -0.64f, 0.48f); }
 };
@@ -89,7 +89,7 @@ TEST_P(AtAnyScale, SurfacesDoNotMeetThemselves) {
             add_box(scene, centre() - s, centre() + s, lambert(0.5f));
         const Intersector intersector(scene);
         Rng rng(Stream::Points, 2);
-        int met = 0, asked = 0;
+        int met = 0, tested = 0;
         for (int i = 0; i < 30000; ++i) {
             const dvec3 inward = uniform_direction(rng);
             const auto hit = intersector.first_hit({dvec3(centre()) - 3.0 * double(s) * inward, inward});
@@ -103,11 +103,11 @@ TEST_P(AtAnyScale, SurfacesDoNotMeetThemselves) {
                     d = glm::normalize(d - (1.0 - 1e-3) * glm::dot(d, point.geometric_normal) * point.geometric_normal);
                 if (glm::dot(d, point.geometric_normal) < 0.0)
                     d = -d;
-                ++asked;
+                ++tested;
                 met += intersector.occluded(point.leaving(d));
             }
         }
-        EXPECT_GT(asked, 50000);
+        EXPECT_GT(tested, 50000);
         EXPECT_EQ(met, 0) << (round ? "ball" : "box");
     }
 }
@@ -129,12 +129,13 @@ TEST_P(AtAnyScale, NearSurfacesAreStillApart) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Intersector, AtAnyScale,
-                         ::testing::Values(Place{1.0f, 0.0f}, Place{1e-6f, 0.0f}, Place{1e6f, 0.0f},
-                                           Place{1.0f, 100.0f}, Place{1e-3f, 100.0f}, Place{1e3f, 30.0f}));
+                         ::testing::Values(ScaleAndOffset{1.0f, 0.0f}, ScaleAndOffset{1e-6f, 0.0f},
+                                           ScaleAndOffset{1e6f, 0.0f}, ScaleAndOffset{1.0f, 100.0f},
+                                           ScaleAndOffset{1e-3f, 100.0f}, ScaleAndOffset{1e3f, 30.0f}));
 
-// Coincident faces: one of them is met, and the same one whoever asks.
-// What any ray finds within a ball, nobody is told to be farther away; and of a ball of triangles, few are said to be
-// near that are not.
+// Of coincident faces every intersector finds the same one.
+// any_within() must find every surface that a ray hits within the radius. Inside a mesh of a ball it may report few
+// surfaces that are farther away.
 TEST_P(AtAnyScale, NothingNearIsOverlooked) {
     const double size = GetParam().scale;
     Scene scene;
@@ -145,16 +146,16 @@ TEST_P(AtAnyScale, NothingNearIsOverlooked) {
     Rng rng(Stream::Points, 5);
     int found = 0, far = 0, said_near = 0;
     for (int i = 0; i < 20000; ++i) {
-        const dvec3 place = dvec3(centre()) + 2.5 * size * rng.next_double() * uniform_direction(rng);
+        const dvec3 point = dvec3(centre()) + 2.5 * size * rng.next_double() * uniform_direction(rng);
         const double radius = size * rng.next_double() * rng.next_double();
-        const bool near = intersector.any_within(place, radius);
+        const bool near = intersector.any_within(point, radius);
         bool hit = false;
         for (int k = 0; k < 8 && !hit; ++k)
-            hit = intersector.first_hit({place, uniform_direction(rng)}, radius).has_value();
-        EXPECT_TRUE(near || !hit) << "a surface within " << radius;
+            hit = intersector.first_hit({point, uniform_direction(rng)}, radius).has_value();
+        EXPECT_TRUE(near || !hit) << "a surface is hit within " << radius;
         found += hit;
-        const double from_ball = glm::distance(place, dvec3(centre())) / size;
-        if (from_ball < 0.9 && from_ball + radius / size < 0.9 && place.z > centre().z + 0.5 * size) {
+        const double from_ball = glm::distance(point, dvec3(centre())) / size;
+        if (from_ball < 0.9 && from_ball + radius / size < 0.9 && point.z > centre().z + 0.5 * size) {
             ++far;
             said_near += near;
         }

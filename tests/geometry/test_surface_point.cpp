@@ -1,4 +1,4 @@
-// What lies where a ray hits.
+// The surface point at a hit.
 #include <gtest/gtest.h>
 
 #include "fixtures/sets.h"

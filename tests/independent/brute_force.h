@@ -1,4 +1,4 @@
-// Radiance along rays by plain Monte Carlo: what the path tracer is held against.
+// Radiance along rays by plain Monte Carlo, to validate the path tracer.
 //
 // The path tracer shares its particle walk, its path step, its sampling and its geometry with the methods that it
 // judges, so an error in one of them could pass unnoticed. This estimator shares none of that code. It reads the node

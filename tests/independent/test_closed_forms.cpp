@@ -67,9 +67,9 @@ TEST(BruteForce, ALampLightsAFloorThroughSmoke) {
 
     // The same with a spot that is halfway between its two angles at p.
     const double off = 20.0 * kPi / 180.0;
-    const dvec3 way = (p - lamp) / d, aside = glm::normalize(glm::cross(way, dvec3(1, 0, 0)));
+    const dvec3 toward = (p - lamp) / d, aside = glm::normalize(glm::cross(toward, dvec3(1, 0, 0)));
     world.lamps[0].spot = true;
-    world.lamps[0].axis = std::cos(off) * way + std::sin(off) * aside;
+    world.lamps[0].axis = std::cos(off) * toward + std::sin(off) * aside;
     world.lamps[0].inner_degrees = 10.0;
     world.lamps[0].outer_degrees = 25.0;
     const double inner = std::cos(10.0 * kPi / 180.0), outer = std::cos(25.0 * kPi / 180.0);

@@ -33,11 +33,11 @@ public:
 
     // Mean radiance of a view, to a relative standard error.
     testing::Estimate measure(const View& view, double relative) const {
-        return testing::estimate_to(relative, 3, [&](const dvec3& place, Rng& rng, double* out) {
-            const Line line = view.line(place.x, place.y);
+        return testing::estimate_to(relative, 3, [&](const dvec3& u, Rng& rng, double* out) {
+            const Line line = view.line(u.x, u.y);
             PathSum sum{};
             PathStatistics statistics;
-            tracer_.trace({line.origin - origin_, line.direction}, place.z, rng, sum, statistics);
+            tracer_.trace({line.origin - origin_, line.direction}, u.z, rng, sum, statistics);
             dvec3 all(0.0);
             for (const Rgb& order : sum)
                 all += dvec3(order);

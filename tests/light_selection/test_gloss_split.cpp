@@ -1,4 +1,5 @@
-// Places on ray lights and rays drawn from a glossy lobe find the same light, and share it.
+// Points sampled on ray lights and rays sampled from a glossy lobe estimate the same light, and their sum counts it
+// once.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -11,7 +12,7 @@ namespace {
 using namespace testing;
 
 constexpr int kPointsToASet = 64;
-constexpr int kPlaces = 4;
+constexpr int kPoints = 4;
 
 SurfacePoint on_metal(Rng& rng, float roughness, const dvec3& normal = {0.0, 0.0, 1.0}) {
     SurfacePoint p;
@@ -24,12 +25,12 @@ SurfacePoint on_metal(Rng& rng, float roughness, const dvec3& normal = {0.0, 0.0
     return p;
 }
 
-// What smoke that smoke lights up shows on metal. `places`: of the split, whatever is asked.
-double reflected(const DirectLight& scene, const RayLights& lights, const SurfacePoint& point, double places,
+// Estimates the light of smoke, scattered twice or more, that metal reflects. `points`: of the split.
+double reflected(const DirectLight& scene, const RayLights& lights, const SurfacePoint& point, double points,
                  Rng& rng) {
     const dvec3 viewer = glm::normalize(dvec3(0.0, -1.0, 0.8));
     const Bsdf base(point.material, point.frame, Lobes::Base), gloss(point.material, point.frame, Lobes::Specular);
-    const GlossSplit split(point, gloss, viewer, places);
+    const GlossSplit split(point, gloss, viewer, points);
     double sum = lights.at_surface(point, ReceiverLobes(base, &split), viewer, rng).x;
     const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
     const std::optional<BsdfSample> drawn = gloss.sample(viewer, {x, y, z});
@@ -43,13 +44,13 @@ double reflected(const DirectLight& scene, const RayLights& lights, const Surfac
 }
 
 struct Shared {
-    double rays, places, both;  // relative deviation of one point's estimate, about
+    double rays, points, both;  // relative deviation of one point's estimate, about
 };
 
 Shared expect_same(const Stage& stage, RayLightSettings settings, float roughness, const dvec3& normal) {
     settings.paths = 600;
-    settings.samples = kPlaces;
-    constexpr double kSplits[] = {0.0, 1e12, kPlaces};
+    settings.samples = kPoints;
+    constexpr double kSplits[] = {0.0, 1e12, kPoints};
     const Estimate e = estimate(3, 2, [&](const dvec3&, Rng& rng, double* out) {
         settings.seed = static_cast<std::uint32_t>(rng.next_double() * 0x1p32);
         const RayLights lights = stage.lights(settings, 16, settings.seed);
@@ -59,7 +60,7 @@ Shared expect_same(const Stage& stage, RayLightSettings settings, float roughnes
                 out[k] +=
                     reflected(stage.scene(), lights, on_metal(rng, roughness, normal), kSplits[k], rng) / kPointsToASet;
     });
-    std::printf("roughness %g: by rays %.4g +- %.2g %%, by places %.4g +- %.2g %%, by both %.4g +- %.2g %%\n",
+    std::printf("roughness %g: by rays %.4g +- %.2g %%, by points %.4g +- %.2g %%, by both %.4g +- %.2g %%\n",
                 roughness, e.mean[0], 100.0 * e.error[0] / e.mean[0], e.mean[1], 100.0 * e.error[1] / e.mean[1],
                 e.mean[2], 100.0 * e.error[2] / e.mean[2]);
     for (int k = 0; k < 2; ++k)
@@ -68,12 +69,12 @@ Shared expect_same(const Stage& stage, RayLightSettings settings, float roughnes
     return {e.error[0], e.error[1], e.error[2]};
 }
 
-TEST(GlossSplit, PlacesAndRaysFindTheSameLight) {
+TEST(GlossSplit, PointsAndRaysFindTheSameLight) {
     const Stage stage(lumpy_ball(8, 3.0f, 0.3f), {});
     const dvec3 up(0.0, 0.0, 1.0);
     for (const float roughness : {0.15f, 0.4f, 0.9f}) {
         const Shared noise = expect_same(stage, {}, roughness, up);
-        EXPECT_LT(noise.both, 1.15 * std::min(noise.rays, noise.places)) << roughness;
+        EXPECT_LT(noise.both, 1.15 * std::min(noise.rays, noise.points)) << roughness;
     }
 }
 
@@ -91,7 +92,7 @@ TEST(GlossSplit, PartsOfADirectionAddUp) {
         const SurfacePoint point = on_metal(rng, roughness);
         const Bsdf gloss(point.material, point.frame, Lobes::Specular);
         const dvec3 viewer = glm::normalize(dvec3(0.4, -1.0, 0.8));
-        const GlossSplit split(point, gloss, viewer, kPlaces);
+        const GlossSplit split(point, gloss, viewer, kPoints);
         for (int i = 0; i < 1000; ++i) {
             const dvec3 to =
                 glm::normalize(dvec3(rng.next_double() - 0.5, rng.next_double() - 0.5, rng.next_double() - 0.5));
@@ -100,8 +101,8 @@ TEST(GlossSplit, PartsOfADirectionAddUp) {
             EXPECT_GE(of_rays, 0.0);
             EXPECT_LE(of_rays, 1.0);
             EXPECT_NEAR(split.of_lights(to).x + of_rays * whole.x, whole.x, 1e-5 * whole.x);
-            // What makes a place bright is bounded, however sharp the lobe.
-            EXPECT_LE(split.of_lights(to).x, 1.0001 * kPlaces / (2.0 * std::numbers::pi));
+            // The contribution of one light is bounded, however sharp the lobe.
+            EXPECT_LE(split.of_lights(to).x, 1.0001 * kPoints / (2.0 * std::numbers::pi));
         }
         EXPECT_EQ(split.of_rays({0.0, 0.6, -0.8}), 1.0);
     }

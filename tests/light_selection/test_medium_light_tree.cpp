@@ -91,7 +91,7 @@ TEST(MediumLightTree, DarkLightsAreNotChosen) {
 }
 
 TEST(MediumLightTree, CostGrowsLikeTheLogarithm) {
-    std::printf(" lights  nodes asked for one light\n");
+    std::printf(" lights  nodes evaluated for one light\n");
     for (const std::size_t count : {100, 1'000, 10'000, 100'000}) {
         const MediumLightTree tree(boxes_of(random_lights(count)), 0.3);
         Rng rng(Stream::Points, 23);

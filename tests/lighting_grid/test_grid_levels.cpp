@@ -1,4 +1,4 @@
-// What can be done with a hierarchy once it stands: other lights, look-ups, many lights.
+// Operations on a finished hierarchy: other lights, look-ups, many lights.
 #include <gtest/gtest.h>
 
 #include <algorithm>

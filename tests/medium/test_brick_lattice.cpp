@@ -1,4 +1,4 @@
-// A sparse lattice answers for every node of index space, stored or not.
+// A sparse lattice can be read at every node of index space, stored or not.
 #include <gtest/gtest.h>
 
 #include <algorithm>

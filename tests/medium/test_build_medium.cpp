@@ -1,4 +1,4 @@
-// One grid becomes a medium: same field, same place in the world.
+// One grid becomes a medium: same field, same position in the world.
 #include <gtest/gtest.h>
 
 #include <cmath>

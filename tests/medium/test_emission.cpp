@@ -1,4 +1,4 @@
-// Hot soot shines as Planck says, and no fire has an edge where its threshold lies.
+// Hot soot emits by Planck's law, and fire has no edge at its threshold.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Scattering loses no light and turns it as much as it says.
+// Phase functions are normalised, and have their mean cosine.
 #include <gtest/gtest.h>
 
 #include <vector>

@@ -23,11 +23,12 @@ struct Volume {
 // A ball of smoke and fire of `radius` voxels of `spacing`, anywhere.
 Volume ball_at(const dvec3& centre, double spacing = 0.1, double radius = 8.0) {
     Volume v;
-    const dmat4 place = cubic(spacing, centre);
+    const dmat4 world_from_index = cubic(spacing, centre);
     const NodeBox box = cube(-12, 12);
-    v.grids.density = scalar_grid("density", place, box,
+    v.grids.density = scalar_grid("density", world_from_index, box,
                                   [=](const ivec3& n) { return ball(n, dvec3(0.0), radius) * (0.5f + noise(n, 1)); });
-    v.grids.flame = scalar_grid("flame", place, box, [=](const ivec3& n) { return ball(n, dvec3(0.0), radius); });
+    v.grids.flame =
+        scalar_grid("flame", world_from_index, box, [=](const ivec3& n) { return ball(n, dvec3(0.0), radius); });
     return v;
 }
 

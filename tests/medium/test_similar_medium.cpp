@@ -1,4 +1,4 @@
-// The milder medium that scattered light is followed through.
+// The similar medium of lower extinction in which scattered light is solved.
 #include "medium/similar_medium.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Light that mirrors cast on smoke.
+// Light that mirrors reflect onto smoke.
 #include <gtest/gtest.h>
 
 #include "fixtures/media.h"
@@ -55,14 +55,14 @@ TEST(SpecularPhotons, AMirrorCastsTheLightOfAnotherLamp) {
             continue;
         const ivec3 node = medium.lattice.first_node(i / BrickLattice::kNodes) +
                            BrickLattice::node_in_brick(int(i % BrickLattice::kNodes));
-        const dvec3 way = dvec3(medium.local_of_node(node)) - image;
-        const double fluence = 1.0 / glm::dot(way, way);
+        const dvec3 offset = dvec3(medium.local_of_node(node)) - image;
+        const double fluence = 1.0 / glm::dot(offset, offset);
         sum += g.fluence[i];
         expected += fluence;
         EXPECT_NEAR(g.fluence[nodes + i], 2.0 * g.fluence[i], 1e-4 * g.fluence[i]);
         // Degree 1 of the harmonics is (y, z, x).
         heading += dvec3(g.moments[6 * nodes + i], g.moments[i], g.moments[3 * nodes + i]);
-        expected_heading += double(0.48860251f) * fluence * glm::normalize(way);
+        expected_heading += double(0.48860251f) * fluence * glm::normalize(offset);
     }
     EXPECT_NEAR(sum / expected, 1.0, 0.01);
     for (int axis = 0; axis < 3; ++axis)

@@ -1,4 +1,4 @@
-// All measures together: halves, pixels that are no numbers, and change from frame to frame.
+// All measures together: halves, pixels that are not finite, and change from frame to frame.
 
 #include "metrics/comparison.h"
 
@@ -74,27 +74,29 @@ TEST(TemporalError, IsBlindToWhatStaysWrong) {
         Picture image = fire(1.0f, offset);
         for (Rgb& pixel : image.pixels)
             pixel += Rgb(error);
-        return Judged{image, {fire(1.0f, offset), std::nullopt}};
+        return FrameAndReference{image, {fire(1.0f, offset), std::nullopt}};
     };
     EXPECT_NEAR(compare_changes(frame(0.3f, 0), frame(0.3f, 3)).error, 0.0, 1e-6);
     EXPECT_GT(compare_changes(frame(0.3f, 0), frame(-0.3f, 3)).error, 0.5);  // flicker
 }
 
 TEST(TemporalError, OfAFrozenImageIsOne) {
-    const Judged first{fire(1.0f), {fire(1.0f), std::nullopt}}, second{fire(1.0f), {fire(1.0f, 5), std::nullopt}};
+    const FrameAndReference first{fire(1.0f), {fire(1.0f), std::nullopt}},
+        second{fire(1.0f), {fire(1.0f, 5), std::nullopt}};
     EXPECT_NEAR(compare_changes(first, second).error, 1.0, 1e-12);
     EXPECT_FALSE(compare_changes(first, second).halves);
 }
 
 TEST(TemporalError, OfAStandingReferenceIsNoneOrInfinite) {
-    const Judged still{fire(1.0f), {fire(1.0f), std::nullopt}}, flicker{fire(1.1f), {fire(1.0f), std::nullopt}};
+    const FrameAndReference still{fire(1.0f), {fire(1.0f), std::nullopt}},
+        flicker{fire(1.1f), {fire(1.0f), std::nullopt}};
     EXPECT_EQ(compare_changes(still, still).error, 0.0);
     EXPECT_TRUE(std::isinf(compare_changes(still, flicker).error));
 }
 
 TEST(TemporalError, WithHalvesKnowsTheirNoise) {
     const auto frame = [](float a, float b, int offset) {
-        return Judged{fire(1.0f, offset), {fire(a, offset), fire(b, offset)}};
+        return FrameAndReference{fire(1.0f, offset), {fire(a, offset), fire(b, offset)}};
     };
     const TemporalError error = compare_changes(frame(0.9f, 1.1f, 0), frame(1.1f, 0.9f, 3));
     EXPECT_NEAR(error.error, 0.0, 1e-6);
@@ -105,7 +107,8 @@ TEST(TemporalError, WithHalvesKnowsTheirNoise) {
 }
 
 TEST(TemporalError, CountsPixelsThatAreNoNumbersInEitherFrame) {
-    Judged first{fire(1.0f), {fire(1.0f), std::nullopt}}, second{fire(1.0f, 3), {fire(1.0f, 3), std::nullopt}};
+    FrameAndReference first{fire(1.0f), {fire(1.0f), std::nullopt}},
+        second{fire(1.0f, 3), {fire(1.0f, 3), std::nullopt}};
     first.image.pixels[0].x = kNan;
     second.image.pixels[7].x = kNan;
     second.reference.first.pixels[7].x = kInfinity;

@@ -1,4 +1,4 @@
-// Errors as single numbers: by hand where that is possible, by known statistics where noise is the point.
+// Errors as single numbers: computed by hand where possible, and from known statistics where noise matters.
 
 #include "metrics/differences.h"
 

@@ -1,4 +1,4 @@
-// A map of errors can be read: by colour, and by lightness alone.
+// Maps of errors can be read by colour, and by lightness alone.
 
 #include "metrics/false_colour.h"
 

@@ -1,4 +1,4 @@
-// What FLIP must see and must not see.
+// Differences that FLIP must detect, and those that it must not.
 
 #include "metrics/flip.h"
 

@@ -1,4 +1,4 @@
-// Which layers can be compared, and as what.
+// The layers that can be compared, as colour or gray.
 
 #include "metrics/layers.h"
 

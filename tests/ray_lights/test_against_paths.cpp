@@ -1,4 +1,4 @@
-// What ray lights bring is what the path tracer finds: MM and SM, in media of all kinds, with light of all kinds.
+// Ray lights have the mean of the path tracer: MM and SM, in media of all kinds, with light of all kinds.
 #include <gtest/gtest.h>
 
 #include "fixtures/ray_fixture.h"

@@ -1,4 +1,4 @@
-// Virtual beam lights: what their blur keeps, the bias that it is, and the noise that it takes away.
+// Virtual beam lights: the energy that their blur conserves, its bias, and the noise that it removes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -99,8 +99,8 @@ TEST(Beams, MeansOfPhasesAreThoseOfTheCone) {
             const BallCone cone(kUp, distance, 1.0);
             const Estimate e = estimate(2, 400, [&](const dvec3&, Rng& rng, double* out) {
                 out[0] = mean_phases(cone, arriving, leaving, g, rng);
-                const dvec3 way = cone.sample(rng);
-                out[1] = phase_about(arriving, way, g) * phase_about(way, leaving, g);
+                const dvec3 direction = cone.sample(rng);
+                out[1] = phase_about(arriving, direction, g) * phase_about(direction, leaving, g);
             });
             EXPECT_NEAR(e.mean[0], e.mean[1], kSigmas * std::hypot(e.error[0], e.error[1]) + 1e-12 * e.mean[1])
                 << g << " from " << distance;
@@ -183,7 +183,7 @@ SurfaceMaterial metal(float roughness) {
     return m;
 }
 
-// Cones that lie above the floor, that it cuts, and the half space of a place inside the ball.
+// Cones that lie above the floor, that it cuts, and the half space of a point inside the ball.
 TEST(Beams, MeansOverSurfacesAreThoseOfTheFoldedCone) {
     const dvec3 viewer = glm::normalize(dvec3(1.0, 0.2, 1.0)), arriving = glm::normalize(dvec3(0.6, 0.1, -1.0));
     for (const float roughness : {0.3f, 1.0f})
@@ -223,7 +223,7 @@ TEST(Beams, TakeAwayNoiseOfGlossySurfaces) {
     }
 }
 
-// Of one light's estimate at a point of the floor, the lights being asked in turn by the tree.
+// Of one light's estimate at a point of the floor; the tree chooses the light.
 double spread_on_floor(float mean_cosine, const SurfaceMaterial& material, double radius) {
     const Stage stage(coloured_ball(8, 1.0f, mean_cosine), {});
     RayLightSettings settings;
@@ -262,9 +262,9 @@ TEST(Beams, AFloorTakesWhatShinesOnIt) {
     for (const double height : {0.05, 0.5, 1.0, 3.0}) {
         const SurfacePoint point = on_floor(lambert(1.0f).surface);
         const Bsdf bsdf(point.material, point.frame);
-        const Estimate e = estimate(1, 400, [&](const dvec3& place, Rng& rng, double* out) {
-            // A place on the floor, by the density h / (2 (h^2 + s^2)^(3/2)) of 2 pi s ds.
-            const double h = std::max(height, 0.5), z = std::max(1e-9, 1.0 - place.x);
+        const Estimate e = estimate(1, 400, [&](const dvec3& u, Rng& rng, double* out) {
+            // A point on the floor, by the density h / (2 (h^2 + s^2)^(3/2)) of 2 pi s ds.
+            const double h = std::max(height, 0.5), z = std::max(1e-9, 1.0 - u.x);
             const double s = h * std::sqrt(1.0 / (z * z) - 1.0), density = h / std::pow(h * h + s * s, 1.5);
             const BallCone cone(glm::normalize(dvec3(s, 0.0, height)), std::hypot(s, height), 1.0);
             const Rgb radiance = mean_reflected(cone, kUp, 0.0, point, bsdf, kUp, rng);

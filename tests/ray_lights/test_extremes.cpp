@@ -1,4 +1,4 @@
-// Ray lights where formulas meet their ends: no length, one line, sharp phase functions, endless smoke, smoke around
+// Ray lights in limiting cases: no length, one line, sharp phase functions, endless smoke, smoke around
 // everything. All is finite, and right where there is something to compare with.
 #include <gtest/gtest.h>
 
@@ -99,8 +99,8 @@ TEST(Extremes, RaysThatHardlySeeTheSmoke) {
     expect_finite(stage, few(60), rays, "rays at the edge");
 }
 
-// The double integral of kernel and both phase functions over two parallel segments that go the same way (or opposite
-// ways): places count by their shift along the lines alone.
+// The double integral of kernel and both phase functions over two parallel segments with the same direction, or with
+// opposite directions. The integrand depends on the shift along the lines alone.
 struct Parallel {
     double height, length, g, radius;
     bool opposite;
@@ -119,8 +119,9 @@ struct Parallel {
         for (int i = 0; i < kSteps; ++i) {
             const double s = std::exp(low + (i + 0.5) * step);
             for (const double shift : {s, -s}) {
-                const dvec3 way = glm::normalize(dvec3(shift, -height, 0.0));
-                const double phases = phase_about(light().direction, way, g) * phase_about(way, -camera().direction, g);
+                const dvec3 direction = glm::normalize(dvec3(shift, -height, 0.0));
+                const double phases =
+                    phase_about(light().direction, direction, g) * phase_about(direction, -camera().direction, g);
                 sum += (length - s) * phases * kernel(shift) * s * step;
             }
         }
@@ -130,9 +131,9 @@ struct Parallel {
         const PairDensity pairs(camera(), light(), g, radius);
         return estimate(1, 400, [&](const dvec3&, Rng& rng, double* out) {
             const PairSample p = *pairs.sample(rng);
-            const dvec3 way = camera().at(p.u) - light().at(p.v);
-            const double w = glm::length(way);
-            const BallCone cone(way / w, w, radius);
+            const dvec3 offset = camera().at(p.u) - light().at(p.v);
+            const double w = glm::length(offset);
+            const BallCone cone(offset / w, w, radius);
             out[0] = mean_phases(cone, light().direction, -camera().direction, g, rng) * cone.kernel() / p.pdf;
         });
     }
@@ -196,9 +197,9 @@ TEST(Extremes, CrossingRays) {
                 const PairDensity pairs(camera, light, g, radius);
                 return estimate(1, 100, [&](const dvec3&, Rng& rng, double* out) {
                     const PairSample p = *pairs.sample(rng);
-                    const dvec3 way = camera.at(p.u) - light.at(p.v);
-                    const double w = std::max(glm::length(way), 1e-300);
-                    const BallCone cone(way / w, w, radius);
+                    const dvec3 offset = camera.at(p.u) - light.at(p.v);
+                    const double w = std::max(glm::length(offset), 1e-300);
+                    const BallCone cone(offset / w, w, radius);
                     out[0] = mean_phases(cone, light.direction, -camera.direction, g, rng) * cone.kernel() / p.pdf;
                 });
             };

@@ -1,4 +1,4 @@
-// Lines through smoke that glows and absorbs and does not scatter, against closed forms.
+// Rays through smoke that emits and absorbs and does not scatter, against closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -41,8 +41,8 @@ TEST(EmittingLines, SlabsRadiateOneMinusTransmittance) {
     for (const Row& row : kRows)
         for (const int nodes : {1, 6, 30}) {
             const Traced traced(slab(nodes, row.depth, Rgb(0.0f)));
-            const Estimate e = estimate_to(kSharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
-                traced.look(ray_into_layers(1.0), place.x, rng, out);
+            const Estimate e = estimate_to(kSharp, 3, [&](const dvec3& u, Rng& rng, double* out) {
+                traced.look(ray_into_layers(1.0), u.x, rng, out);
             });
             rows.expect(depth_of(row.depth), e.mean[0], e.error[0], row.slab, kDigits + kRounding * row.slab);
         }
@@ -55,8 +55,8 @@ TEST(EmittingLines, ALayerBehindALayerIsSeenThroughIt) {
             const auto density = [=](int z) { return float(z <= 4 ? first / 4 : z > 8 ? second / 6 : 0.0); };
             Recipe r = layers(14, density, [](int z) { return z <= 6 ? 3.0f : 0.5f; });
             const Traced traced(r);
-            const Estimate e = estimate_to(kSharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
-                traced.look(ray_into_layers(0.7), place.x, rng, out);
+            const Estimate e = estimate_to(kSharp, 3, [&](const dvec3& u, Rng& rng, double* out) {
+                traced.look(ray_into_layers(0.7), u.x, rng, out);
             });
             const double truth =
                 -3.0 * std::expm1(-first / 0.7) - 0.5 * std::exp(-first / 0.7) * std::expm1(-second / 0.7);
@@ -66,10 +66,10 @@ TEST(EmittingLines, ALayerBehindALayerIsSeenThroughIt) {
 
 // What rays see of a black ball, and what the same rays' optical depths say they should.
 Estimate ball_and_truth(const Traced& traced, const std::function<Ray(const dvec3&, Rng&)>& ray_at) {
-    return estimate_to(kSharp, 2, [&](const dvec3& place, Rng& rng, double* out) {
-        const Ray ray = ray_at(place, rng);
+    return estimate_to(kSharp, 2, [&](const dvec3& u, Rng& rng, double* out) {
+        const Ray ray = ray_at(u, rng);
         double seen[3];
-        traced.look(ray, place.x, rng, seen);
+        traced.look(ray, u.x, rng, seen);
         out[1] = -std::expm1(-optical_depth(traced.tracer.field(), ray, 1e9));
         out[0] = seen[0] - out[1] + 1.0;  // paired: the spread over the rays cancels
     });
@@ -88,11 +88,11 @@ TEST(EmittingLines, BallsRadiateAsTheirChordsAndSurfacesSay) {
         const Traced traced(scattering_ball(kBallNodes, row.depth, Rgb(0.0f)));
         const double limb = kLimb + kLimbPerDepth * row.depth;
         const Estimate centre =
-            ball_and_truth(traced, [](const dvec3& place, Rng&) { return ray_through_middle(place.y, place.z); });
+            ball_and_truth(traced, [](const dvec3& u, Rng&) { return ray_through_middle(u.y, u.z); });
         expect_ball(rows, "centre, " + depth_of(row.depth), centre, 1.0, row.centre, kChord);
         constexpr double wider = 1.06;
-        const Estimate flux = ball_and_truth(
-            traced, [](const dvec3& place, Rng& rng) { return ray_through_disc(wider, place.y, place.z, rng); });
+        const Estimate flux =
+            ball_and_truth(traced, [](const dvec3& u, Rng& rng) { return ray_through_disc(wider, u.y, u.z, rng); });
         expect_ball(rows, "flux, " + depth_of(row.depth), flux, wider * wider, row.emissivity, limb);
         // What leaves, over what is emitted: the one from rays, the other from nodes.
         const double leaving = 4.0 * kPi64 * kPi64 * wider * wider / emitted_power(*traced.medium).x;
@@ -105,8 +105,8 @@ TEST(EmittingLines, TheMiddleOfABallSeesOneRadius) {
     Rows rows("from the middle");
     for (const Row& row : kRows) {
         const Traced traced(scattering_ball(kBallNodes, row.depth, Rgb(0.0f)));
-        const Estimate e = ball_and_truth(traced, [](const dvec3& place, Rng&) {
-            return Ray{dvec3(0.0), uniform_direction(place.y, place.z)};
+        const Estimate e = ball_and_truth(traced, [](const dvec3& u, Rng&) {
+            return Ray{dvec3(0.0), uniform_direction(u.y, u.z)};
         });
         expect_ball(rows, depth_of(row.depth), e, 1.0, row.slab, kChord);
     }
@@ -121,8 +121,8 @@ TEST(EmittingLines, AFlameInSmokeIsDimmedByIt) {
         r.settings.smoke.extinction_per_metre = static_cast<float>(voxel);
         r.settings.fire.convention = EmissionConvention::Direct;
         const Traced traced(r);
-        const Estimate e = estimate_to(kSharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
-            traced.look(ray_into_layers(0.8), place.x, rng, out);
+        const Estimate e = estimate_to(kSharp, 3, [&](const dvec3& u, Rng& rng, double* out) {
+            traced.look(ray_into_layers(0.8), u.x, rng, out);
         });
         const double truth = -std::expm1(-30.0 * voxel / 0.8) / voxel;
         rows.expect(depth_of(voxel) + " of a voxel", e.mean[0], e.error[0], truth, kRounding * truth);
@@ -138,9 +138,9 @@ TEST(EmittingLines, AFlameBehindSmokeIsSeenThroughIt) {
         Recipe r = layers(24, density, [](int z) { return z == 23 ? 1.0f : 0.0f; });
         r.settings.fire.convention = EmissionConvention::Direct;
         const Traced traced(r);
-        const Estimate e = estimate_to(sharp, 1, [&](const dvec3& place, Rng& rng, double* out) {
+        const Estimate e = estimate_to(sharp, 1, [&](const dvec3& u, Rng& rng, double* out) {
             double seen[3];
-            traced.look(ray_into_layers(1.0), place.x, rng, seen);
+            traced.look(ray_into_layers(1.0), u.x, rng, seen);
             out[0] = seen[0];
         });
         rows.expect(depth_of(depth), e.mean[0], e.error[0], std::exp(-depth), 2e-6 * std::exp(-depth), sharp);

@@ -1,4 +1,4 @@
-// Light is neither made nor lost on the way: what is emitted leaves, or is absorbed.
+// Energy is conserved: what is emitted leaves, or is absorbed.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -56,8 +56,8 @@ Ray ray_into_cube(double half, double u, double v, Rng& rng) {
 // The power that leaves, from rays that arrive backwards: area times pi times their mean radiance.
 Estimate leaving_power(const Traced& traced, double sharp) {
     constexpr double half = 13.0 * kSpacing, area = 24.0 * half * half;
-    Estimate e = estimate_to(sharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
-        traced.look(ray_into_cube(half, place.y, place.z, rng), place.x, rng, out);
+    Estimate e = estimate_to(sharp, 3, [&](const dvec3& u, Rng& rng, double* out) {
+        traced.look(ray_into_cube(half, u.y, u.z, rng), u.x, rng, out);
     });
     for (int c = 0; c < 3; ++c) {
         e.mean[c] *= kPi64 * area;
@@ -86,13 +86,13 @@ TEST(Energy, SmokeThatAbsorbsNothingLetsAllLightOut) {
     }
 }
 
-// The brick and the place in it of a point.
-struct Place {
+// The brick that holds a point, and the position in that brick.
+struct BrickPosition {
     int brick;
     vec3 position;
 };
 
-Place place_in(const Traced& traced, const dvec3& local) {
+BrickPosition position_in_brick(const Traced& traced, const dvec3& local) {
     const dvec3 node = local / kSpacing + dvec3(traced.medium->reference_node);
     const ivec3 brick = ivec3(glm::floor(node)) >> 3;
     return {traced.tracer.field().bricks().find(brick), vec3(node - dvec3(brick * 8))};
@@ -101,11 +101,11 @@ Place place_in(const Traced& traced, const dvec3& local) {
 // Absorbed power: the integral of absorption times fluence, at random points of the box.
 Estimate absorbed_power(const Traced& traced, double sharp) {
     constexpr double side = 26.0 * kSpacing;
-    Estimate e = estimate_to(sharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
-        const double x = rng.next_double(), y = rng.next_double(), u = rng.next_double();
-        const dvec3 point = side * (dvec3(x, y, place.y) - 0.5);
-        traced.look({point, uniform_direction(u, place.z)}, place.x, rng, out);
-        const Place at = place_in(traced, point);
+    Estimate e = estimate_to(sharp, 3, [&](const dvec3& u, Rng& rng, double* out) {
+        const double x = rng.next_double(), y = rng.next_double(), polar = rng.next_double();
+        const dvec3 point = side * (dvec3(x, y, u.y) - 0.5);
+        traced.look({point, uniform_direction(polar, u.z)}, u.x, rng, out);
+        const BrickPosition at = position_in_brick(traced, point);
         for (int c = 0; c < 3; ++c)
             out[c] = at.brick < 0 ? 0.0
                                   : out[c] * traced.tracer.field().extinction(at.brick, at.position) *
@@ -144,8 +144,8 @@ TEST(Energy, InsideAThickIsothermalMediumEverythingLooksAlike) {
             r.settings.smoke.albedo = Rgb(0.2f, 0.5f, 0.8f);
             r.settings.smoke.mean_cosine = g;
             const Traced traced(r);
-            const Estimate e = estimate_to(kSharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
-                traced.look({dvec3(0.3, 0.1, -0.2), uniform_direction(place.y, place.z)}, place.x, rng, out);
+            const Estimate e = estimate_to(kSharp, 3, [&](const dvec3& u, Rng& rng, double* out) {
+                traced.look({dvec3(0.3, 0.1, -0.2), uniform_direction(u.y, u.z)}, u.x, rng, out);
             });
             for (int c = 0; c < 3; ++c)
                 rows.expect((even ? "even, g = " : "uneven, g = ") + std::to_string(g), e.mean[c], e.error[c], 1.0,
@@ -164,8 +164,8 @@ TEST(Energy, OpaqueBlackSmokeIsABlackBody) {
         r.flame = [](const ivec3&) { return 1.0f; };
         r.settings = black_smoke();
         const Traced traced(r);
-        const Estimate e = estimate_to(kSharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
-            traced.look(ray_through_disc(4.0, place.y, place.z, rng), place.x, rng, out);
+        const Estimate e = estimate_to(kSharp, 3, [&](const dvec3& u, Rng& rng, double* out) {
+            traced.look(ray_through_disc(4.0, u.y, u.z, rng), u.x, rng, out);
         });
         rows.expect("voxel " + std::to_string(voxel), e.mean[0], e.error[0], 1.0, 1e-5);
     }

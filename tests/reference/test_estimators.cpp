@@ -1,4 +1,4 @@
-// Every way to sample gives the same picture, order by order: in smoke of uneven density and colour, with fire that is
+// All estimators give the same picture, order by order: in smoke of uneven density and colour, with fire that is
 // tied to absorption and fire that is not, g = 0.5.
 #include <gtest/gtest.h>
 
@@ -46,10 +46,10 @@ Estimate look_by_orders(const TracingSettings& settings) {
     const Traced traced(mixed_medium(), settings);
     // The plain tracker's paths are fast and poor.
     const std::uint64_t per_batch = settings.emission == EmissionEstimator::Collision ? 2000 : 250;
-    return estimate(kPathOrders + 3, per_batch, [&](const dvec3& place, Rng& rng, double* out) {
+    return estimate(kPathOrders + 3, per_batch, [&](const dvec3& u, Rng& rng, double* out) {
         PathSum sum{};
         PathStatistics statistics;
-        traced.tracer.trace(ray_through_disc(1.2, place.y, place.z, rng), place.x, rng, sum, statistics);
+        traced.tracer.trace(ray_through_disc(1.2, u.y, u.z, rng), u.x, rng, sum, statistics);
         dvec3 all(0.0);
         for (int k = 0; k < kPathOrders; ++k) {
             out[k] = luminance(sum[k]);
@@ -60,49 +60,49 @@ Estimate look_by_orders(const TracingSettings& settings) {
     });
 }
 
-struct Way {
+struct Variant {
     std::string name;
     TracingSettings settings;
 };
 
-std::vector<Way> all_ways() {
-    std::vector<Way> ways;
+std::vector<Variant> all_variants() {
+    std::vector<Variant> variants;
     for (const bool light : {true, false})
         for (const FreeFlight flight : {FreeFlight::Exact, FreeFlight::NullCollision})
             for (const auto transmittance :
                  {TransmittanceEstimator::Exact, TransmittanceEstimator::RayMarch, TransmittanceEstimator::Ratio}) {
-                Way way;
-                way.settings.light_sampling = light;
-                way.settings.free_flight = flight;
-                way.settings.transmittance = transmittance;
-                way.name = std::string(light ? "lines to the fire" : "phase function") +
-                           (flight == FreeFlight::Exact ? ", exact flight" : ", null collisions") +
-                           (transmittance == TransmittanceEstimator::Exact      ? ", exact transmittance"
-                            : transmittance == TransmittanceEstimator::RayMarch ? ", ray march"
-                                                                                : ", ratio tracking");
-                ways.push_back(way);
+                Variant variant;
+                variant.settings.light_sampling = light;
+                variant.settings.free_flight = flight;
+                variant.settings.transmittance = transmittance;
+                variant.name = std::string(light ? "lines to the fire" : "phase function") +
+                               (flight == FreeFlight::Exact ? ", exact flight" : ", null collisions") +
+                               (transmittance == TransmittanceEstimator::Exact      ? ", exact transmittance"
+                                : transmittance == TransmittanceEstimator::RayMarch ? ", ray march"
+                                                                                    : ", ratio tracking");
+                variants.push_back(variant);
             }
-    ways.push_back({"collisions", {}});
-    ways.back().settings.emission = EmissionEstimator::Collision;
-    return ways;
+    variants.push_back({"collisions", {}});
+    variants.back().settings.emission = EmissionEstimator::Collision;
+    return variants;
 }
 
 TEST(Estimators, AgreeOrderByOrder) {
-    const std::vector<Way> ways = all_ways();
+    const std::vector<Variant> variants = all_variants();
     Rows rows("estimators against one another");
     std::vector<Estimate> found;
-    for (const Way& way : ways)
-        found.push_back(look_by_orders(way.settings));
-    for (std::size_t i = 0; i < ways.size(); ++i)
+    for (const Variant& variant : variants)
+        found.push_back(look_by_orders(variant.settings));
+    for (std::size_t i = 0; i < variants.size(); ++i)
         for (int k = 0; k < kPathOrders + 3; ++k) {
-            // Against the mean of all others, weighted by what they are known to.
+            // Against the mean of all others, weighted by their precision.
             double sum = 0.0, weights = 0.0;
-            for (std::size_t j = 0; j < ways.size(); ++j) {
+            for (std::size_t j = 0; j < variants.size(); ++j) {
                 const double weight = i == j ? 0.0 : 1.0 / (found[j].error[k] * found[j].error[k]);
                 sum += weight * found[j].mean[k];
                 weights += weight;
             }
-            rows.expect(ways[i].name + ", " + std::to_string(k), found[i].mean[k],
+            rows.expect(variants[i].name + ", " + std::to_string(k), found[i].mean[k],
                         std::hypot(found[i].error[k], 1.0 / std::sqrt(weights)), sum / weights, 0.0,
                         k < 3 ? 0.05 : 0.5);
         }
@@ -113,10 +113,10 @@ TEST(Estimators, FewerBouncesAreTheFirstOrders) {
     const Medium medium = mixed_medium();
     const auto orders = [&](int bounces) {
         const PathTracer tracer(medium, {}, bounces);
-        return estimate(kPathOrders, 64, [&](const dvec3& place, Rng& rng, double* out) {
+        return estimate(kPathOrders, 64, [&](const dvec3& u, Rng& rng, double* out) {
             PathSum sum{};
             PathStatistics statistics;
-            tracer.trace(ray_through_disc(1.2, place.y, place.z, rng), place.x, rng, sum, statistics);
+            tracer.trace(ray_through_disc(1.2, u.y, u.z, rng), u.x, rng, sum, statistics);
             for (int k = 0; k < kPathOrders; ++k)
                 out[k] = luminance(sum[k]);
         });

@@ -17,12 +17,12 @@ constexpr double kBall = 1e-3;
 // Looks around from r: `sample` gets a ray uniform over all directions, or over the cone that holds a ball of radius
 // 1.06. The means are times the solid angle of either.
 Estimate look_around(double r, int numbers,
-                     const std::function<void(const Ray&, double place, Rng&, double*)>& sample) {
+                     const std::function<void(const Ray&, double position, Rng&, double*)>& sample) {
     const double most = r > 1.1 ? 1.0 - std::sqrt(1.0 - std::pow(1.06 / r, 2)) : 2.0;  // of 1 - cos
     const dvec3 out_there(0.6, -0.48, 0.64), x(0.8, 0.36, -0.48), y(0.0, 0.8, 0.6);
-    Estimate e = estimate_to(kSharp, numbers, [&](const dvec3& place, Rng& rng, double* out) {
-        const dvec3 d = uniform_direction(0.5 * most * place.y, place.z);
-        sample({r * out_there, -(d.z * out_there + d.x * x + d.y * y)}, place.x, rng, out);
+    Estimate e = estimate_to(kSharp, numbers, [&](const dvec3& u, Rng& rng, double* out) {
+        const dvec3 d = uniform_direction(0.5 * most * u.y, u.z);
+        sample({r * out_there, -(d.z * out_there + d.x * x + d.y * y)}, u.x, rng, out);
     });
     for (int k = 0; k < numbers; ++k) {
         e.mean[k] *= 2.0 * kPi64 * most;
@@ -47,9 +47,9 @@ TEST(TracedFluenceOfBalls, WithoutExtinctionMatchesTheClosedForm) {
                                    {0.9, 8.236011},  {1.0, 6.283185},   {1.25, 3.176932}, {1.5, 2.069687},
                                    {2.0, 1.106097},  {4.0, 0.265163},   {10.0, 0.041972}};
     for (const auto& row : table) {
-        const Estimate e = look_around(row[0], 1, [&](const Ray& ray, double place, Rng& rng, double* out) {
+        const Estimate e = look_around(row[0], 1, [&](const Ray& ray, double position, Rng& rng, double* out) {
             double seen[3];
-            traced.look(ray, place, rng, seen);
+            traced.look(ray, position, rng, seen);
             out[0] = seen[0];
         });
         rows.expect("r = " + std::to_string(row[0]), e.mean[0], e.error[0], row[1], kBall * row[1]);
@@ -75,9 +75,9 @@ TEST(TracedFluenceOfBalls, WithAbsorptionMatchesTheTable) {
     for (const auto& ball : kAbsorbing) {
         const Traced traced = unscattered(glowing_ball(kNodes, static_cast<float>(ball.radius)));
         for (int k = 0; k < 6; ++k) {
-            const Estimate e = look_around(at[k], 2, [&](const Ray& ray, double place, Rng& rng, double* out) {
+            const Estimate e = look_around(at[k], 2, [&](const Ray& ray, double position, Rng& rng, double* out) {
                 double seen[3];
-                traced.look(ray, place, rng, seen);
+                traced.look(ray, position, rng, seen);
                 out[1] = -std::expm1(-optical_depth(traced.tracer.field(), ray, 1e9));
                 out[0] = seen[0] - out[1] + 1.0;  // paired: the spread over directions cancels
             });

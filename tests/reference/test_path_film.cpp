@@ -1,4 +1,4 @@
-// The film of the path tracer keeps what it is given, and knows its own checkpoints.
+// The film of the path tracer stores its samples, and accepts only its own checkpoints.
 #include <gtest/gtest.h>
 
 #include <cmath>

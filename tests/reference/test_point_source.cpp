@@ -138,8 +138,8 @@ void expect_fluence(Rows& rows, int first, int distance) {
         r.settings.smoke.albedo[c] = static_cast<float>(kPoints[first + c].albedo);
     const Traced traced(r);
     const double sharp = radius > 4.0 ? 0.005 : kSharp;
-    const Estimate e = estimate_to(sharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
-        traced.look({dvec3(0.0), uniform_direction(place.y, place.z)}, place.x, rng, out);
+    const Estimate e = estimate_to(sharp, 3, [&](const dvec3& u, Rng& rng, double* out) {
+        traced.look({dvec3(0.0), uniform_direction(u.y, u.z)}, u.x, rng, out);
     });
     for (int c = 0; c < 3; ++c) {
         const double albedo = kPoints[first + c].albedo;
@@ -193,11 +193,11 @@ Estimate fluence_at(const Traced& traced, const dvec3& from_node, double sharp) 
     const double r = glm::length(from_node), cosine = std::sqrt(1.0 - 3.0 * kFine * kFine / (r * r));
     const dvec3 axis = -from_node / r, x = glm::normalize(glm::cross(axis, dvec3(0, 1, 0))), y = glm::cross(axis, x);
     const double toward = 0.5 * (1.0 - cosine);  // of all directions
-    return estimate_to(sharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
-        const bool near = place.y < 0.5;
-        const double u = near ? 2.0 * place.y * toward : toward + (2.0 * place.y - 1.0) * (1.0 - toward);
-        const dvec3 d = uniform_direction(u, place.z);
-        traced.look({from_node + dvec3(4.0 * kFine), d.z * axis + d.x * x + d.y * y}, place.x, rng, out);
+    return estimate_to(sharp, 3, [&](const dvec3& u, Rng& rng, double* out) {
+        const bool near = u.y < 0.5;
+        const double polar = near ? 2.0 * u.y * toward : toward + (2.0 * u.y - 1.0) * (1.0 - toward);
+        const dvec3 d = uniform_direction(polar, u.z);
+        traced.look({from_node + dvec3(4.0 * kFine), d.z * axis + d.x * x + d.y * y}, u.x, rng, out);
         for (int c = 0; c < 3; ++c)
             out[c] *= 8.0 * kPi64 * (near ? toward : 1.0 - toward);
     });

@@ -32,10 +32,10 @@ Estimate light_through_smoke(double depth, const TracingSettings& settings, doub
     r.settings.fire.convention = EmissionConvention::Direct;
     r.settings.smoke.albedo = Rgb(0.5f);
     const Traced traced(r, settings, 1);
-    return estimate_to(sharp, 2, [&](const dvec3& place, Rng& rng, double* out) {
+    return estimate_to(sharp, 2, [&](const dvec3& u, Rng& rng, double* out) {
         PathSum sum{};
         PathStatistics statistics;
-        traced.tracer.trace(ray_into_layers(1.0), place.x, rng, sum, statistics);
+        traced.tracer.trace(ray_into_layers(1.0), u.x, rng, sum, statistics);
         out[0] = sum[0].x, out[1] = sum[1].x;
     });
 }

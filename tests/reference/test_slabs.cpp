@@ -109,8 +109,8 @@ void expect_slabs(Rows& rows, const std::array<int, 3>& tables, double sharp, Fr
         const Traced traced(slab(1 + i % 6, thickness, albedo), settings);
         for (const double mu : {1.0, 0.5}) {
             const Ray ray = ray_into_layers(mu);
-            const Estimate e = estimate_to(
-                sharp, 3, [&](const dvec3& place, Rng& rng, double* out) { traced.look(ray, place.x, rng, out); });
+            const Estimate e =
+                estimate_to(sharp, 3, [&](const dvec3& u, Rng& rng, double* out) { traced.look(ray, u.x, rng, out); });
             for (int c = 0; c < 3; ++c) {
                 const Emissivity& truth = kSlabs[tables[c]].rows[i];
                 rows.expect(name("albedo", albedo[c]) + name("thickness", thickness) + name("mu", mu), e.mean[c],
@@ -147,9 +147,8 @@ TEST(Slabs, ThatScatterForwardShineByTheirEmissivity) {
     Recipe r = slab(5, 2.0, Rgb(0.9f));
     r.settings.smoke.mean_cosine = 0.75f;
     const Traced traced(r);
-    const Estimate e = estimate_to(kSharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
-        traced.look(ray_into_layers(1.0), place.x, rng, out);
-    });
+    const Estimate e = estimate_to(
+        kSharp, 3, [&](const dvec3& u, Rng& rng, double* out) { traced.look(ray_into_layers(1.0), u.x, rng, out); });
     rows.expect("albedo 0.9, thickness 2", e.mean[0], e.error[0], 1.0 - 0.097395 - 0.660958, 1e-6);
 }
 
@@ -180,8 +179,8 @@ void expect_half_space(Rows& rows, const std::array<int, 3>& tables, std::initia
     const Traced traced(slab(6, 6.0 * voxel, albedo));
     for (const int i : mus) {
         const Ray ray = ray_into_layers(kMu[i]);
-        const Estimate e = estimate_to(
-            sharp, 3, [&](const dvec3& place, Rng& rng, double* out) { traced.look(ray, place.x, rng, out); });
+        const Estimate e =
+            estimate_to(sharp, 3, [&](const dvec3& u, Rng& rng, double* out) { traced.look(ray, u.x, rng, out); });
         for (int c = 0; c < 3; ++c) {
             const double cold = std::sqrt(1.0 - kH[tables[c]].albedo);
             rows.expect(name("albedo", albedo[c]) + name("mu", kMu[i]) + name("voxel", voxel), e.mean[c], e.error[c],

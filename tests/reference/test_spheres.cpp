@@ -44,12 +44,12 @@ void expect_ball(Rows& rows, const Fireball* three) {
     const double radius = three[0].radius;
     const Traced traced(
         scattering_ball(kNodes, radius, Rgb(float(three[0].albedo), float(three[1].albedo), float(three[2].albedo))));
-    const Estimate centre = estimate_to(kSharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
-        traced.look(ray_through_middle(place.y, place.z), place.x, rng, out);
+    const Estimate centre = estimate_to(kSharp, 3, [&](const dvec3& u, Rng& rng, double* out) {
+        traced.look(ray_through_middle(u.y, u.z), u.x, rng, out);
     });
     constexpr double wider = 1.05, area = wider * wider;
-    const Estimate flux = estimate_to(kSharp, 3, [&](const dvec3& place, Rng& rng, double* out) {
-        traced.look(ray_through_disc(wider, place.y, place.z, rng), place.x, rng, out);
+    const Estimate flux = estimate_to(kSharp, 3, [&](const dvec3& u, Rng& rng, double* out) {
+        traced.look(ray_through_disc(wider, u.y, u.z, rng), u.x, rng, out);
     });
     for (int c = 0; c < 3; ++c) {
         const Fireball& f = three[c];

@@ -21,10 +21,10 @@ struct Set {
           surroundings(std::make_unique<Surroundings>(std::move(scene), std::move(lights))),
           tracer(*medium, settings, bounces, surroundings.get()) {}
 
-    PathSum look(const Ray& ray, double place, Rng& rng) const {
+    PathSum look(const Ray& ray, double position, Rng& rng) const {
         PathSum sum{};
         PathStatistics statistics;
-        tracer.trace(ray, place, rng, sum, statistics);
+        tracer.trace(ray, position, rng, sum, statistics);
         return sum;
     }
 
@@ -60,8 +60,8 @@ TEST(Surfaces, ClosedBoxIsAGeometricSeries) {
     Scene scene;
     add_box(scene, {-1, -2, -1.5}, {1, 1, 2}, gray_wall(rho), true);
     const Set set(scene, {});
-    const Estimate e = estimate_to(kSharp, 4, [&](const dvec3& place, Rng& rng, double* out) {
-        const PathSum sum = set.look({dvec3(0.1, 0.2, 0.3), uniform_direction(place.x, place.y)}, place.z, rng);
+    const Estimate e = estimate_to(kSharp, 4, [&](const dvec3& u, Rng& rng, double* out) {
+        const PathSum sum = set.look({dvec3(0.1, 0.2, 0.3), uniform_direction(u.x, u.y)}, u.z, rng);
         out[0] = everything(sum);
         out[1] = sum.cells.at(Cell::A).x;
         out[2] = sum.cells.at(Cell::SA).x;
@@ -80,8 +80,8 @@ TEST(Surfaces, BouncesEndWhereTheyAreAskedTo) {
     add_box(scene, {-1, -1, -1}, {1, 1, 1}, gray_wall(float(rho)), true);
     for (const int bounces : {0, 1, 3}) {
         const Set set(scene, {}, {}, {}, bounces);
-        const Estimate e = estimate_to(kSharp, 1, [&](const dvec3& place, Rng& rng, double* out) {
-            out[0] = everything(set.look({dvec3(0.1, 0.2, 0.3), uniform_direction(place.x, place.y)}, place.z, rng));
+        const Estimate e = estimate_to(kSharp, 1, [&](const dvec3& u, Rng& rng, double* out) {
+            out[0] = everything(set.look({dvec3(0.1, 0.2, 0.3), uniform_direction(u.x, u.y)}, u.z, rng));
         });
         EXPECT_NEAR(e.mean[0], 1.0 - std::pow(rho, bounces + 1), kSigmas * e.error[0] + 1e-6) << bounces;
     }
@@ -114,14 +114,15 @@ TEST(Surfaces, WhiteThingsVanishUnderAnEvenSky) {
         Scene scene;
         add_ball(scene, {0, 0, 0}, 1.0f, 12, kind.material);
         const Set set(scene, {even_sky(float(kBackground))});
-        const Estimate e = estimate_to(kSharp, 1, [&](const dvec3& place, Rng& rng, double* out) {
-            out[0] = everything(set.look(ray_through_disc(0.95, place.x, place.y, rng), place.z, rng));
+        const Estimate e = estimate_to(kSharp, 1, [&](const dvec3& u, Rng& rng, double* out) {
+            out[0] = everything(set.look(ray_through_disc(0.95, u.x, u.y, rng), u.z, rng));
         });
         rows.expect(kind.name, e.mean[0], e.error[0], kBackground, 4e-3 * kBackground);
     }
 }
 
-// Smoke that burns at one temperature, between walls of the same: nobody can tell them apart, whatever either scatters.
+// Smoke that burns at one temperature, between walls of the same temperature: nothing distinguishes them, whatever
+// either scatters.
 TEST(Surfaces, SmokeAndWallsInEquilibriumHaveOneRadiance) {
     Rows rows("equilibrium");
     for (const float rho : {0.0f, 0.8f})
@@ -132,9 +133,9 @@ TEST(Surfaces, SmokeAndWallsInEquilibriumHaveOneRadiance) {
             // One wall goes through the smoke.
             add_box(scene, {-1.5, -1.5, -1.5}, {1.5, 0.3f, 1.5}, gray_wall(rho), true);
             const Set set(scene, {}, std::move(medium));
-            const Estimate e = estimate_to(kSharp, 1, [&](const dvec3& place, Rng& rng, double* out) {
+            const Estimate e = estimate_to(kSharp, 1, [&](const dvec3& u, Rng& rng, double* out) {
                 const dvec3 eye(1.2, -1.2, 1.1);
-                out[0] = everything(set.look({eye, uniform_direction(place.x, place.y)}, place.z, rng));
+                out[0] = everything(set.look({eye, uniform_direction(u.x, u.y)}, u.z, rng));
             });
             rows.expect("walls " + std::to_string(rho) + ", smoke " + std::to_string(albedo), e.mean[0], e.error[0],
                         1.0, 1e-3);
@@ -156,8 +157,8 @@ TEST(Surfaces, NothingIsLostBetweenSmokeAndSurfaces) {
     glass.surface.roughness = 0.0f;
     add_ball(scene, {0.2f, 0.1f, 0.5f}, 0.4f, 8, glass);
     const Set set(scene, {even_sky(1.0f)}, std::move(medium));
-    const Estimate e = estimate(1 + kCells, 96, [&](const dvec3& place, Rng& rng, double* out) {
-        const PathSum sum = set.look(ray_through_disc(1.2, place.x, place.y, rng), place.z, rng);
+    const Estimate e = estimate(1 + kCells, 96, [&](const dvec3& u, Rng& rng, double* out) {
+        const PathSum sum = set.look(ray_through_disc(1.2, u.x, u.y, rng), u.z, rng);
         out[0] = everything(sum);
         for (int cell = 0; cell < kCells; ++cell)
             out[1 + cell] = sum.cells[cell].x;
@@ -182,8 +183,8 @@ TEST(Surfaces, FireLightsAWall) {
         TracingSettings settings;
         settings.light_sampling = light_sampling;
         const Set set(scene, {}, medium, settings, 1);
-        const Estimate e = estimate_to(0.005, 2, [&](const dvec3& place, Rng& rng, double* out) {
-            const PathSum sum = set.look({dvec3(0, 0, -2), dvec3(0, 0, -1)}, place.z, rng);
+        const Estimate e = estimate_to(0.005, 2, [&](const dvec3& u, Rng& rng, double* out) {
+            const PathSum sum = set.look({dvec3(0, 0, -2), dvec3(0, 0, -1)}, u.z, rng);
             out[0] = sum.cells.at(Cell::SV).x;
             out[1] = everything(sum);
         });
@@ -209,9 +210,9 @@ TEST(Surfaces, LightLinesChangeNoMean) {
         TracingSettings settings;
         settings.light_sampling = light_sampling;
         const Set set(scene, {}, medium, settings);
-        by[light_sampling] = estimate_to(0.004, 1, [&](const dvec3& place, Rng& rng, double* out) {
-            const dvec3 eye(2.5, -2.5, 0.5), target(place.x - 0.5, place.y - 0.5, -1.2);
-            out[0] = everything(set.look({eye, glm::normalize(target - eye)}, place.z, rng));
+        by[light_sampling] = estimate_to(0.004, 1, [&](const dvec3& u, Rng& rng, double* out) {
+            const dvec3 eye(2.5, -2.5, 0.5), target(u.x - 0.5, u.y - 0.5, -1.2);
+            out[0] = everything(set.look({eye, glm::normalize(target - eye)}, u.z, rng));
         });
     }
     EXPECT_NEAR(by[0].mean[0], by[1].mean[0], kSigmas * std::hypot(by[0].error[0], by[1].error[0]));

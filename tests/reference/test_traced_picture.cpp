@@ -48,13 +48,13 @@ Shot shot_of(int samples) {
 struct Render {
     TracedPicture picture;
     Statistics statistics;
-    Listener told;
-    // What the stage of the paths says of them.
+    Listener messages;
+    // The statistics of the stage that traces paths.
     const nlohmann::ordered_json& paths() const {
         const auto stage = std::find_if(statistics.stages.begin(), statistics.stages.end(),
                                         [](const StageCost& s) { return s.name == "path tracing"; });
         if (stage == statistics.stages.end())
-            throw std::logic_error("no stage tells of paths");
+            throw std::logic_error("no stage reports paths");
         return stage->detail;
     }
 };
@@ -64,7 +64,7 @@ Render render(const Shot& shot, const Medium& medium, const Checkpoint& checkpoi
     const Camera camera(shot.camera, medium);
     const CellSet needed = plan_cells(shot, medium).needed;
     r.picture = trace_picture({medium, camera, nullptr, shot.tracing, shot.scattering.bounces, needed, shot.output},
-                              checkpoint, r.statistics, r.told);
+                              checkpoint, r.statistics, r.messages);
     return r;
 }
 
@@ -159,7 +159,7 @@ TEST(TracedPicture, GoesOnWhereItStopped) {
     const Checkpoint checkpoint{folder / "state", "a key"};
     render(shot_of(4), medium, checkpoint);
     const Render on = render(shot_of(10), medium, checkpoint), once = render(shot_of(10), medium);
-    EXPECT_EQ(on.told.notices.size(), 1u);
+    EXPECT_EQ(on.messages.notices.size(), 1u);
     EXPECT_TRUE(same_bits(on.picture.image, once.picture.image));
     EXPECT_TRUE(same_bits(on.picture.halves[0], once.picture.halves[0]));
     EXPECT_TRUE(same_bits(on.picture.halves[1], once.picture.halves[1]));
@@ -256,7 +256,7 @@ TEST(TracedPicture, SmokeThatScattersNothingHasNoScatteredLayers) {
     EXPECT_EQ(colour(image, ""), colour(image, "V"));
 }
 
-// One node of the cloud shines like that: its paths are counted, told of and left out; the others make the picture.
+// One node of the cloud shines like that: its paths are counted, reported and left out; the others make the picture.
 void expect_left_out(float brightness) {
     Medium medium = cloud();
     medium.source.at(medium.lattice.find_node(ivec3(1, 2, -3))) = Rgb(brightness);
@@ -264,8 +264,8 @@ void expect_left_out(float brightness) {
     const auto bad = r.paths().at("not_finite_paths").get<std::uint64_t>();
     EXPECT_GT(bad, 0u);
     EXPECT_LT(bad, std::uint64_t(kWidth) * kHeight);
-    ASSERT_EQ(r.told.warnings.size(), 1u);
-    EXPECT_EQ(r.told.warnings[0].first, "not-finite");
+    ASSERT_EQ(r.messages.warnings.size(), 1u);
+    EXPECT_EQ(r.messages.warnings[0].first, "not-finite");
     const std::vector<float> beauty = colour(r.picture.image, "");
     EXPECT_TRUE(std::all_of(beauty.begin(), beauty.end(), [](float v) { return std::isfinite(v); }));
     EXPECT_GT(*std::max_element(beauty.begin(), beauty.end()), 0.0f);

@@ -1,4 +1,4 @@
-// A path's vertices tell all that the path brings, and looking at them changes nothing.
+// The vertices of a path account for all of its radiance, and recording them does not change the path.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -79,7 +79,7 @@ TEST_P(VerticesOf, AddUpToThePath) {
     EXPECT_EQ(from_fire > 0, settings.emission == EmissionEstimator::Line);
 }
 
-// A path that brings what is no number has a vertex that gathered it.
+// If the radiance of a path is not finite, one of its vertices gathered that value.
 TEST(Vertices, ShowWhereAPathIsNotFinite) {
     Medium medium = burning_ball();
     medium.source.at(medium.lattice.find_node(ivec3(1, 2, -3))) = Rgb(std::numeric_limits<float>::quiet_NaN());

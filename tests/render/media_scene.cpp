@@ -8,10 +8,11 @@ namespace {
 constexpr const char* kEdges = "edges of what shines are finer than a pixel";
 constexpr const char* kGrid =
     "the hierarchy's own error: light of surfaces on smoke is 1 to 2 % too dark in rooms, and "
-    "up to a tenth off from place to place";
+    "up to a tenth off locally";
 constexpr const char* kAtLamp = "a voxel beside the lamp has one brightness";
 constexpr const char* kSampled = "noise of the 16 samples of a pixel: sampled lobes, penumbrae and virtual lights";
-constexpr const char* kPaths = "noise of the reference: few paths meet what they show, so that no less can be told";
+constexpr const char* kPaths =
+    "noise of the reference: few paths meet what they show, so that smaller errors cannot be measured";
 constexpr const char* kMirrored = "before mirrors and glass light is found by chance: bright grains";
 constexpr const char* kHalfParted =
     "lights on both sides of a wall that half parts a room meet in one of a coarse "

@@ -171,7 +171,7 @@ TEST_P(LightsInSmokePictures, ThreadsChangeNothing) {
     }
 }
 
-// Passes are pictures that know nothing of each other, so that their mean has the less noise.
+// Passes are independent pictures, so that their mean has less noise.
 TEST(RayLightPasses, HaveLessNoise) {
     const Medium medium = smoke(0.0f);
     Shot shot = small_shot(RenderMethod::LightingGrid);
@@ -268,8 +268,8 @@ TEST_P(LightsInSmokePictures, NothingIsTracedForWhatIsNotThere) {
 
 // By the shot, not by what a frame holds.
 TEST(ScatteringMethods, AreChosenByTheShotAlone) {
-    const auto chosen = [](float mean_cosine, bool box, bool file, const std::string& asked) {
-        Shot shot = small_shot(RenderMethod::LightingGrid, asked);
+    const auto chosen = [](float mean_cosine, bool box, bool file, const std::string& method) {
+        Shot shot = small_shot(RenderMethod::LightingGrid, method);
         if (box)
             shot.volumes.emplace_back().volume.box = FogBox{{-1, -1, -1}, {1, 1, 1}, 0.1};
         if (file)

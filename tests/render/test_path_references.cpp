@@ -1,5 +1,5 @@
 // The path tracer against another renderer's unbiased pictures of real volumes, order by order. Both come as two
-// independent halves, a and b here, A and B there, so that every difference can be told from noise.
+// independent halves, a and b here, A and B there, so that every difference can be distinguished from noise.
 #include <gtest/gtest.h>
 
 #include <cmath>

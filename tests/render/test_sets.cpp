@@ -63,7 +63,7 @@ Whole whole(const Layer& layer) {
     return {sum / (double(kWidth) * kHeight), 0.0};
 }
 
-// The picture's mean in every cell. What the methods are known to: hierarchies 2 %, and noise, by the tracer's halves.
+// The mean of the picture in every cell. Tolerances: 2 % for hierarchies, and noise, from the tracer's halves.
 TEST(Sets, EveryCellIsThePathTracers) {
     const Medium medium = make_medium([] {
         Recipe r = glowing_ball(20, 3.0f);
@@ -87,7 +87,7 @@ TEST(Sets, EveryCellIsThePathTracers) {
     EXPECT_LT(std::abs(difference), 0.015 * all);
 }
 
-// A few places on the sky, asked by every node: wrong by a tenth if all nodes asked the same ones.
+// Every node samples the sky in a few directions. If all nodes took the same ones, the error would be a tenth.
 TEST(Sets, ASkyLightsTheSmoke) {
     Recipe recipe = glowing_ball(20, 3.0f);
     recipe.settings.smoke.albedo = Rgb(0.8f);

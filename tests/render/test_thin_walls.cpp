@@ -1,4 +1,4 @@
-// A wall without thickness through a room full of haze, with fire on one side: what the other side sees came around it.
+// A wall without thickness in a room full of haze, with fire on one side: light reaches the other side only around it.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -137,7 +137,7 @@ class Page:
         self.settle()
 
     def settle(self):
-        """Waits until what was asked for has been laid out and drawn."""
+        """Waits until the page has been laid out and drawn."""
         self.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(0))))")
 
     def evaluate(self, expression):

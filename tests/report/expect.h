@@ -1,4 +1,4 @@
-// Texts in texts.
+// Expects that a text contains another one.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -100,7 +100,7 @@ TEST(ErrorCurve, SaysOrLessWhereTheFirstRunIsGoodEnough) {
     EXPECT_EQ(curve(averaged, Tail::Floor).time_to(0.5).kind, ReadingKind::Interpolated);
 }
 
-TEST(ErrorCurve, TakesAnErrorOfZeroForOneThatCannotBeTold) {
+TEST(ErrorCurve, TakesAnErrorOfZeroForOneTooSmallToMeasure) {
     const ErrorCurve c({{1.0, 0.1, 0.0}, {4.0, 0.0, 0.0}}, Tail::Average);
     EXPECT_EQ(c.time_to(0.02).kind, ReadingKind::AtMost);
     EXPECT_DOUBLE_EQ(c.time_to(0.02).value, 4.0);

@@ -94,7 +94,7 @@ class CommandLine(Case):
         self.assertEqual(self.names(), ["other.exr"])
 
 
-    def test_given_halves_take_the_place_of_a_reference(self):
+    def test_given_halves_replace_a_reference(self):
         done = run_program(self.folder, "render", SHOT, *SMALL, "--set", "method=path", "--set", "tracing.samples=32",
                            "--set", "output.halves=true", "-o", "truth.exr")
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -144,12 +144,12 @@ class Page(unittest.TestCase):
             self.page.prefer("light")
             self.page.open(self.folder / "report.html")
 
-    def ask(self, expression):
+    def evaluate(self, expression):
         return self.page.evaluate(expression)
 
     def press(self, section, group, label):
         """Presses a button of a row of buttons."""
-        self.ask(f"[...document.querySelectorAll('#{section} [aria-label=\"{group}\"] button')]"
+        self.evaluate(f"[...document.querySelectorAll('#{section} [aria-label=\"{group}\"] button')]"
                  f".find(button => button.textContent === {json.dumps(label)}).click()")
         self.page.settle()
 
@@ -222,28 +222,28 @@ class Page(unittest.TestCase):
 
     # In the browser
 
-    def test_browser_loads_it_without_complaint(self):
+    def test_browser_loads_it_without_errors(self):
         self.assertEqual(self.page.problems, [])
-        self.assertEqual(self.ask("document.querySelector('h1').textContent"), NAME)
-        self.assertIn(NAME, self.ask("document.title"))
-        self.assertEqual(self.ask("document.querySelectorAll('h1 b').length"), 0)
+        self.assertEqual(self.evaluate("document.querySelector('h1').textContent"), NAME)
+        self.assertIn(NAME, self.evaluate("document.title"))
+        self.assertEqual(self.evaluate("document.querySelectorAll('h1 b').length"), 0)
         broken = "image => image.src && (!image.complete || !image.naturalWidth)"
-        self.assertEqual(self.ask(f"[...document.images].filter({broken}).length"), 0)
-        self.assertFalse(self.ask("document.documentElement.scrollWidth > innerWidth"))
+        self.assertEqual(self.evaluate(f"[...document.images].filter({broken}).length"), 0)
+        self.assertFalse(self.evaluate("document.documentElement.scrollWidth > innerWidth"))
 
     def test_browser_shows_all_points_of_the_plot(self):
         plotted = "document.querySelector('.plot').dataset"
         expected = sum(run["errors"][""]["noise_free"] > 0 for m in self.data["methods"] for run in m["runs"])
-        self.assertEqual(self.ask(f"Number({plotted}.points)"), expected)
-        self.assertEqual(self.ask(f"Number({plotted}.series)"), 3)
-        series = self.ask("brisanceReport.plot.plot.data.slice(1).map(ys => ys.filter(y => y != null))")
+        self.assertEqual(self.evaluate(f"Number({plotted}.points)"), expected)
+        self.assertEqual(self.evaluate(f"Number({plotted}.series)"), 3)
+        series = self.evaluate("brisanceReport.plot.plot.data.slice(1).map(ys => ys.filter(y => y != null))")
         wanted = [[100 * run["errors"][""]["noise_free"] for run in method["runs"]] for method in self.data["methods"]]
         for plotted_values, values in zip(series, wanted):
             self.assertEqual(len(plotted_values), sum(value > 0 for value in values))
             for a, b in zip(sorted(plotted_values), sorted(value for value in values if value > 0)):
                 self.assertAlmostEqual(a, b)
         # Something is drawn, in the colour of the first method.
-        self.assertTrue(self.ask("""(() => {
+        self.assertTrue(self.evaluate("""(() => {
             const canvas = document.querySelector('.plot canvas');
             const data = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
             const swatch = document.querySelector('.legend .swatch');
@@ -255,105 +255,105 @@ class Page(unittest.TestCase):
 
     def test_browser_hides_a_method(self):
         self.page.click(".legend button:nth-child(2)")
-        self.assertEqual(self.ask("brisanceReport.plot.plot.series.map(s => s.show)"), [True, True, False, True])
-        self.assertEqual(self.ask("document.querySelector('.legend button:nth-child(2)').ariaPressed"), "false")
+        self.assertEqual(self.evaluate("brisanceReport.plot.plot.series.map(s => s.show)"), [True, True, False, True])
+        self.assertEqual(self.evaluate("document.querySelector('.legend button:nth-child(2)').ariaPressed"), "false")
         self.press("convergence", "Layer", "MM")
-        self.assertEqual(self.ask("brisanceReport.plot.plot.series.map(s => s.show)"), [True, True, False, True])
+        self.assertEqual(self.evaluate("brisanceReport.plot.plot.series.map(s => s.show)"), [True, True, False, True])
         self.page.click(".legend button:nth-child(2)")
-        self.assertEqual(self.ask("brisanceReport.plot.plot.series.map(s => s.show)"), [True] * 4)
+        self.assertEqual(self.evaluate("brisanceReport.plot.plot.series.map(s => s.show)"), [True] * 4)
 
     def test_browser_has_every_layer_measure_and_clock(self):
         for group in ("Layer", "Measure", "Time"):
-            count = self.ask(f"document.querySelectorAll('#convergence [aria-label=\"{group}\"] button').length")
+            count = self.evaluate(f"document.querySelectorAll('#convergence [aria-label=\"{group}\"] button').length")
             self.assertEqual(count, {"Layer": 4, "Measure": 5, "Time": 2}[group])
             for i in range(count):
-                self.ask(f"document.querySelectorAll('#convergence [aria-label=\"{group}\"] button')[{i}].click()")
+                self.evaluate(f"document.querySelectorAll('#convergence [aria-label=\"{group}\"] button')[{i}].click()")
                 self.page.settle()
-                self.assertTrue(self.ask("document.querySelector('.plot canvas, .plot-frame p') !== null"))
+                self.assertTrue(self.evaluate("document.querySelector('.plot canvas, .plot-frame p') !== null"))
         self.assertEqual(self.page.problems, [])
 
     def test_browser_tables(self):
-        self.assertEqual(self.ask("document.querySelectorAll('#reach-table tbody tr').length"), 3)
-        self.assertEqual(self.ask("document.querySelectorAll('#measurements-table tbody tr').length"), 6)
+        self.assertEqual(self.evaluate("document.querySelectorAll('#reach-table tbody tr').length"), 3)
+        self.assertEqual(self.evaluate("document.querySelectorAll('#measurements-table tbody tr').length"), 6)
         row = "document.querySelectorAll('#reach-table tbody tr:first-child td')"
-        cells = self.ask(f"[...{row}].map(cell => cell.textContent)")
+        cells = self.evaluate(f"[...{row}].map(cell => cell.textContent)")
         floor = self.data["methods"][0]["convergence"][""]["wall"]["times"][3]
         if floor["kind"] == "not_reached":
             self.assertIn(f"not reachedbias floor {100 * floor['floor']:.3g} %", cells)
         self.press("measurements", "Layer", "V")
-        self.assertEqual(self.ask("document.querySelectorAll('#measurements-table tbody tr').length"), 6)
+        self.assertEqual(self.evaluate("document.querySelectorAll('#measurements-table tbody tr').length"), 6)
 
     def test_browser_moves_the_slider(self):
         clip = """getComputedStyle(document.querySelector('#slider').shadowRoot
                   .querySelector('.first-overlay-container')).clipPath"""
-        self.ask("document.querySelector('#slider').scrollIntoView({block: 'center'})")
+        self.evaluate("document.querySelector('#slider').scrollIntoView({block: 'center'})")
         self.page.settle()
-        before = self.ask(clip)
+        before = self.evaluate(clip)
         self.assertEqual(before, "inset(0px 50% 0px 0px)")
-        x, y, width, height = self.ask(
+        x, y, width, height = self.evaluate(
             "(() => { const b = document.querySelector('#slider').getBoundingClientRect();"
             "return [b.x, b.y, b.width, b.height]; })()")
         self.page.drag((x + width / 2, y + height / 2), (x + width / 4, y + height / 2))
         # It glides to where it was put.
         moving = "document.querySelector('#slider').shadowRoot.getAnimations().map(animation => animation.finished)"
-        self.ask(f"Promise.all({moving}).then(() => 0)")
-        hidden = float(re.fullmatch(r"inset\(0px ([\d.]+)% 0px 0px\)", self.ask(clip))[1])
+        self.evaluate(f"Promise.all({moving}).then(() => 0)")
+        hidden = float(re.fullmatch(r"inset\(0px ([\d.]+)% 0px 0px\)", self.evaluate(clip))[1])
         self.assertAlmostEqual(hidden, 75.0, delta=1.0)
-        self.assertAlmostEqual(self.ask("document.querySelector('#slider').value"), 25.0, delta=1.0)
+        self.assertAlmostEqual(self.evaluate("document.querySelector('#slider').value"), 25.0, delta=1.0)
 
     def test_browser_compares_any_two_pictures(self):
         sources = "['first', 'second'].map(s => document.querySelector(`#slider [slot=${s}]`).src)"
-        start = self.ask(sources)
+        start = self.evaluate(sources)
         self.assertTrue(all(src.startswith("data:image/png;base64,") for src in start))
         self.assertEqual(base64.b64decode(start[0].split(",")[1])[:4], b"\x89PNG")
         select = "document.querySelector('[aria-label=\"Right picture\"]')"
-        self.ask(f"{select}.value = 'reference'; {select}.dispatchEvent(new Event('change'))")
-        left, right = self.ask(sources)
+        self.evaluate(f"{select}.value = 'reference'; {select}.dispatchEvent(new Event('change'))")
+        left, right = self.evaluate(sources)
         self.assertEqual(left, start[0])
         self.assertNotEqual(right, start[1])
         seen = {left}
         for group, label in (("Exposure", "+3 EV"), ("Layer", "MV"), ("Show", "Relative error"), ("Show", "HDR-FLIP")):
             self.press("pictures", group, label)
-            self.assertNotIn(self.ask(sources)[0], seen, label)
-            seen.add(self.ask(sources)[0])
-        self.assertTrue(self.ask("document.querySelector('.colour-bar') !== null"))
+            self.assertNotIn(self.evaluate(sources)[0], seen, label)
+            seen.add(self.evaluate(sources)[0])
+        self.assertTrue(self.evaluate("document.querySelector('.colour-bar') !== null"))
         self.press("pictures", "Show", "Left \u2212 right")
-        self.assertTrue(self.ask("document.querySelector('#slider').hidden"))
+        self.assertTrue(self.evaluate("document.querySelector('#slider').hidden"))
         self.assertEqual(self.page.problems, [])
 
     def test_browser_shows_the_picture_of_a_point(self):
         # The last point of the second method, where the plot has drawn it.
-        self.ask("document.querySelector('.plot').scrollIntoView({block: 'center'})")
+        self.evaluate("document.querySelector('.plot').scrollIntoView({block: 'center'})")
         self.page.settle()
-        x, y, run = self.ask("""(() => {
+        x, y, run = self.evaluate("""(() => {
             const {plot} = brisanceReport.plot, point = brisanceReport.plot.series[1].points.at(-1);
             const box = plot.over.getBoundingClientRect();
             return [box.x + plot.valToPos(point.seconds, 'x'), box.y + plot.valToPos(point.y, 'y'), point.run.id];
         })()""")
         self.page.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)
         self.page.settle()
-        self.assertFalse(self.ask("document.querySelector('.tip').hidden"))
-        self.assertIn("path", self.ask("document.querySelector('.tip').textContent"))
+        self.assertFalse(self.evaluate("document.querySelector('.tip').hidden"))
+        self.assertIn("path", self.evaluate("document.querySelector('.tip').textContent"))
         for kind in ("mousePressed", "mouseReleased"):
             self.page.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
-        self.assertEqual(self.ask("document.querySelector('[aria-label=\"Left picture\"]').value"), run)
+        self.assertEqual(self.evaluate("document.querySelector('[aria-label=\"Left picture\"]').value"), run)
 
     def test_browser_light_and_dark(self):
         colour = "getComputedStyle(document.body).backgroundColor"
-        light = self.ask(colour)
+        light = self.evaluate(colour)
         self.page.prefer("dark")
         self.page.settle()
-        dark = self.ask(colour)
+        dark = self.evaluate(colour)
         self.assertNotEqual(light, dark)
-        self.ask("[...document.querySelectorAll('#theme button')].find(b => b.textContent === 'Light').click()")
-        self.assertEqual(self.ask(colour), light)
+        self.evaluate("[...document.querySelectorAll('#theme button')].find(b => b.textContent === 'Light').click()")
+        self.assertEqual(self.evaluate(colour), light)
         self.assertEqual(self.page.problems, [])
 
     def test_browser_on_a_narrow_screen(self):
         self.page.resize(390, 800)
         self.addCleanup(self.page.resize, *self.page.size)
         self.page.open(self.folder / "report.html")
-        self.assertFalse(self.ask("document.documentElement.scrollWidth > innerWidth"))
+        self.assertFalse(self.evaluate("document.documentElement.scrollWidth > innerWidth"))
         self.assertEqual(self.page.problems, [])
 
 

@@ -34,7 +34,7 @@ TEST(Balance, EscapeFromABallIsAsTabulated) {
     }
 }
 
-// The mean way out of a ball is 3/4 of its radius; however little collides there, it is known as well as ever.
+// The mean distance out of a ball is 3/4 of its radius; the estimate is as precise where hardly anything collides.
 TEST(Balance, CollisionsInTheThinnestSmokeKeepTheirDigits) {
     for (const float depth : {1e-3f, 1e-6f, 1e-12f}) {
         const Lit lit(make_medium(glowing_ball(16, depth)));
@@ -66,7 +66,7 @@ TEST(Balance, EscapeIsThatOfTheFieldTheCameraSees) {
     }
 }
 
-// Two ways of counting, and the second knows the little that leaves opaque smoke far better.
+// Two estimators; the second is far more precise for the little light that leaves opaque smoke.
 TEST(Balance, WhatEscapesIsWhatDoesNotCollide) {
     for (const float depth : {0.5f, 5.0f, 50.0f}) {
         const Lit lit(make_medium(glowing_ball(16, depth)));

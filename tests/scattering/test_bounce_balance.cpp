@@ -1,4 +1,4 @@
-// Independent rays notice when a flight loses light, and find nothing where none is lost.
+// Independent rays detect a flight that loses light, and report none where none is lost.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -134,7 +134,7 @@ bool Listener::noticed(const std::string& part) const {
 Loaded load_settings(const SceneSettings& settings, const std::filesystem::path& folder, double seconds,
                      std::uint64_t memory_limit, const dvec3& origin) {
     Loaded loaded;
-    loaded.scene = load_scene(settings, folder, seconds, origin, memory_limit, loaded.told);
+    loaded.scene = load_scene(settings, folder, seconds, origin, memory_limit, loaded.messages);
     return loaded;
 }
 

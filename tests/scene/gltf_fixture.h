@@ -1,4 +1,4 @@
-// glTF files that tests make, and what loading them says.
+// glTF files that tests make, and the messages of loading them.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ std::string glb_of(const std::string& json, const std::string& binary);
 
 TestGltf one_triangle();  // (0 0 0) (1 0 0) (0 1 0), facing +z
 
-// Remembers what it is told.
+// Records notices and warnings.
 class Listener : public Progress {
 public:
     void notice(const std::string& line) override { notices.push_back(line); }
@@ -54,7 +54,7 @@ constexpr std::uint64_t kPlenty = std::uint64_t{4} << 30;
 
 struct Loaded {
     Scene scene;
-    Listener told;
+    Listener messages;
 };
 Loaded load_settings(const SceneSettings& settings, const std::filesystem::path& folder = ".", double seconds = 0.0,
                      std::uint64_t memory_limit = kPlenty, const dvec3& origin = dvec3(0.0));

@@ -75,8 +75,8 @@ TEST(Cameras, UnderAnimatedNodesOfAFileThatIsZUp) {
     const TempFolder folder;
     TestGltf gltf = with_camera(perspective(1.0));
     const int times = gltf.add_floats("SCALAR", {0, 2});
-    const int places = gltf.add_floats("VEC3", {0, 0, 0, 0, 4, 2});
-    gltf.add("animations", {{"samplers", {{{"input", times}, {"output", places}}}},
+    const int positions = gltf.add_floats("VEC3", {0, 0, 0, 0, 4, 2});
+    gltf.add("animations", {{"samplers", {{{"input", times}, {"output", positions}}}},
                             {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}});
     gltf.write_glb(folder / "scene.glb");
     const std::vector<SceneCamera> cameras = load_cameras({"scene.glb", 'z'}, folder.path(), 1.0);
@@ -111,12 +111,12 @@ TEST(Cameras, OrthographicOnesAreLeftOutWithANotice) {
     const Loaded loaded = load(with_camera(
         {{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 0}, {"zfar", 9}}}}));
     EXPECT_TRUE(loaded.scene.cameras.empty());
-    EXPECT_TRUE(loaded.told.noticed("perspective"));
+    EXPECT_TRUE(loaded.messages.noticed("perspective"));
 }
 
 TEST(Cameras, ScaledToNothingOrNotThere) {
-    EXPECT_TRUE(load(with_camera(perspective(1.0), {{"scale", {0, 0, 0}}})).told.warned("flat-camera"));
-    EXPECT_TRUE(load(with_camera(perspective(1.0), {{"scale", {1, 0, 1}}})).told.warned("flat-camera"));
+    EXPECT_TRUE(load(with_camera(perspective(1.0), {{"scale", {0, 0, 0}}})).messages.warned("flat-camera"));
+    EXPECT_TRUE(load(with_camera(perspective(1.0), {{"scale", {1, 0, 1}}})).messages.warned("flat-camera"));
     TestGltf gltf = with_camera(perspective(1.0));
     gltf.json["nodes"][0]["camera"] = 3;
     EXPECT_EQ(failure_of_loading(gltf).code, ExitCode::BadData);
@@ -149,7 +149,7 @@ TEST(Lights, PointSpotAndSun) {
 }
 
 TEST(Lights, RangesAreLeftOutWithANotice) {
-    EXPECT_TRUE(load(with_light({{"type", "point"}, {"range", 5}})).told.noticed("ranges"));
+    EXPECT_TRUE(load(with_light({{"type", "point"}, {"range", 5}})).messages.noticed("ranges"));
 }
 
 TEST(Lights, BadOnesAreRefused) {

@@ -73,8 +73,8 @@ TEST(Materials, FactorsOfTheCoreAndOfExtensions) {
     EXPECT_EQ(m.alpha_cutoff, 0.3f);
     EXPECT_TRUE(m.double_sided);
     EXPECT_TRUE(m.surface.thin);
-    EXPECT_TRUE(loaded.told.warnings.empty());
-    EXPECT_TRUE(loaded.told.notices.empty());
+    EXPECT_TRUE(loaded.messages.warnings.empty());
+    EXPECT_TRUE(loaded.messages.notices.empty());
 }
 
 TEST(Materials, ThicknessMakesGlassSolid) {
@@ -90,7 +90,7 @@ TEST(Materials, ThicknessMakesGlassSolid) {
     EXPECT_TRUE(load_material({{"extensions",
                                 {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
                                  {"KHR_materials_volume", {{"thicknessFactor", 1}, {"attenuationDistance", 0.5}}}}}})
-                    .told.noticed("absorbs"));
+                    .messages.noticed("absorbs"));
 }
 
 TEST(Materials, ValuesOutOfRangeAreClampedWithAWarning) {
@@ -111,10 +111,10 @@ TEST(Materials, ValuesOutOfRangeAreClampedWithAWarning) {
     EXPECT_EQ(m.surface.specular, 1.0f);
     EXPECT_EQ(m.surface.transmission, 0.0f);
     EXPECT_EQ(m.emission, Rgb(0.0f, 1.0f, 1.0f));
-    EXPECT_EQ(std::count_if(loaded.told.warnings.begin(), loaded.told.warnings.end(),
+    EXPECT_EQ(std::count_if(loaded.messages.warnings.begin(), loaded.messages.warnings.end(),
                             [](const auto& w) { return w.first == "material-range"; }),
               9);
-    EXPECT_TRUE(contains(loaded.told.warnings[0].second, "material 0"));
+    EXPECT_TRUE(contains(loaded.messages.warnings[0].second, "material 0"));
 }
 
 TEST(Materials, AnIorOf0IsRefused) {
@@ -130,7 +130,7 @@ TEST(Materials, UnlitIsMatt) {
     EXPECT_EQ(surface.metallic, 0.0f);
     EXPECT_EQ(surface.roughness, 1.0f);
     EXPECT_EQ(surface.specular, 0.0f);
-    EXPECT_TRUE(loaded.told.noticed("unlit"));
+    EXPECT_TRUE(loaded.messages.noticed("unlit"));
 }
 
 TEST(Materials, AlphaModes) {
@@ -138,7 +138,7 @@ TEST(Materials, AlphaModes) {
     EXPECT_EQ(load_material(json::object()).scene.materials.at(0).alpha_mode, AlphaMode::Opaque);
     const Loaded unknown = load_material({{"alphaMode", "DITHER"}});
     EXPECT_EQ(unknown.scene.materials.at(0).alpha_mode, AlphaMode::Opaque);
-    EXPECT_TRUE(unknown.told.warned("alpha-mode"));
+    EXPECT_TRUE(unknown.messages.warned("alpha-mode"));
 }
 
 TEST(Materials, OnlyThoseInUseAreRead) {
@@ -225,7 +225,7 @@ TEST(MaterialTextures, IndicesBeyondTheListsAreRefused) {
         gltf.json["materials"][0]["extensions"]["KHR_materials_specular"]["specularTexture"] = {{"index", 0},
                                                                                                 {"texCoord", wrong}};
         if (wrong == 5) {
-            EXPECT_TRUE(load(gltf).told.warned("uv-sets"));
+            EXPECT_TRUE(load(gltf).messages.warned("uv-sets"));
         } else {
             EXPECT_EQ(failure_of_loading(gltf).code, ExitCode::BadData) << wrong;
         }
@@ -271,8 +271,8 @@ TEST(MaterialTextures, SamplersAndColourSpacesMakeTexturesOfTheirOwn) {
     for (const TextureUse& use : {m.normal, m.specular, m.transmission})
         EXPECT_FALSE(loaded.scene.textures.at(static_cast<std::size_t>(use.texture)).srgb);
     EXPECT_EQ(m.normal_scale, 0.5f);
-    EXPECT_TRUE(loaded.told.noticed("occlusion"));
-    EXPECT_TRUE(loaded.told.warnings.empty());
+    EXPECT_TRUE(loaded.messages.noticed("occlusion"));
+    EXPECT_TRUE(loaded.messages.warnings.empty());
 }
 
 TEST(MaterialTextures, TransformsAreAffine) {
@@ -293,7 +293,7 @@ TEST(MaterialTextures, AnotherSetOfCoordinates) {
     add_uv(gltf, 1);
     const Loaded loaded = load(gltf);
     EXPECT_EQ(loaded.scene.meshes.at(0).uv.at(2), vec2(0, 2));
-    EXPECT_TRUE(loaded.told.warnings.empty());
+    EXPECT_TRUE(loaded.messages.warnings.empty());
     TestGltf moved = textured({{"extensions", {{"KHR_texture_transform", {{"texCoord", 1}}}}}});
     add_uv(moved, 1);
     EXPECT_EQ(load(moved).scene.meshes.at(0).uv.at(2), vec2(0, 2));
@@ -306,7 +306,7 @@ TEST(MaterialTextures, OneSetOfCoordinatesIsUsedTheOthersTexturesAreLeftOut) {
     const Loaded loaded = load(gltf);
     EXPECT_EQ(loaded.scene.materials.at(0).normal.texture, -1);
     EXPECT_EQ(loaded.scene.materials.at(0).base_colour.texture, 0);
-    EXPECT_TRUE(loaded.told.warned("uv-sets"));
+    EXPECT_TRUE(loaded.messages.warned("uv-sets"));
 }
 
 TEST(MaterialTextures, CoordinatesMayBeMissingOrTooFew) {
@@ -314,7 +314,7 @@ TEST(MaterialTextures, CoordinatesMayBeMissingOrTooFew) {
     gltf.json["meshes"][0]["primitives"][0]["attributes"].erase("TEXCOORD_0");
     const Loaded loaded = load(gltf);
     EXPECT_TRUE(loaded.scene.meshes.at(0).uv.empty());
-    EXPECT_TRUE(loaded.told.warned("no-uv"));
+    EXPECT_TRUE(loaded.messages.warned("no-uv"));
     TestGltf few = textured();
     few.json["accessors"].back()["count"] = 2;
     EXPECT_EQ(failure_of_loading(few).code, ExitCode::BadData);

@@ -44,7 +44,7 @@ TEST(Meshes, OneTriangle) {
     EXPECT_EQ(loaded.scene.materials[0].surface.metallic, 1.0f) << "glTF's default material";
     EXPECT_EQ(loaded.scene.triangle_count(), 1u);
     EXPECT_GE(loaded.scene.bytes(), 3 * sizeof(vec3) + sizeof(glm::uvec3));
-    EXPECT_TRUE(loaded.told.warnings.empty());
+    EXPECT_TRUE(loaded.messages.warnings.empty());
 }
 
 TEST(Meshes, YUpAndZUp) {
@@ -95,7 +95,7 @@ TEST(Meshes, PointsAndLinesAreSkippedWithANotice) {
         gltf.add_mesh(kTriangle)["mode"] = mode;
         const Loaded loaded = load(gltf);
         EXPECT_EQ(loaded.scene.triangle_count(), 1u);
-        EXPECT_TRUE(loaded.told.noticed("points and lines"));
+        EXPECT_TRUE(loaded.messages.noticed("points and lines"));
     }
 }
 
@@ -191,7 +191,7 @@ TEST(Meshes, NormalsWithoutDirectionAreReplaced) {
     gltf.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] =
         gltf.add_floats("VEC3", {0, 0, 0, nan, 0, 1, 0, 0, 1});
     const Loaded loaded = load(gltf);
-    EXPECT_TRUE(loaded.told.warned("normals"));
+    EXPECT_TRUE(loaded.messages.warned("normals"));
     for (const vec3& n : loaded.scene.meshes[0].normals)
         expect_near(n, {0, 0, 1});
 }
@@ -201,8 +201,8 @@ TEST(Meshes, TrianglesWithoutAreaAreCountedAndLeftOut) {
     gltf.add_mesh({0, 0, 0, 1, 0, 0, 0, 1, 0, 2, 0, 0}, {0, 1, 2, 0, 1, 3, 2, 2, 1});
     const Loaded loaded = load(gltf);
     EXPECT_EQ(loaded.scene.triangle_count(), 1u);
-    ASSERT_TRUE(loaded.told.warned("no-area"));
-    EXPECT_TRUE(contains(loaded.told.warnings[0].second, "2 triangles"));
+    ASSERT_TRUE(loaded.messages.warned("no-area"));
+    EXPECT_TRUE(contains(loaded.messages.warnings[0].second, "2 triangles"));
 }
 
 TEST(Meshes, PositionsThatAreNotFiniteAreCountedAndLeftOut) {
@@ -212,8 +212,8 @@ TEST(Meshes, PositionsThatAreNotFiniteAreCountedAndLeftOut) {
                   {0, 1, 2, 1, 2, 4, 1, 2, 3})["attributes"]["NORMAL"] =
         gltf.add_floats("VEC3", {1, 0, 0, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0, 0, 1});
     const Loaded loaded = load(gltf);
-    ASSERT_TRUE(loaded.told.warned("not-finite"));
-    EXPECT_TRUE(contains(loaded.told.warnings[0].second, "2 triangles"));
+    ASSERT_TRUE(loaded.messages.warned("not-finite"));
+    EXPECT_TRUE(contains(loaded.messages.warnings[0].second, "2 triangles"));
     const SceneMesh& mesh = loaded.scene.meshes[0];
     ASSERT_EQ(mesh.triangles.size(), 1u);
     EXPECT_EQ(mesh.positions.size(), 3u) << "nothing that is not finite is left behind";
@@ -229,19 +229,19 @@ TEST(Meshes, AMeshOfWhichNothingIsLeftIsLeftOut) {
         gltf.add("materials", {{"emissiveFactor", {1, 1, 1}}, {"name", "Lamp"}});
     const Loaded loaded = load(gltf);
     EXPECT_EQ(loaded.scene.meshes.size(), 1u);
-    EXPECT_TRUE(loaded.told.warned("empty-mesh")) << "also where it would have emitted";
+    EXPECT_TRUE(loaded.messages.warned("empty-mesh")) << "also where it would have emitted";
     TestGltf none = one_triangle();
     none.json["accessors"][0]["count"] = 0;
-    EXPECT_TRUE(load(none).told.warned("empty-mesh"));
+    EXPECT_TRUE(load(none).messages.warned("empty-mesh"));
     TestGltf collapsed = one_triangle();
     collapsed.json["nodes"][0]["scale"] = {0, 0, 0};
-    EXPECT_TRUE(load(collapsed).told.warned("empty-mesh"));
+    EXPECT_TRUE(load(collapsed).messages.warned("empty-mesh"));
     TestGltf no_primitives;
     no_primitives.add_node({{"mesh", no_primitives.add("meshes", {{"primitives", nlohmann::json::array()}})}});
     EXPECT_EQ(load(no_primitives).scene.triangle_count(), 0u);
     TestGltf no_positions = one_triangle();
     no_positions.json["meshes"][0]["primitives"][0]["attributes"] = {{"NORMAL", 0}};
-    EXPECT_TRUE(load(no_positions).told.warned("no-positions"));
+    EXPECT_TRUE(load(no_positions).messages.warned("no-positions"));
 }
 
 TEST(Meshes, CornersBeyondTheLastTriangleAreLeftOut) {
@@ -249,7 +249,7 @@ TEST(Meshes, CornersBeyondTheLastTriangleAreLeftOut) {
     gltf.add_mesh({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0});
     const Loaded loaded = load(gltf);
     EXPECT_EQ(loaded.scene.triangle_count(), 1u);
-    EXPECT_TRUE(loaded.told.warned("odd-corners"));
+    EXPECT_TRUE(loaded.messages.warned("odd-corners"));
 }
 
 TEST(Meshes, SkinsAndMorphTargetsKeepTheBaseShapeAndSaySo) {
@@ -258,9 +258,9 @@ TEST(Meshes, SkinsAndMorphTargetsKeepTheBaseShapeAndSaySo) {
     gltf.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}};
     gltf.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = 0;
     const Loaded loaded = load(gltf);
-    EXPECT_TRUE(loaded.told.warned("skin"));
-    EXPECT_TRUE(loaded.told.warned("morph"));
-    EXPECT_TRUE(loaded.told.noticed("colours of vertices"));
+    EXPECT_TRUE(loaded.messages.warned("skin"));
+    EXPECT_TRUE(loaded.messages.warned("morph"));
+    EXPECT_TRUE(loaded.messages.noticed("colours of vertices"));
     expect_near(cross_of(loaded.scene.meshes[0], 0), {0, 0, 1});
 }
 

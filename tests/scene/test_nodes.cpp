@@ -161,7 +161,7 @@ TEST(Animations, OfANodeWithAMatrixAreLeftOutWithAWarning) {
     gltf.json["nodes"][0]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     animate(gltf, "translation", "LINEAR", {0, 1}, {0, 0, 0, 0, 0, 2});
     const Loaded loaded = load(gltf, 1.0);
-    EXPECT_TRUE(loaded.told.warned("animated-matrix"));
+    EXPECT_TRUE(loaded.messages.warned("animated-matrix"));
     expect_near(loaded.scene.meshes.at(0).positions.at(1), {1, 0, 0});
 }
 

@@ -30,7 +30,7 @@ TEST(QuickShapes, AQuadIsTwoTrianglesThatFaceOneWay) {
     EXPECT_EQ(material.surface.base_colour, Rgb(0.25f));
     EXPECT_EQ(material.surface.specular, 0.0f);
     EXPECT_FALSE(material.double_sided);
-    EXPECT_TRUE(loaded.told.warnings.empty());
+    EXPECT_TRUE(loaded.messages.warnings.empty());
 }
 
 TEST(QuickShapes, AQuadFarFromTheWorldsOriginKeepsItsDigits) {
@@ -59,7 +59,7 @@ TEST(QuickShapes, AQuadThatIsNotFlatIsKeptWithAWarning) {
     settings.quads[0].corners[3].z = 0.2;
     const Loaded loaded = load_settings(settings);
     EXPECT_EQ(loaded.scene.triangle_count(), 2u);
-    EXPECT_TRUE(loaded.told.warned("not-flat"));
+    EXPECT_TRUE(loaded.messages.warned("not-flat"));
 }
 
 TEST(QuickShapes, AQuadWithoutAreaIsLeftOutWithAWarning) {
@@ -71,8 +71,8 @@ TEST(QuickShapes, AQuadWithoutAreaIsLeftOutWithAWarning) {
         settings.lights[0].kind = LightKind::Quad;
         const Loaded loaded = load_settings(settings);
         EXPECT_TRUE(loaded.scene.meshes.empty());
-        EXPECT_EQ(loaded.told.warnings.size(), 2u);
-        EXPECT_TRUE(loaded.told.warned("no-area"));
+        EXPECT_EQ(loaded.messages.warnings.size(), 2u);
+        EXPECT_TRUE(loaded.messages.warned("no-area"));
     }
 }
 

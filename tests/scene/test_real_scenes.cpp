@@ -22,7 +22,7 @@ protected:
         if (data == nullptr || !std::filesystem::exists(file))
             GTEST_SKIP() << "set BRISANCE_DATA to a folder with scenes/" << name << " in it";
         loaded_ = load_file(file);
-        EXPECT_TRUE(loaded_.told.warnings.empty()) << loaded_.told.warnings.front().second;
+        EXPECT_TRUE(loaded_.messages.warnings.empty()) << loaded_.messages.warnings.front().second;
         EXPECT_EQ(loaded_.scene.triangle_count(), triangles);
         ASSERT_EQ(loaded_.scene.cameras.size(), 1u);
         const SceneCamera& camera = loaded_.scene.cameras.front();

@@ -1,4 +1,5 @@
-// Files that cannot be used say so in one line, whatever they claim; and files that can, wherever their parts are.
+// Files that cannot be used are rejected with one line, whatever their headers claim. Files that can be used load,
+// wherever their parts are.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -177,8 +178,8 @@ TEST(UnreadableScenes, OptionalExtensionsThatAreNotKnownCostOneNotice) {
     TestGltf gltf = one_triangle();
     gltf.json["extensionsUsed"] = {"KHR_materials_ior", "KHR_materials_sheen", "EXT_other"};
     const Loaded loaded = load(gltf);
-    ASSERT_EQ(loaded.told.notices.size(), 1u);
-    EXPECT_TRUE(contains(loaded.told.notices[0], "EXT_other, KHR_materials_sheen"));
+    ASSERT_EQ(loaded.messages.notices.size(), 1u);
+    EXPECT_TRUE(contains(loaded.messages.notices[0], "EXT_other, KHR_materials_sheen"));
 }
 
 TEST(UnreadableScenes, AMissingBufferIsNamed) {
@@ -301,12 +302,12 @@ TEST(UnreadableScenes, MoreThanAnyMemoryHoldsIsToldWithoutALimitToo) {
 }
 
 TEST(UnreadableScenes, AFileWithNothingInItCostsAWarning) {
-    EXPECT_TRUE(load(TestGltf()).told.warned("empty-file"));
+    EXPECT_TRUE(load(TestGltf()).messages.warned("empty-file"));
     TestGltf circle = one_triangle();
     circle.json["nodes"][0]["children"] = {0};
     circle.json.erase("scenes");
     circle.json.erase("scene");
-    EXPECT_TRUE(load(circle).told.warned("empty-file")) << "nodes without a root";
+    EXPECT_TRUE(load(circle).messages.warned("empty-file")) << "nodes without a root";
 }
 
 TEST(UnreadableScenes, ABufferLargerThanTheMemoryIsNotRead) {
@@ -325,7 +326,7 @@ TEST(UnreadableScenes, PartsThatAreNotGltfAreLeftOutWithAWarning) {
     gltf.json["meshes"][0]["primitives"].push_back(json::object());  // no attributes
     const Loaded loaded = load(gltf);
     EXPECT_EQ(loaded.scene.triangle_count(), 1u);
-    EXPECT_TRUE(loaded.told.warned("gltf-part"));
+    EXPECT_TRUE(loaded.messages.warned("gltf-part"));
 }
 
 // Something of everything.
@@ -339,8 +340,8 @@ TestGltf rich() {
     gltf.add("textures", {{"source", 0}});
     primitive["material"] = gltf.add("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
     const int times = gltf.add_floats("SCALAR", {0, 1});
-    const int places = gltf.add_floats("VEC3", {0, 0, 0, 1, 1, 1});
-    gltf.add("animations", {{"samplers", {{{"input", times}, {"output", places}}}},
+    const int positions = gltf.add_floats("VEC3", {0, 0, 0, 1, 1, 1});
+    gltf.add("animations", {{"samplers", {{{"input", times}, {"output", positions}}}},
                             {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "scale"}}}}}}});
     gltf.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}, {"aspectRatio", 1}}}});
     gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}, {"spot", {{"innerConeAngle", 0}}}}};

@@ -1,4 +1,4 @@
-// A light's map says how much of it is left, in every direction and at every distance it is asked at.
+// The transmittance in a light's map, in every direction and at every distance.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What a shot's text is answered with.
+// Shots parsed from text, and the error messages.
 #pragma once
 
 #include <string>
@@ -19,7 +19,7 @@ inline Shot with(const std::vector<std::string>& overrides) {
 }
 
 // The message of the Usage error; "" without error, "another error: ..." with an error of other kind.
-inline std::string complaint(const std::string& text, const ShotOptions& options = {}) {
+inline std::string error_message(const std::string& text, const ShotOptions& options = {}) {
     try {
         parsed(text, options);
     } catch (const Error& error) {
@@ -28,8 +28,8 @@ inline std::string complaint(const std::string& text, const ShotOptions& options
     return "";
 }
 
-inline std::string complaint_about(const std::vector<std::string>& overrides) {
-    return complaint(R"({"volume": {"file": "a.vdb"}})", {"", overrides});
+inline std::string message_of_overrides(const std::vector<std::string>& overrides) {
+    return error_message(R"({"volume": {"file": "a.vdb"}})", {"", overrides});
 }
 
 }  // namespace brisance::testing

@@ -14,7 +14,7 @@
 namespace brisance {
 namespace {
 
-using testing::complaint_about;
+using testing::message_of_overrides;
 using testing::with;
 
 TEST(Keys, HaveDistinctNamesKnownSectionsAndHelp) {
@@ -50,17 +50,17 @@ TEST(Keys, RefuseEveryOtherTypeAndLeaveTheShotAlone) {
 }
 
 TEST(Keys, TellWhatWasGivenAndWhatIsExpected) {
-    EXPECT_EQ(complaint_about({"smoke.albedo=1.5"}),
+    EXPECT_EQ(message_of_overrides({"smoke.albedo=1.5"}),
               "--set smoke.albedo=1.5: smoke.albedo: expected a number in [0, 1] or three of them [r, g, b], got 1.5 "
               "(a number)");
-    EXPECT_EQ(complaint_about({"smoke.mean_cosine=1"}),
+    EXPECT_EQ(message_of_overrides({"smoke.mean_cosine=1"}),
               "--set smoke.mean_cosine=1: smoke.mean_cosine: expected a number in (-1, 1), got 1 (a number)");
-    EXPECT_EQ(complaint_about({"lighting.shadows=soft"}),
+    EXPECT_EQ(message_of_overrides({"lighting.shadows=soft"}),
               "--set lighting.shadows=soft: lighting.shadows: expected one of \"maps\", \"exact\", \"none\", got "
               "\"soft\" (text)");
-    EXPECT_EQ(complaint_about({"output.png=1"}),
+    EXPECT_EQ(message_of_overrides({"output.png=1"}),
               "--set output.png=1: output.png: expected true or false, got 1 (a number)");
-    EXPECT_EQ(complaint_about({"lighting.levels=many"}),
+    EXPECT_EQ(message_of_overrides({"lighting.levels=many"}),
               "--set lighting.levels=many: lighting.levels: expected \"auto\" or a whole number in [1, 24], got "
               "\"many\" (text)");
 }
@@ -107,7 +107,7 @@ TEST(Keys, ValuesOutOfBoundsAreRefused) {
         "colour_role=smoke",
     };
     for (const std::string& setting : wrong)
-        EXPECT_NE(complaint_about({setting}), "") << setting;
+        EXPECT_NE(message_of_overrides({setting}), "") << setting;
 }
 
 TEST(Keys, ValuesAtTheBoundsAreAccepted) {
@@ -132,7 +132,7 @@ TEST(Keys, ValuesAtTheBoundsAreAccepted) {
         "$schema=x.json",
     };
     for (const std::string& setting : right)
-        EXPECT_EQ(complaint_about({setting}), "") << setting;
+        EXPECT_EQ(message_of_overrides({setting}), "") << setting;
 }
 
 // Nobody has to guess what an old key has become.
@@ -147,16 +147,16 @@ TEST(Keys, OldNamesAreErrorsThatNameTheNew) {
         {"scattering.method=particles", "is now called \"volumetric_photons\""},
         {"lighting.gather=cache", "lighting.gather is no longer there"}};
     for (const auto& [setting, message] : renamed)
-        EXPECT_NE(complaint_about({setting}).find(message), std::string::npos) << complaint_about({setting});
+        EXPECT_NE(message_of_overrides({setting}).find(message), std::string::npos) << message_of_overrides({setting});
 }
 
 // Where the error says to go there is something to find.
 TEST(Keys, NewNamesOfOldKeysAreKnown) {
     for (const Key& key : shot_keys())
         EXPECT_FALSE(renamed_key(key.path)) << key.path;
-    EXPECT_EQ(complaint_about({"volumetric_vpls.paths=9", "volumetric_photons.neighbours=9",
-                               "ray_lights.radius_reduction=0.5", "virtual_lights.path_extension=false",
-                               "scattering.method=volumetric_vpls"}),
+    EXPECT_EQ(message_of_overrides({"volumetric_vpls.paths=9", "volumetric_photons.neighbours=9",
+                                    "ray_lights.radius_reduction=0.5", "virtual_lights.path_extension=false",
+                                    "scattering.method=volumetric_vpls"}),
               "");
 }
 

@@ -1,4 +1,4 @@
-// Reading a shot: layers, places in the file, and complaints that say what to do.
+// Reading a shot: layers, positions in the file, and error messages that say what to do.
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@
 namespace brisance {
 namespace {
 
-using testing::complaint;
-using testing::complaint_about;
+using testing::error_message;
+using testing::message_of_overrides;
 using testing::parsed;
 using testing::with;
 
@@ -143,60 +143,60 @@ TEST(ReadShot, OverridesMayBeWholeSectionsOrPlainText) {
 }
 
 TEST(ReadShot, UnknownKeysNameTheNearest) {
-    EXPECT_EQ(complaint("{\"volume\": {\"file\": \"a.vdb\"},\n \"smoke\": {\n  \"albdo\": 0.9}}"),
+    EXPECT_EQ(error_message("{\"volume\": {\"file\": \"a.vdb\"},\n \"smoke\": {\n  \"albdo\": 0.9}}"),
               "a.json:3: unknown key smoke.albdo; did you mean smoke.albedo?");
-    EXPECT_EQ(complaint(R"({"colour_rôle": "albedo"})"),
+    EXPECT_EQ(error_message(R"({"colour_rôle": "albedo"})"),
               "a.json:1: unknown key colour_rôle; did you mean colour_role?");
-    EXPECT_EQ(complaint_about({"albedo=1"}), "--set albedo=1: unknown key albedo; did you mean smoke.albedo?");
-    EXPECT_EQ(complaint_about({"lighting.bounces=1"}),
+    EXPECT_EQ(message_of_overrides({"albedo=1"}), "--set albedo=1: unknown key albedo; did you mean smoke.albedo?");
+    EXPECT_EQ(message_of_overrides({"lighting.bounces=1"}),
               "--set lighting.bounces=1: unknown key lighting.bounces; did you mean scattering.bounces?");
-    EXPECT_EQ(complaint_about({"smoek.albedo=1"}),
+    EXPECT_EQ(message_of_overrides({"smoek.albedo=1"}),
               "--set smoek.albedo=1: unknown key smoek.albedo; did you mean smoke.albedo?");
-    EXPECT_EQ(complaint_about({"ligting={}"}), "--set ligting={}: unknown key ligting; did you mean lighting?");
-    EXPECT_NE(complaint_about({"smoke.albedo.r=1"}), "");
+    EXPECT_EQ(message_of_overrides({"ligting={}"}), "--set ligting={}: unknown key ligting; did you mean lighting?");
+    EXPECT_NE(message_of_overrides({"smoke.albedo.r=1"}), "");
 }
 
 TEST(ReadShot, MistakesInTheTextNameTheLine) {
-    EXPECT_EQ(complaint("{\n \"smoke\": {\"albedo\": 1,\n\n \"albedo\": 0}}"),
+    EXPECT_EQ(error_message("{\n \"smoke\": {\"albedo\": 1,\n\n \"albedo\": 0}}"),
               "a.json:4: smoke.albedo is given twice; it was given first on line 2");
-    EXPECT_TRUE(complaint("{\n\"name\": \"a\",\n}").starts_with("a.json:3: syntax error"));
-    EXPECT_TRUE(complaint("{\n\"name\" \"a\"}").starts_with("a.json:2: syntax error"));
-    EXPECT_TRUE(complaint("").starts_with("a.json:1: syntax error"));
-    EXPECT_TRUE(complaint("{\"name\": \"\xff\"}").starts_with("a.json:1: "));
-    EXPECT_EQ(complaint("[]"), "a.json: a shot: expected an object in braces, got [] (a list)");
-    EXPECT_EQ(complaint("{\n\"smoke\": 3}"), "a.json:2: smoke: expected an object in braces, got 3 (a number)");
-    EXPECT_NE(complaint_about({"nonsense"}), "");
-    EXPECT_NE(complaint_about({"=3"}), "");
+    EXPECT_TRUE(error_message("{\n\"name\": \"a\",\n}").starts_with("a.json:3: syntax error"));
+    EXPECT_TRUE(error_message("{\n\"name\" \"a\"}").starts_with("a.json:2: syntax error"));
+    EXPECT_TRUE(error_message("").starts_with("a.json:1: syntax error"));
+    EXPECT_TRUE(error_message("{\"name\": \"\xff\"}").starts_with("a.json:1: "));
+    EXPECT_EQ(error_message("[]"), "a.json: a shot: expected an object in braces, got [] (a list)");
+    EXPECT_EQ(error_message("{\n\"smoke\": 3}"), "a.json:2: smoke: expected an object in braces, got 3 (a number)");
+    EXPECT_NE(message_of_overrides({"nonsense"}), "");
+    EXPECT_NE(message_of_overrides({"=3"}), "");
 }
 
 TEST(ReadShot, ContradictionsAreFound) {
-    EXPECT_NE(complaint_about({"camera.eye=[1,2,3]"}), "");
-    EXPECT_NE(complaint_about({"camera.target=[1,2,3]"}), "");
-    EXPECT_NE(complaint_about({"camera.eye=[1,2,3]", "camera.target=[1,2,3]"}), "");
-    EXPECT_NE(complaint_about({"camera.eye=[0,0,9]", "camera.target=[0,0,0]"}), "");  // along up
-    EXPECT_EQ(complaint_about({"camera.eye=[0,0,9]", "camera.target=[0,0,0]", "camera.up=[0,1,0]"}), "");
-    EXPECT_NE(complaint_about({"camera.up=[0,0,0]"}), "");
+    EXPECT_NE(message_of_overrides({"camera.eye=[1,2,3]"}), "");
+    EXPECT_NE(message_of_overrides({"camera.target=[1,2,3]"}), "");
+    EXPECT_NE(message_of_overrides({"camera.eye=[1,2,3]", "camera.target=[1,2,3]"}), "");
+    EXPECT_NE(message_of_overrides({"camera.eye=[0,0,9]", "camera.target=[0,0,0]"}), "");  // along up
+    EXPECT_EQ(message_of_overrides({"camera.eye=[0,0,9]", "camera.target=[0,0,0]", "camera.up=[0,1,0]"}), "");
+    EXPECT_NE(message_of_overrides({"camera.up=[0,0,0]"}), "");
     const std::string rigid = "camera.world_from_camera=[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]";
-    EXPECT_EQ(complaint_about({rigid}), "");
-    EXPECT_NE(complaint_about({rigid, "camera.eye=[1,0,0]", "camera.target=[0,0,0]"}), "");
-    EXPECT_NE(complaint_about({rigid, "camera.up=[0,1,0]"}), "");
+    EXPECT_EQ(message_of_overrides({rigid}), "");
+    EXPECT_NE(message_of_overrides({rigid, "camera.eye=[1,0,0]", "camera.target=[0,0,0]"}), "");
+    EXPECT_NE(message_of_overrides({rigid, "camera.up=[0,1,0]"}), "");
     for (const char* matrix : {"2,0,0,0, 0,2,0,0, 0,0,2,0, 0,0,0,1",   // scaled
                                "-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1",  // mirrored
                                "0,0,0,0, 0,0,0,0, 0,0,0,0, 0,0,0,1",   // singular
                                "1,0,0,0, 0,1,0,0, 0,0,1,0, 4,5,6,1"})  // column after column
-        EXPECT_NE(complaint_about({"camera.world_from_camera=[" + std::string(matrix) + "]"}), "") << matrix;
-    EXPECT_NE(complaint_about({"fire.temperature_in=[1,1]"}), "");
-    EXPECT_NE(complaint_about({"fire.modulate_by_flame=true"}), "");
-    EXPECT_EQ(complaint_about({"fire.modulate_by_flame=true", "fire.model=blackbody"}), "");
+        EXPECT_NE(message_of_overrides({"camera.world_from_camera=[" + std::string(matrix) + "]"}), "") << matrix;
+    EXPECT_NE(message_of_overrides({"fire.temperature_in=[1,1]"}), "");
+    EXPECT_NE(message_of_overrides({"fire.modulate_by_flame=true"}), "");
+    EXPECT_EQ(message_of_overrides({"fire.modulate_by_flame=true", "fire.model=blackbody"}), "");
 }
 
 TEST(ReadShot, RendersWithoutEndAreFound) {
     EXPECT_EQ(
-        complaint_about({"method=path", "tracing.samples=none"}),
+        message_of_overrides({"method=path", "tracing.samples=none"}),
         "--set tracing.samples=none: tracing.samples: is none: the render would never end; give tracing.seconds or "
         "tracing.error");
     for (const char* end : {"tracing.samples=2", "tracing.seconds=1", "tracing.error=0.5", "method=lighting_grid"})
-        EXPECT_EQ(complaint_about({"method=path", "tracing.samples=none", end}), "") << end;
+        EXPECT_EQ(message_of_overrides({"method=path", "tracing.samples=none", end}), "") << end;
 }
 
 TEST(ReadShot, ScenesAreListsOfThings) {
@@ -225,48 +225,50 @@ TEST(ReadShot, ScenesAreListsOfThings) {
 }
 
 // A long list is no help unless the part that is wrong is named.
-TEST(ReadShot, MistakesInListsNameTheirPlace) {
-    const auto told = [](const std::string& scene) { return complaint(R"({"scene": )" + scene + "}"); };
-    EXPECT_EQ(told(R"({"spheres": [{"centre": [0, 0, 0], "radius": 1}, {"centre": [0, 0, 0], "radius": -2}]})"),
+TEST(ReadShot, MistakesInListsNameTheirPosition) {
+    const auto message_for = [](const std::string& scene) { return error_message(R"({"scene": )" + scene + "}"); };
+    EXPECT_EQ(message_for(R"({"spheres": [{"centre": [0, 0, 0], "radius": 1}, {"centre": [0, 0, 0], "radius": -2}]})"),
               "a.json:1: scene.spheres[1].radius: expected a number above 0, got -2 (a number)");
-    EXPECT_EQ(told(R"({"files": [{"file": "a.glb", "upp": "z"}]})"),
+    EXPECT_EQ(message_for(R"({"files": [{"file": "a.glb", "upp": "z"}]})"),
               "a.json:1: scene.files[0]: expected keys it knows, such as \"up\", got \"upp\" (text)");
-    EXPECT_EQ(told(R"({"files": [{"up": "z"}]})"),
+    EXPECT_EQ(message_for(R"({"files": [{"up": "z"}]})"),
               "a.json:1: scene.files[0]: expected \"file\", which is missing: text in quotes that is not empty, got "
               "{\"up\":\"z\"} (an object)");
-    EXPECT_EQ(told(R"({"lights": [{"kind": "lamp"}]})"),
+    EXPECT_EQ(message_for(R"({"lights": [{"kind": "lamp"}]})"),
               "a.json:1: scene.lights[0].kind: expected one of \"point\", \"spot\", \"sun\", \"quad\", "
               "\"environment\", got \"lamp\" (text)");
-    EXPECT_EQ(told(R"({"quads": {}})"),
+    EXPECT_EQ(message_for(R"({"quads": {}})"),
               "a.json:1: scene.quads: expected a list of quads [{\"corners\": ...}], got {} (an object)");
 }
 
 TEST(ReadShot, VolumesThatCannotBeAreFound) {
-    const auto told = [](const std::string& v) { return complaint(R"({"volumes": [)" + v + "]}"); };
-    EXPECT_EQ(told("{}"), "a.json:1: volumes: volume [0] needs either a file or a box");
-    EXPECT_EQ(told(R"({"file": "a.vdb", "box": {"low": [0, 0, 0], "high": [1, 1, 1]}})"),
+    const auto message_for = [](const std::string& v) { return error_message(R"({"volumes": [)" + v + "]}"); };
+    EXPECT_EQ(message_for("{}"), "a.json:1: volumes: volume [0] needs either a file or a box");
+    EXPECT_EQ(message_for(R"({"file": "a.vdb", "box": {"low": [0, 0, 0], "high": [1, 1, 1]}})"),
               "a.json:1: volumes: volume [0] needs either a file or a box");
-    EXPECT_EQ(told(R"({"box": {"low": [0, 0, 0], "high": [1, 0, 1]}})"),
+    EXPECT_EQ(message_for(R"({"box": {"low": [0, 0, 0], "high": [1, 0, 1]}})"),
               "a.json:1: volumes: volume [0] is a box whose low is not below its high on every axis");
-    EXPECT_EQ(told(R"({"box": {"low": [0, 0, 0], "high": [1, 1, 1]}, "fire_model": "flame"})"),
-              "a.json:1: volumes: volume [0] is a box of haze, which does not burn");
-    EXPECT_EQ(told(R"({"file": "a.vdb", "albdo": 1})"),
+    EXPECT_EQ(message_for(R"({"box": {"low": [0, 0, 0], "high": [1, 1, 1]}, "fire_model": "flame"})"),
+              "a.json:1: volumes: volume [0] is a homogeneous box, which cannot emit; remove its fire_model");
+    EXPECT_EQ(message_for(R"({"file": "a.vdb", "albdo": 1})"),
               "a.json:1: volumes[0]: expected keys it knows, such as \"albedo\", got \"albdo\" (text)");
 }
 
 TEST(ReadShot, LightsThatCannotBeAreFound) {
-    const auto told = [](const std::string& light) { return complaint(R"({"scene": {"lights": [)" + light + "]}}"); };
-    EXPECT_EQ(told(R"({"kind": "sun", "direction": [0, 0, 0]})"),
+    const auto message_for = [](const std::string& light) {
+        return error_message(R"({"scene": {"lights": [)" + light + "]}}");
+    };
+    EXPECT_EQ(message_for(R"({"kind": "sun", "direction": [0, 0, 0]})"),
               "a.json:1: scene.lights: light [0] has a direction of no length");
-    EXPECT_EQ(told(R"({"kind": "spot", "inner_degrees": 50, "outer_degrees": 40})"),
+    EXPECT_EQ(message_for(R"({"kind": "spot", "inner_degrees": 50, "outer_degrees": 40})"),
               "a.json:1: scene.lights: light [0] has inner_degrees above outer_degrees");
-    EXPECT_EQ(told(R"({"kind": "environment"}, {"kind": "environment"})"),
+    EXPECT_EQ(message_for(R"({"kind": "environment"}, {"kind": "environment"})"),
               "a.json:1: scene.lights: light [1] is a second environment; there can be only one");
 }
 
 TEST(ReadShot, NothingToRenderIsFound) {
-    EXPECT_EQ(complaint("{}"), "a.json: volume.file is missing, and so is a scene: which file to render");
-    EXPECT_EQ(complaint(R"({"scene": {"lights": [{"kind": "environment"}]}})"), "");
+    EXPECT_EQ(error_message("{}"), "a.json: volume.file is missing, and so is a scene: which file to render");
+    EXPECT_EQ(error_message(R"({"scene": {"lights": [{"kind": "environment"}]}})"), "");
 }
 
 TEST(ReadShot, FilesAreTakenByNameAndFolder) {
@@ -286,7 +288,8 @@ TEST(ReadShot, FilesAreTakenByNameAndFolder) {
 }
 
 TEST(ReadShot, UnknownPresetsNameTheKnown) {
-    EXPECT_NE(complaint(R"({"volume": {"file": "a.vdb"}})", {"drfat", {}}).find("draft and final"), std::string::npos);
+    EXPECT_NE(error_message(R"({"volume": {"file": "a.vdb"}})", {"drfat", {}}).find("draft and final"),
+              std::string::npos);
 }
 
 TEST(NearestKey, CountsTheStrokesBetweenTexts) {

@@ -1,4 +1,4 @@
-// Which shots show the same truth, however it is computed.
+// Shots that have the same true picture, however it is computed.
 
 #include "shot/scene_differences.h"
 

@@ -1,4 +1,4 @@
-// What is published of shots agrees with what is read: the schema, the shots that come with the program, and shots
+// Everything published about shots agrees with the reader: the schema, the shots that come with the program, and shots
 // written back.
 
 #include <gtest/gtest.h>
@@ -34,27 +34,27 @@ TEST(Schema, TheCommittedFileIsTheOneThatIsPrinted) {
 TEST(Schema, KnowsEveryKeyAndForbidsOthers) {
     const Json schema = Json::parse(shot_schema());
     for (const Key& key : shot_keys()) {
-        const Json* place = &schema;
+        const Json* object = &schema;
         std::size_t begin = 0;
         while (begin != std::string::npos) {
-            EXPECT_EQ((*place)["additionalProperties"], false) << key.path;
+            EXPECT_EQ((*object)["additionalProperties"], false) << key.path;
             const std::size_t point = key.path.find('.', begin);
             const std::string part = key.path.substr(begin, point == std::string::npos ? point : point - begin);
-            ASSERT_TRUE((*place)["properties"].contains(part)) << key.path;
-            place = &(*place)["properties"][part];
+            ASSERT_TRUE((*object)["properties"].contains(part)) << key.path;
+            object = &(*object)["properties"][part];
             begin = point == std::string::npos ? point : point + 1;
         }
-        EXPECT_EQ((*place)["description"], key.help);
+        EXPECT_EQ((*object)["description"], key.help);
     }
 }
 
 TEST(Schema, BoundsAreThoseOfTheReader) {
     const Json schema = Json::parse(shot_schema());
     const Json& width = schema["properties"]["camera"]["properties"]["width"];
-    EXPECT_EQ(testing::complaint_about({"camera.width=" + width["maximum"].dump()}), "");
-    EXPECT_NE(testing::complaint_about({"camera.width=" + std::to_string(width["maximum"].get<int>() + 1)}), "");
+    EXPECT_EQ(testing::message_of_overrides({"camera.width=" + width["maximum"].dump()}), "");
+    EXPECT_NE(testing::message_of_overrides({"camera.width=" + std::to_string(width["maximum"].get<int>() + 1)}), "");
     const Json& fov = schema["properties"]["camera"]["properties"]["vertical_fov_degrees"];
-    EXPECT_NE(testing::complaint_about({"camera.vertical_fov_degrees=" + fov["exclusiveMaximum"].dump()}), "");
+    EXPECT_NE(testing::message_of_overrides({"camera.vertical_fov_degrees=" + fov["exclusiveMaximum"].dump()}), "");
 }
 
 TEST(Schema, ShotsThatComeWithTheProgramAreRead) {

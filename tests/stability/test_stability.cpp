@@ -69,7 +69,7 @@ TEST(StabilityCases, AreRenderedByEveryMethodThatTheShotKnows) {
     std::set<std::string> names;
     for (const Method& method : all_methods())
         names.insert(method.name());
-    // The lighting grid and the path tracer besides.
+    // Two more: the lighting grid and the path tracer.
     EXPECT_EQ(names.size(), 2u + scattering_methods().size());
 }
 

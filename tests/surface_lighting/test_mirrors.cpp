@@ -1,4 +1,4 @@
-// Mirrors, glass and glossy surfaces: what they show of smoke and surfaces.
+// Smoke and surfaces seen in mirrors, glass and glossy surfaces.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Which surface samples of a pixel share a receiver.
+// Sharing of receivers by the surface samples of a pixel.
 #include "surface_lighting/shared_receivers.h"
 
 #include <gtest/gtest.h>
@@ -30,13 +30,13 @@ TEST(SharedReceivers, LieInTheMiddleOfTheirSamples) {
     }
 }
 
-TEST(SharedReceivers, OneSampleKeepsItsPlace) {
+TEST(SharedReceivers, OneSampleKeepsItsPosition) {
     const Medium medium = ball();
     SharedReceivers shared(medium);
-    const vec3 place(0.3f, -0.7f, -3.1f), normal = glm::normalize(vec3(0.3f, 0.2f, 0.9f));
-    shared.add(1, place, normal);
+    const vec3 position(0.3f, -0.7f, -3.1f), normal = glm::normalize(vec3(0.3f, 0.2f, 0.9f));
+    shared.add(1, position, normal);
     ASSERT_EQ(shared.receivers().size(), 1u);
-    EXPECT_EQ(shared.of_sample(0).local, place);
+    EXPECT_EQ(shared.of_sample(0).local, position);
     EXPECT_EQ(shared.of_sample(0).normal, normal);
 }
 

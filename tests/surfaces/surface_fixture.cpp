@@ -20,7 +20,8 @@ SurfaceMaterial made_of(float metallic, float transmission, float ior = 1.5f) {
     return m;
 }
 
-// One way to choose directions, and its density [1/sr], 0 on the side that it does not aim at. All with wo above.
+// A sampling technique for directions and its density [1/sr], which is 0 on the side that it does not sample. wo is
+// above.
 struct Technique {
     std::function<dvec3(double u, double v)> draw;
     std::function<double(const dvec3& wi)> density;

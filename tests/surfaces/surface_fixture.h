@@ -1,4 +1,4 @@
-// Surfaces to test, and integrals over their directions that know nothing of how they sample.
+// Surfaces to test, and integrals over their directions that do not use their sampling.
 #pragma once
 
 #include <functional>
@@ -28,8 +28,8 @@ dvec3 direction(double cosine, double azimuth = 0.3);
 
 double alpha_of(const SurfaceMaterial& material);
 
-// Integral of f over the sphere of directions, for f peaked as surfaces of that material seen from wo are. By Fibonacci
-// lattices of that many points or more through each of five ways to choose directions, weighted by the balance
+// Integral of f over the sphere of directions, for f with the peaks of that material seen from wo. Uses Fibonacci
+// lattices of at least that many points in each of five sampling techniques, weighted by the balance
 // heuristic (Veach 1997, section 9.2): error below 2e-4 for directional albedos at the default.
 Rgb integrate_sphere(const SurfaceMaterial& material, const dvec3& wo, const std::function<Rgb(const dvec3&)>& f,
                      int points = 4000);

@@ -1,4 +1,4 @@
-// What holds for every surface: reciprocity, finite numbers, black where nothing can come from.
+// Properties of every surface: reciprocity, finite values, and black where no light can come from.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -58,7 +58,7 @@ TEST(Bsdf, ImportanceIsTheAdjoint) {
                 1.0 / (1.5 * 1.5), 1e-6);
 }
 
-// Whoever lights base and other lobes apart lights the whole surface; and the base's share of power is its integral.
+// The base and the other lobes, lit separately, add up to the whole surface. The base's share of power is its integral.
 TEST(Bsdf, LobesAddUpToTheWhole) {
     Rng rng(Stream::Path, 7);
     for (NamedSurface surface : coloured_surfaces())

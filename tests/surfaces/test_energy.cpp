@@ -1,5 +1,5 @@
-// The white furnace: what conserves energy returns all of it, whatever the roughness, angle and side; nothing returns
-// more than it got.
+// The white furnace: lossless surfaces return all energy, whatever the roughness, angle and side. No surface returns
+// more than it receives.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ TEST(Energy, WhiteFurnace) {
     }
 }
 
-// To the furnace's own tolerance.
+// Within the tolerance of the furnace.
 TEST(Energy, NothingReturnsMoreThanItGot) {
     for (NamedSurface surface : coloured_surfaces())
         for (const float roughness : {0.0f, 0.05f, 0.3f, 1.0f})

@@ -1,4 +1,4 @@
-// Tables stand for their integrals, to the error that energy_tables.h states.
+// Tables agree with their integrals within the error that energy_tables.h states.
 #include <gtest/gtest.h>
 
 #include <cmath>

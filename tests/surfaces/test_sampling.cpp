@@ -1,5 +1,5 @@
-// Directions follow the density that pdf() states, weights are values over it, and the density integrates to what is
-// drawn.
+// Sampled directions follow pdf(), weights are values divided by it, and it integrates to the share of samples that
+// are not empty.
 #include <gtest/gtest.h>
 
 #include <algorithm>

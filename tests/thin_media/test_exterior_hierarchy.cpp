@@ -1,5 +1,5 @@
-// What surfaces outside of the smoke receive from the lighting grid, against the sum over all its voxels with marched
-// transmittance.
+// The light that surfaces outside of the smoke receive from the lighting grid, against the sum over all its voxels with
+// marched transmittance.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -46,8 +46,8 @@ double brute_force(const Medium& medium, const PointDepths& depths, const std::v
         std::fill(to.begin() + n, to.end(), to[0]);
         depths.between(at.local, to.data(), depth.data());
         for (int k = 0; k < n; ++k) {
-            const vec3 way = to[k] - at.local;
-            const double square = glm::dot(way, way), cosine = glm::dot(way, at.normal) / std::sqrt(square);
+            const vec3 offset = to[k] - at.local;
+            const double square = glm::dot(offset, offset), cosine = glm::dot(offset, at.normal) / std::sqrt(square);
             sum += std::max(0.0, cosine) * light[k] * std::exp(-double(depth[k])) / square;
         }
         n = 0;
@@ -66,15 +66,15 @@ double brute_force(const Medium& medium, const PointDepths& depths, const std::v
     return sum / std::numbers::pi;
 }
 
-// Places on a sphere around the smoke that face it.
+// Points on a sphere around the smoke that face it.
 std::vector<SurfaceReceiver> around(const vec3& middle, float radius, int count) {
-    std::vector<SurfaceReceiver> places;
+    std::vector<SurfaceReceiver> points;
     for (int k = 0; k < count; ++k) {
         const float z = 1.0f - (2.0f * float(k) + 1.0f) / float(count), r = std::sqrt(1.0f - z * z);
         const vec3 d(r * std::cos(2.4f * float(k)), r * std::sin(2.4f * float(k)), z);
-        places.push_back({middle + radius * d, -d, {}, {}});
+        points.push_back({middle + radius * d, -d, {}, {}});
     }
-    return places;
+    return points;
 }
 
 class OutsideLights : public ::testing::Test {
@@ -83,10 +83,10 @@ protected:
         double root_mean_square, mean;
     };
     Errors errors(float radius) {
-        std::vector<SurfaceReceiver> places = around(local_bounds(medium).middle(), radius, 64);
-        lighting.at_surfaces(places);
+        std::vector<SurfaceReceiver> points = around(local_bounds(medium).middle(), radius, 64);
+        lighting.at_surfaces(points);
         double error = 0.0, truth = 0.0, square = 0.0, sum = 0.0;
-        for (const SurfaceReceiver& p : places) {
+        for (const SurfaceReceiver& p : points) {
             const double true_value = brute_force(medium, depths, intensity, p),
                          value = luminance(p.fire[0] + p.fire[1]);
             error += (value - true_value) * (value - true_value);

@@ -1,4 +1,4 @@
-// Even haze's lights stand for all its nodes.
+// The lights of homogeneous haze represent all its nodes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -41,7 +41,7 @@ std::vector<std::uint32_t> all_bricks(const Medium& medium) {
     return bricks;
 }
 
-Receivers places() {
+Receivers points() {
     Receivers receivers;
     for (int k = 0; k < 64; ++k) {
         const auto at = [&](int salt) { return 2.6f * (noise(ivec3(k, 0, 0), salt) - 0.5f); };
@@ -53,7 +53,7 @@ Receivers places() {
 std::vector<float> fluence(const LightField& field, const GridLevel& bottom) {
     std::vector<LevelCost> costs;
     Progress silent;
-    const Receivers receivers = places();
+    const Receivers receivers = points();
     const Gathered g = gather_at_points(field, bottom, receivers, 0.0f, costs, silent);
     std::vector<float> out;
     for (std::size_t i = 0; i < receivers.size(); i += Receivers::kGroup)

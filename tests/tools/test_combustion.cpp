@@ -1,4 +1,4 @@
-// The explosion simulator: what nature and arithmetic demand of it at sizes that take a second.
+// The explosion simulator: conservation laws and numerical properties, on grids that take a second.
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/PoissonSolver.h>
@@ -167,7 +167,7 @@ TEST(Multigrid, AgreesWithConjugateGradients) {
     EXPECT_LT(worst, 1e-3f * largest);
 }
 
-// High up in clear air only the direction straight down, one of 26, meets the floor.
+// High up in clear air only the direction straight down, one of 26, hits the floor.
 TEST(Radiation, EscapesFromClearAirAndNotFromDeepSmoke) {
     Field<float> soot(ivec3(32));
     EXPECT_FLOAT_EQ(escape_fraction(soot, 0.1f, 3.0f)(8, 8, 15), 25.0f / 26.0f);

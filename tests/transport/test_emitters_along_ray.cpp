@@ -35,14 +35,14 @@ struct Spread {
     double mean = 0.0, deviation = 0.0;
 };
 
-Spread found(const DirectLight& scene, const Ray& ray, double end, int places) {
+Spread found(const DirectLight& scene, const Ray& ray, double end, int points) {
     constexpr int kTries = 4000;
     RayMedium seen;
     seen.look(scene.field(), ray, end);
     double sum = 0.0, square = 0.0;
     for (int i = 0; i < kTries; ++i) {
         Rng rng(Stream::Points, static_cast<std::uint64_t>(i));
-        const double v = emitters_along_ray(scene, seen, ray, places, rng).x;
+        const double v = emitters_along_ray(scene, seen, ray, points, rng).x;
         sum += v / kTries;
         square += v * v / kTries;
     }
@@ -56,9 +56,9 @@ double expected(const dvec3& lamp, const Ray& ray, double end, const Falloff& fa
     double sum = 0.0;
     for (int i = 0; i < kSteps; ++i) {
         const double t = (i + 0.5) / kSteps * end;
-        const dvec3 way = ray.origin + t * ray.direction - lamp;
-        const double distance = glm::length(way);
-        const dvec3 direction = way / distance;
+        const dvec3 offset = ray.origin + t * ray.direction - lamp;
+        const double distance = glm::length(offset);
+        const dvec3 direction = offset / distance;
         sum += falloff(direction) * henyey_greenstein(float(glm::dot(direction, -ray.direction)), kG) *
                std::exp(-kExtinction * (t + distance)) / (distance * distance);
     }

@@ -1,4 +1,4 @@
-// Directions toward the fire and directions of scattering: samples follow the densities that say they do.
+// Directions toward the fire and directions of scattering: samples follow their stated densities.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -70,7 +70,7 @@ const View kViews[] = {{"inside", dvec3(0.05, -0.1, 0.2), -1.0},
                        {"near", dvec3(-4.0, 3.0, 2.0), -1.0},
                        {"far", dvec3(200.0, -300.0, 150.0), 0.9996}};
 
-// The direction of a place in the unit square, by area, within a view's cone.
+// Maps a point of the unit square to a direction in a view's cone; equal areas go to equal solid angles.
 dvec3 in_cone(const View& view, double u, double v) {
     if (view.cosine == -1.0)
         return uniform_direction(u, v);
@@ -89,8 +89,8 @@ TEST(FireDirections, TheirDensityIntegratesToOne) {
     for (const bool direct : {false, true}) {
         const Fire fire(direct);
         for (const View& view : kViews) {
-            const Estimate e = estimate_to(kSharp, 1, [&](const dvec3& place, Rng&, double* out) {
-                out[0] = fire.directions.pdf({view.from, in_cone(view, place.x, place.y)}) * solid_angle(view);
+            const Estimate e = estimate_to(kSharp, 1, [&](const dvec3& u, Rng&, double* out) {
+                out[0] = fire.directions.pdf({view.from, in_cone(view, u.x, u.y)}) * solid_angle(view);
             });
             rows.expect(view.name, e.mean[0], e.error[0], 1.0, 1e-6);
         }
@@ -138,16 +138,16 @@ TEST(FireDirections, TheirInverseDensityFillsTheSphere) {
     rows.expect("inside", e.mean[0], e.error[0], 4.0 * kPi64, 1e-6);
 }
 
-// Any integral over directions may be sampled by them: here of a function that knows nothing of the fire.
+// Any integral over directions may be sampled by them: here of a function that is unrelated to the fire.
 TEST(FireDirections, MeasureWhatUniformDirectionsMeasure) {
     const Fire fire(true);
     Rows rows("some function of directions");
     const auto some = [](const dvec3& d) { return std::exp(d.x - 0.5 * d.y) + d.z * d.z; };
     for (const View& view : {kViews[0], kViews[1]}) {
-        const Estimate e = estimate_to(kSharp, 2, [&](const dvec3& place, Rng& rng, double* out) {
+        const Estimate e = estimate_to(kSharp, 2, [&](const dvec3& u, Rng& rng, double* out) {
             const dvec3 d = fire.directions.sample(view.from, rng);
             out[0] = some(d) / fire.directions.pdf({view.from, d});
-            out[1] = some(uniform_direction(place.x, place.y)) * 4.0 * kPi64;
+            out[1] = some(uniform_direction(u.x, u.y)) * 4.0 * kPi64;
         });
         rows.expect(view.name, e.mean[0], std::hypot(e.error[0], e.error[1]), e.mean[1], 0.0, 2.0 * kSharp);
     }

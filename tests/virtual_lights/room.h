@@ -31,7 +31,7 @@ struct Room {
     PixelCamera camera() const;
     VirtualLights lights(const VirtualLightSettings& settings) const;
 
-    // What virtual lights, or the path tracer, bring to the cell SS along one ray of the camera through [0, 1]^2.
+    // The radiance in the cell SS along one camera ray through [0, 1]^2, by virtual lights or the path tracer.
     Rgb by_lights(const VirtualLights& lights, double x, double y, Rng& rng) const;
     Rgb by_paths(double x, double y, Rng& rng, Cell cell = Cell::SS) const;
     // The cell MS: a collision is forced on the ray.
@@ -44,7 +44,7 @@ struct Room {
     PathTracer tracer;
 };
 
-// Smoke in a ball of 0.45 m around a place of the room, that glows with source function `glow` (or not, for 0).
+// Smoke in a ball of 0.45 m around a point of the room, which glows with source function `glow` (or not, for 0).
 Medium smoke_ball(const dvec3& centre, float density, const Rgb& albedo, float glow);
 
 // Few lights and photons, for tests that compare with each other.

@@ -26,10 +26,10 @@ using Look = std::function<Rgb(double x, double y, Rng& rng)>;
 void expect_same(const Look& ours_look, const Look& theirs_look, double allowed, double allowed_mean,
                  std::uint64_t per_batch) {
     const auto regions = [&](const Look& look) {
-        return estimate(kRegions + 1, per_batch, [&](const dvec3& place, Rng& rng, double* out) {
+        return estimate(kRegions + 1, per_batch, [&](const dvec3& u, Rng& rng, double* out) {
             std::fill(out, out + kRegions + 1, 0.0);
-            out[kRegions] = luminance(look(place.x, place.y, rng));
-            out[region_of(place.x, place.y)] = kRegions * out[kRegions];
+            out[kRegions] = luminance(look(u.x, u.y, rng));
+            out[region_of(u.x, u.y)] = kRegions * out[kRegions];
         });
     };
     const Estimate ours = regions(ours_look), theirs = regions(theirs_look);

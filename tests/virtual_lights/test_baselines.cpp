@@ -1,4 +1,4 @@
-// The kinds of virtual lights that others use: what they lose, what they keep, and that all gatherers agree.
+// Other kinds of virtual lights: the energy that they lose or conserve, and the agreement of all gatherers.
 #include <gtest/gtest.h>
 
 #include "core/error.h"
@@ -62,16 +62,15 @@ struct Mean {
 
 Mean by_lights(const Room& room, const VirtualLightSettings& settings, std::uint64_t per_batch) {
     const VirtualLights lights = room.lights(settings);
-    const Estimate e = estimate(1, per_batch, [&](const dvec3& place, Rng& rng, double* out) {
-        out[0] = luminance(room.by_lights(lights, place.x, place.y, rng));
+    const Estimate e = estimate(1, per_batch, [&](const dvec3& u, Rng& rng, double* out) {
+        out[0] = luminance(room.by_lights(lights, u.x, u.y, rng));
     });
     return {e.mean[0], e.error[0]};
 }
 
 Mean by_paths(const Room& room) {
-    const Estimate e = estimate(1, 512, [&](const dvec3& place, Rng& rng, double* out) {
-        out[0] = luminance(room.by_paths(place.x, place.y, rng));
-    });
+    const Estimate e = estimate(
+        1, 512, [&](const dvec3& u, Rng& rng, double* out) { out[0] = luminance(room.by_paths(u.x, u.y, rng)); });
     return {e.mean[0], e.error[0]};
 }
 

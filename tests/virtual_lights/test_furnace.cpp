@@ -1,4 +1,4 @@
-// Closed rooms whose light is known, and where the photons' power stays.
+// Closed rooms with a known solution, and the balance of the photons' power.
 #include <gtest/gtest.h>
 
 #include "room.h"
@@ -18,9 +18,8 @@ SceneSettings furnace(float albedo) {
 }
 
 double mean_of(const Room& room, const VirtualLights& lights, double& error) {
-    const Estimate e = estimate(1, 64, [&](const dvec3& place, Rng& rng, double* out) {
-        out[0] = room.by_lights(lights, place.x, place.y, rng).x;
-    });
+    const Estimate e = estimate(
+        1, 64, [&](const dvec3& u, Rng& rng, double* out) { out[0] = room.by_lights(lights, u.x, u.y, rng).x; });
     error = e.error[0];
     return e.mean[0];
 }
@@ -64,7 +63,7 @@ TEST(Photons, ConserveEnergy) {
     EXPECT_LT(photons.unshared_fraction(), 0.35);  // the front wall, which the camera has at its back
 }
 
-// The lights' areas make up the surface that they speak for.
+// The areas of the lights sum to the area of the surface that they cover.
 TEST(Areas, AddUpToTheSurface) {
     SceneSettings scene = furnace(0.5f);
     const Room room(scene);

@@ -10,9 +10,9 @@ namespace {
 using namespace testing;
 
 bool agrees_with_paths(const Room& room, const VirtualLights& lights) {
-    const Estimate e = estimate(2, 128, [&](const dvec3& place, Rng& rng, double* out) {
-        out[0] = room.by_lights(lights, place.x, place.y, rng).y;
-        out[1] = room.by_paths(place.x, place.y, rng).y;
+    const Estimate e = estimate(2, 128, [&](const dvec3& u, Rng& rng, double* out) {
+        out[0] = room.by_lights(lights, u.x, u.y, rng).y;
+        out[1] = room.by_paths(u.x, u.y, rng).y;
     });
     return std::abs(e.mean[0] - e.mean[1]) <= kSigmas * std::hypot(e.error[0], e.error[1]) && e.mean[0] > 0.0;
 }
@@ -71,8 +71,8 @@ TEST(NothingToDo, WhereTheCameraSeesNothing) {
     EXPECT_TRUE(agrees_with_paths(room, none));
 }
 
-// All camera paths find the same place, as a mirror's reflection of a tiny quad: here by a camera of one ray onto it.
-TEST(NothingToDo, WhereAllCandidatesAreOnePlace) {
+// All camera paths find the same point, as a mirror's reflection of a tiny quad: here by a camera of one ray onto it.
+TEST(NothingToDo, WhereAllCandidatesAreOnePoint) {
     SceneSettings scene;
     const double e = 1e-7;
     QuickQuad quad;

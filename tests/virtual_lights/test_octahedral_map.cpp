@@ -1,4 +1,4 @@
-// The square that stands for a hemisphere.
+// The octahedral map from the square to the hemisphere.
 #include "virtual_lights/octahedral_map.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// How many places a path has before virtual lights end it.
+// How many vertices a path has before virtual lights end it.
 #include <gtest/gtest.h>
 
 #include "room.h"
@@ -39,13 +39,13 @@ VirtualLightSettings settings(bool extension) {
     VirtualLightSettings s = few_lights();
     s.count = 2000;
     s.path_extension = extension;
-    // No place between lights is left out: paths would go on there.
+    // No gaps between the lights: paths would continue there.
     s.radius = LightRadius::Uniform;
     s.radius_factor = 2.5;
     return s;
 }
 
-TEST(PathLengths, WithoutExtensionEveryPathHasOnePlace) {
+TEST(PathLengths, WithoutExtensionEveryPathHasOneVertex) {
     const Room room(white_room());
     const VirtualLights lights = room.lights(settings(false));
     // Not through the middles of pixels: along diagonals they meet the room's edges, where two walls are one.
@@ -74,8 +74,8 @@ TEST(PathLengths, CountingChangesNothing) {
     for (std::uint64_t i = 0; i < 20; ++i) {
         Rng counted(Stream::Path, i), plain(Stream::Path, i);
         int vertices = 0;
-        const PathVertex place(*segment.point, ray.direction);
-        EXPECT_EQ(lights.shade(place, counted, &vertices), lights.shade(place, plain));
+        const PathVertex vertex(*segment.point, ray.direction);
+        EXPECT_EQ(lights.shade(vertex, counted, &vertices), lights.shade(vertex, plain));
     }
 }
 

@@ -1,4 +1,4 @@
-// All gatherers of the same lights have one mean, and threads change nothing.
+// All gatherers of the same lights have the same mean, for any number of threads.
 #include <gtest/gtest.h>
 
 #include "core/parallel.h"
@@ -26,8 +26,8 @@ SceneSettings glossy_room() {
 }
 
 Estimate mean_of(const Room& room, const VirtualLights& lights, std::uint64_t per_batch) {
-    return estimate(3, per_batch, [&](const dvec3& place, Rng& rng, double* out) {
-        const Rgb seen = room.by_lights(lights, place.x, place.y, rng);
+    return estimate(3, per_batch, [&](const dvec3& u, Rng& rng, double* out) {
+        const Rgb seen = room.by_lights(lights, u.x, u.y, rng);
         for (int c = 0; c < 3; ++c)
             out[c] = seen[c];
     });

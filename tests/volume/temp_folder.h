@@ -1,4 +1,4 @@
-// A folder of one test's own, gone when the test is over.
+// A temporary folder of one test.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -73,7 +73,7 @@ TEST(Mapping, TheShotsWordIsFinal) {
     const GridMapping mapping = map(grids, settings);
     EXPECT_EQ(mapping.density->name, "bob");
     EXPECT_EQ(mapping.density->reason, "named by the shot");
-    EXPECT_FALSE(mapping.flame) << "an empty name asks for no grid";
+    EXPECT_FALSE(mapping.flame) << "an empty name selects no grid";
 }
 
 TEST(Mapping, AnAbsentGridIsAnErrorThatNamesThoseThatAreThere) {

@@ -1,4 +1,4 @@
-// What is written comes back: values, places, counts.
+// What is written is read back: values, positions, counts.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// The first guess must look like something whatever the units of the file.
+// The suggested settings must give a visible picture, whatever the units of the file.
 #include <gtest/gtest.h>
 
 #include "volume/suggest.h"

@@ -1,4 +1,4 @@
-// What cannot be read says so in one line, and says what would help.
+// Files that cannot be read are rejected with one line that names a remedy.
 #include <gtest/gtest.h>
 
 #include <fstream>

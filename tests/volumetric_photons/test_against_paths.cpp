@@ -1,5 +1,5 @@
-// What particles leave along their ways and where they land is what the path tracer finds, but for the blur of a voxel
-// and of a disc: within three standard errors and that. By rays that do not come from the eye.
+// What particles deposit along their tracks and where they land agrees with the path tracer within three
+// standard errors and the blur of a voxel and of a disc. Rays do not come from the eye.
 #include <gtest/gtest.h>
 
 #include "core/parallel.h"

@@ -1,4 +1,4 @@
-// Light at points of surfaces, told by the particles that land around them.
+// Light at points of surfaces, estimated from the particles that land around them.
 #include "volumetric_photons/photon_map.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Light laid down along ways: what nodes hold of it, toward the eye and in any direction.
+// Light deposited along particle tracks: what nodes hold of it, toward the eye and in any direction.
 #include "volumetric_photons/track_length_cache.h"
 
 #include <gtest/gtest.h>
@@ -34,14 +34,14 @@ dvec3 node_at(const Medium& medium, const vec3& local) {
     return dvec3(medium.index_from_local * local) + dvec3(medium.reference_node);
 }
 
-struct Way {
+struct Track {
     Ray ray;
     Rgb power;
 };
 
-// Parallel ways all over the cube, as a sun sends them: radiance is irradiance times the phase function everywhere.
-std::vector<Way> sunlight(const dvec3& direction, double irradiance, int side_count) {
-    std::vector<Way> ways;
+// Parallel tracks all over the cube, as from a sun: radiance is irradiance times the phase function everywhere.
+std::vector<Track> sunlight(const dvec3& direction, double irradiance, int side_count) {
+    std::vector<Track> tracks;
     Rng rng(Stream::Points, 4);
     const dvec3 side = glm::normalize(glm::cross(direction, dvec3(0.3, 0.9, 0.1))), up = glm::cross(direction, side);
     constexpr double kHalf = 2.0;
@@ -50,21 +50,21 @@ std::vector<Way> sunlight(const dvec3& direction, double irradiance, int side_co
     for (int i = 0; i < side_count * side_count; ++i) {
         const double x = (i / side_count + rng.next_double()) * step - kHalf;
         const double y = (i % side_count + rng.next_double()) * step - kHalf;
-        ways.push_back({{x * side + y * up - 4.0 * direction, direction}, power});
+        tracks.push_back({{x * side + y * up - 4.0 * direction, direction}, power});
     }
-    return ways;
+    return tracks;
 }
 
-TrackLengthCache laid(const Medium& medium, const dvec3& eye, const std::vector<Way>& ways, bool others,
-                      std::uint64_t seed, bool backward = false) {
+TrackLengthCache deposited(const Medium& medium, const dvec3& eye, const std::vector<Track>& tracks, bool others,
+                           std::uint64_t seed, bool backward = false) {
     double power = 0.0;
-    for (const Way& w : ways)
+    for (const Track& w : tracks)
         power += w.power.x;
     TrackLengthCache light(medium, eye, power, others);
-    parallel_for(ways.size(), [&](std::size_t k) {
-        const std::size_t i = backward ? ways.size() - 1 - k : k;
+    parallel_for(tracks.size(), [&](std::size_t k) {
+        const std::size_t i = backward ? tracks.size() - 1 - k : k;
         Rng rng(Stream::StoredTrack, i, seed);
-        light.add(ways[i].ray, 1e30, ways[i].power, rng);
+        light.add(tracks[i].ray, 1e30, tracks[i].power, rng);
     });
     light.finish();
     return light;
@@ -73,20 +73,20 @@ TrackLengthCache laid(const Medium& medium, const dvec3& eye, const std::vector<
 TEST(TrackLengthCache, SunlightScattersAlikeEverywhere) {
     const Medium medium = thin_cube();
     const dvec3 direction = glm::normalize(dvec3(0.4, 0.2, -1.0)), eye(0.5, -6.0, 1.0);
-    const TrackLengthCache light = laid(medium, eye, sunlight(direction, 3.0, 800), false, 1);
+    const TrackLengthCache light = deposited(medium, eye, sunlight(direction, 3.0, 800), false, 1);
     // Between nodes, in the corners of the cube and on its skin as well.
-    for (const vec3 place :
+    for (const vec3 position :
          {vec3(0.0f), vec3(0.33f, -0.41f, 0.27f), vec3(0.98f, 0.97f, -0.96f), vec3(-1.0f, 0.2f, 0.1f)}) {
-        const dvec3 toward = glm::normalize(eye - dvec3(place));
+        const dvec3 toward = glm::normalize(eye - dvec3(position));
         const double expected = 3.0 * henyey_greenstein(float(glm::dot(direction, toward)), kG);
-        EXPECT_NEAR(light.toward_eye(node_at(medium, place)).x / expected, 1.0, 0.05) << place.x;
+        EXPECT_NEAR(light.toward_eye(node_at(medium, position)).x / expected, 1.0, 0.05) << position.x;
     }
 }
 
 TEST(TrackLengthCache, SmokeDimsIt) {
     const Medium medium = thin_cube(0.8f);
     const dvec3 direction(0.0, 0.0, -1.0), eye(0.0, -6.0, 0.0);
-    const TrackLengthCache light = laid(medium, eye, sunlight(direction, 1.0, 500), false, 1);
+    const TrackLengthCache light = deposited(medium, eye, sunlight(direction, 1.0, 500), false, 1);
     const auto at = [&](float z) { return double(light.toward_eye(node_at(medium, {0.05f, 0.05f, z})).x); };
     const auto phase = [&](float z) {
         return double(henyey_greenstein(float(glm::dot(direction, glm::normalize(eye - dvec3(0.05, 0.05, z)))), kG));
@@ -94,25 +94,25 @@ TEST(TrackLengthCache, SmokeDimsIt) {
     EXPECT_NEAR(at(-0.65f) / phase(-0.65f) / (at(0.75f) / phase(0.75f)), std::exp(-0.8 * 1.4), 0.04);
 }
 
-// The few ways that a node keeps stand for all: the same radiance toward the eye in the mean of many draws.
-TEST(TrackLengthCache, TheWaysThatAreKeptStandForAll) {
+// The few tracks that a node keeps represent all of them: the mean of many draws is the same radiance toward the eye.
+TEST(TrackLengthCache, KeptTracksRepresentAll) {
     const Medium medium = thin_cube();
     const dvec3 eye(0.5, -6.0, 1.0);
-    std::vector<Way> ways;
+    std::vector<Track> tracks;
     Rng rng(Stream::Points, 9);
     for (int i = 0; i < 3000; ++i) {  // of very different powers, from and to anywhere
         const dvec3 from = 3.0 * (2.0 * dvec3(rng.next_double(), rng.next_double(), rng.next_double()) - 1.0);
         const dvec3 to = 0.9 * (2.0 * dvec3(rng.next_double(), rng.next_double(), rng.next_double()) - 1.0);
-        ways.push_back({{from, glm::normalize(to - from)}, Rgb(std::pow(rng.next(), 4.0f))});
+        tracks.push_back({{from, glm::normalize(to - from)}, Rgb(std::pow(rng.next(), 4.0f))});
     }
     constexpr int kSets = 300;
-    const vec3 place(0.0f);  // a node: nothing is drawn between nodes
-    const dvec3 node = node_at(medium, place);
-    const double expected = laid(medium, eye, ways, false, 0).toward_eye(node).x;
-    const vec3 toward(glm::normalize(eye - dvec3(place)));
+    const vec3 position(0.0f);  // a node: nothing is drawn between nodes
+    const dvec3 node = node_at(medium, position);
+    const double expected = deposited(medium, eye, tracks, false, 0).toward_eye(node).x;
+    const vec3 toward(glm::normalize(eye - dvec3(position)));
     double sum = 0.0, square = 0.0;
     for (int set = 0; set < kSets; ++set) {
-        const double v = laid(medium, eye, ways, true, std::uint64_t(set) + 1).toward(toward, node, 0.0f).x;
+        const double v = deposited(medium, eye, tracks, true, std::uint64_t(set) + 1).toward(toward, node, 0.0f).x;
         sum += v / kSets;
         square += v * v / kSets;
     }
@@ -126,12 +126,13 @@ TEST(TrackLengthCache, TheWaysThatAreKeptStandForAll) {
 TEST(TrackLengthCache, ComesOutTheSameInAnyOrder) {
     const Medium medium = thin_cube();
     const dvec3 eye(0.5, -6.0, 1.0);
-    const std::vector<Way> ways = sunlight(glm::normalize(dvec3(0.4, 0.2, -1.0)), 3.0, 150);
-    const TrackLengthCache a = laid(medium, eye, ways, true, 1), b = laid(medium, eye, ways, true, 1, true);
+    const std::vector<Track> tracks = sunlight(glm::normalize(dvec3(0.4, 0.2, -1.0)), 3.0, 150);
+    const TrackLengthCache a = deposited(medium, eye, tracks, true, 1),
+                           b = deposited(medium, eye, tracks, true, 1, true);
     Rng rng(Stream::Points, 1);
     for (int i = 0; i < 200; ++i) {
-        const vec3 place = 2.0f * vec3(rng.next(), rng.next(), rng.next()) - 1.0f;
-        const dvec3 node = node_at(medium, place);
+        const vec3 position = 2.0f * vec3(rng.next(), rng.next(), rng.next()) - 1.0f;
+        const dvec3 node = node_at(medium, position);
         EXPECT_EQ(a.toward_eye(node), b.toward_eye(node));
         EXPECT_EQ(a.toward({0, 0, 1}, node, 0.4f), b.toward({0, 0, 1}, node, 0.4f));
     }
@@ -139,7 +140,7 @@ TEST(TrackLengthCache, ComesOutTheSameInAnyOrder) {
 
 TEST(TrackLengthCache, FarAwayThereIsNone) {
     const Medium medium = thin_cube();
-    const TrackLengthCache light = laid(medium, {0, -6, 0}, sunlight({0, 0, -1}, 1.0, 10), true, 1);
+    const TrackLengthCache light = deposited(medium, {0, -6, 0}, sunlight({0, 0, -1}, 1.0, 10), true, 1);
     EXPECT_EQ(light.toward_eye({1e6, 0, 0}), Rgb(0.0f));
     EXPECT_EQ(light.toward({0, 0, 1}, {1e6, 0, 0}, 0.5f), Rgb(0.0f));
 }

@@ -1,5 +1,5 @@
-// What point lights bring is what the path tracer finds, where they should: unbounded, and bounded with what is found
-// of the rest. Three standard errors of both together: one number in 370 fails by chance, and seeds are fixed.
+// Point lights have the mean of the path tracer where they should: unbounded, and bounded with compensation. Three
+// standard errors of both together: one number in 370 fails by chance, and seeds are fixed.
 #include <gtest/gtest.h>
 
 #include <cstdio>

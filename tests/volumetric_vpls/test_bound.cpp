@@ -1,4 +1,4 @@
-// The bound and what it leaves out.
+// The bound and the energy that it removes.
 #include <gtest/gtest.h>
 
 #include <cmath>

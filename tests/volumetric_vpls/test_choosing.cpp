@@ -35,8 +35,8 @@ TEST(VolumetricVpls, ChosenLightsHaveTheMeanOfAll) {
     }
 }
 
-// A place in smoke asks by the tree as well, on paths that compensate.
-TEST(VolumetricVpls, ChosenLightsHaveTheMeanOfAllAtAPlaceInSmoke) {
+// Vertices in smoke also choose lights by the tree, on paths that compensate.
+TEST(VolumetricVpls, ChosenLightsHaveTheMeanOfAllAtAPointInSmoke) {
     for (const float g : {0.0f, 0.6f, -0.3f}) {
         const Stage stage(lumpy_ball(8, 3.0f, g), {});
         VolumetricVplSettings settings = points(0.3, BiasCompensation::None);
@@ -45,8 +45,8 @@ TEST(VolumetricVpls, ChosenLightsHaveTheMeanOfAllAtAPlaceInSmoke) {
                          bound_of(settings, stage.scene().field()), -1);
         for (const int order : {1, 2}) {
             const auto mean = [&](bool all, std::uint64_t per_batch) {
-                return estimate(1, per_batch, [&](const dvec3& place, Rng& rng, double* out) {
-                    const dvec3 position = 0.9 * place - dvec3(0.45), arriving = uniform_direction(place.x, place.y);
+                return estimate(1, per_batch, [&](const dvec3& u, Rng& rng, double* out) {
+                    const dvec3 position = 0.9 * u - dvec3(0.45), arriving = uniform_direction(u.x, u.y);
                     const PathVertex at(position, arriving, g);
                     out[0] = (all ? sum.at_from_all(at, order, rng) : sum.at(at, order, 1, rng)).x;
                 });

@@ -209,20 +209,21 @@ void settle(const Objections& objections, bool force, CompareReport& report) {
     }
 }
 
-Judged judged_layer(const Loaded& image, const std::vector<Loaded>& references, const std::string& layers) {
+FrameAndReference layer_and_reference(const Loaded& image, const std::vector<Loaded>& references,
+                                      const std::string& layers) {
     std::vector<LayerPicture> pictures = {picture_of(image.image, split(layers))};
     for (const Loaded& reference : references)
         pictures.push_back(picture_of(reference.image, parts_in(reference, layers)));
     if (std::any_of(pictures.begin(), pictures.end(), [](const LayerPicture& p) { return p.gray; }))
         for (LayerPicture& picture : pictures)
             to_gray(picture.picture);
-    Judged judged{std::move(pictures[0].picture), {std::move(pictures[1].picture), std::nullopt}};
+    FrameAndReference pair{std::move(pictures[0].picture), {std::move(pictures[1].picture), std::nullopt}};
     if (pictures.size() > 2)
-        judged.reference.second = std::move(pictures[2].picture);
-    return judged;
+        pair.reference.second = std::move(pictures[2].picture);
+    return pair;
 }
 
-// The same file twice would claim an error free of noise that is not.
+// The same file given twice would make the noise seem to be 0.
 void check_halves(const Reference& reference, const std::vector<Loaded>& references) {
     if (!reference.second)
         return;
@@ -230,13 +231,13 @@ void check_halves(const Reference& reference, const std::vector<Loaded>& referen
     const bool black = std::all_of(a.begin(), a.end(), [](const Rgb& pixel) { return pixel == Rgb(0.0f); });
     if (a == b && !black)
         throw Error(ExitCode::BadData,
-                    fmt::format("{} and {} hold the same pixels: they are no independent halves of a reference",
+                    fmt::format("{} and {} hold the same pixels: they are not independent halves of a reference",
                                 references[0].file.string(), references[1].file.string()));
 }
 
-using JudgedLayers = std::vector<std::pair<std::string, Judged>>;
+using FrameLayers = std::vector<std::pair<std::string, FrameAndReference>>;
 
-JudgedLayers load_frame(const CompareOptions& options, const FrameFiles& files, bool first, CompareReport& report) {
+FrameLayers load_frame(const CompareOptions& options, const FrameFiles& files, bool first, CompareReport& report) {
     const Loaded image = load(files.image);
     std::vector<Loaded> references;
     for (const fs::path& file : files.references)
@@ -252,9 +253,9 @@ JudgedLayers load_frame(const CompareOptions& options, const FrameFiles& files, 
         notice_missing_shots(all);
     const std::vector<std::string> layers = layers_to_compare(options, all, objections);
     settle(objections, options.force, report);
-    JudgedLayers result;
+    FrameLayers result;
     for (const std::string& layer : layers)
-        result.emplace_back(layer, judged_layer(image, references, layer));
+        result.emplace_back(layer, layer_and_reference(image, references, layer));
     check_halves(result.front().second.reference, references);
     const bool numbered = has_frame_token(options.image);
     report.frames.push_back({numbered ? std::optional(files.frame) : image.metadata.frame,
@@ -265,12 +266,12 @@ JudgedLayers load_frame(const CompareOptions& options, const FrameFiles& files, 
     return result;
 }
 
-void compare_frame(const CompareOptions& options, const FrameFiles& files, const JudgedLayers& layers,
+void compare_frame(const CompareOptions& options, const FrameFiles& files, const FrameLayers& layers,
                    ComparedFrame& frame) {
-    for (const auto& [layer, judged] : layers) {
-        Comparison comparison = compare(judged.image, judged.reference, options.pixels_per_degree);
+    for (const auto& [layer, pair] : layers) {
+        Comparison comparison = compare(pair.image, pair.reference, options.pixels_per_degree);
         if (frame.layers.empty() && !files.flip_map.empty())
-            write_png(files.flip_map, judged.image.width, judged.image.height, false_colours(comparison.flip.errors));
+            write_png(files.flip_map, pair.image.width, pair.image.height, false_colours(comparison.flip.errors));
         // A sequence need not hold the maps of all its frames.
         comparison.flip.errors.values.clear();
         comparison.flip.worst_exposures.clear();
@@ -278,13 +279,13 @@ void compare_frame(const CompareOptions& options, const FrameFiles& files, const
     }
 }
 
-ComparedChange compare_step(const FrameFiles& files, const JudgedLayers& layers, const FrameFiles& next_files,
-                            const JudgedLayers& next) {
+ComparedChange compare_step(const FrameFiles& files, const FrameLayers& layers, const FrameFiles& next_files,
+                            const FrameLayers& next) {
     ComparedChange change{files.frame, next_files.frame, {}};
-    for (const auto& [layer, judged] : layers)
-        for (const auto& [next_layer, next_judged] : next)
+    for (const auto& [layer, pair] : layers)
+        for (const auto& [next_layer, next_pair] : next)
             if (layer == next_layer)
-                change.layers.emplace_back(layer, compare_changes(judged, next_judged));
+                change.layers.emplace_back(layer, compare_changes(pair, next_pair));
     return change;
 }
 
@@ -297,9 +298,9 @@ int run_compare(const CompareOptions& options) {
         limits.push_back(parse_limit(limit, options.references.size() > 1, files.size() > 1));
     CompareReport report;
     report.pixels_per_degree = options.pixels_per_degree;
-    JudgedLayers before;
+    FrameLayers before;
     for (std::size_t i = 0; i < files.size(); ++i) {
-        JudgedLayers layers = load_frame(options, files[i], i == 0, report);
+        FrameLayers layers = load_frame(options, files[i], i == 0, report);
         compare_frame(options, files[i], layers, report.frames.back());
         if (i > 0)
             report.changes.push_back(compare_step(files[i - 1], before, files[i], layers));

@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 template <class Result>
 struct Metric {
     const char* name;
-    std::optional<double> (*of)(const Result&);  // absent: not taken
+    std::optional<double> (*of)(const Result&);  // absent: not computed
 };
 
 template <class Result>
@@ -73,10 +73,10 @@ std::string location(const ComparedChange& change, const std::string& layer) {
     return fmt::format("{} from frame {} to {}", shown_layer(layer), change.from, change.to);
 }
 
-// Adds the lines of one metric.
+// Adds a line for every value of one metric that does not pass.
 template <class Result, class Part>
-void judge(const std::vector<Part>& parts, const Metric<Result>& metric, double limit,
-           std::vector<std::string>& lines) {
+void add_failures(const std::vector<Part>& parts, const Metric<Result>& metric, double limit,
+                  std::vector<std::string>& lines) {
     for (const Part& part : parts) {
         for (const auto& [layer, result] : part.layers) {
             const std::optional<double> value = metric.of(result);
@@ -97,7 +97,7 @@ std::string padded(const std::string& text, std::size_t width) {
     return text + std::string(width > text.size() ? width - text.size() : 0, ' ');
 }
 
-// Columns as wide as what stands in them: words to the left, numbers to the right.
+// Columns as wide as their widest cell: words are aligned left, numbers right.
 std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t word_columns) {
     std::vector<std::size_t> widths(rows.front().size(), 0);
     for (const auto& row : rows)
@@ -117,7 +117,7 @@ std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t
 }
 
 template <class Result, class Part>
-std::vector<Metric<Result>> taken(const std::vector<Metric<Result>>& metrics, const std::vector<Part>& parts) {
+std::vector<Metric<Result>> computed(const std::vector<Metric<Result>>& metrics, const std::vector<Part>& parts) {
     std::vector<Metric<Result>> result;
     for (const Metric<Result>& metric : metrics)
         if (std::any_of(parts.begin(), parts.end(), [&](const Part& part) {
@@ -133,7 +133,7 @@ std::vector<std::string> numbers(const Result& result, const std::vector<Metric<
     std::vector<std::string> cells;
     for (std::size_t m = 0; m < metrics.size(); ++m) {
         const std::optional<double> value = metrics[m].of(result);
-        // The first metric is the one that the reference's noise enters.
+        // Only the first metric includes the noise of the reference.
         const char* const mark = m == 0 && is_below_noise(result) ? "*" : "";
         cells.push_back(fmt::format("{}{:.4g}", mark, value.value_or(NAN)));
     }
@@ -143,7 +143,7 @@ std::vector<std::string> numbers(const Result& result, const std::vector<Metric<
 template <class Result, class Part, class Name>
 std::string metric_table(const std::vector<Part>& parts, const std::vector<Metric<Result>>& all, const Name& name,
                          const std::string& heading) {
-    const std::vector<Metric<Result>> metrics = taken(all, parts);
+    const std::vector<Metric<Result>> metrics = computed(all, parts);
     std::vector<std::vector<std::string>> rows = {{heading, "layer"}};
     for (const Metric<Result>& metric : metrics)
         rows.front().emplace_back(metric.name);
@@ -189,9 +189,8 @@ std::string noise_line(const CompareReport& report) {
     };
     if (!any(report.frames) && !any(report.changes))
         return "";
-    return fmt::format(
-        "* below {:g} times the reference's noise, which is part of it: look at noise_free, which is without\n",
-        kNoiseMargin);
+    return fmt::format("* below {:g} times the reference's noise, which it includes; noise_free does not\n",
+                       kNoiseMargin);
 }
 
 std::string constants_lines(const CompareReport& report) {
@@ -283,10 +282,10 @@ std::vector<std::string> exceeded_limits(const CompareReport& report, const std:
     for (const Limit& limit : limits) {
         for (const auto& metric : still_metrics())
             if (limit.metric == metric.name)
-                judge(report.frames, metric, limit.value, lines);
+                add_failures(report.frames, metric, limit.value, lines);
         for (const auto& metric : change_metrics())
             if (limit.metric == metric.name)
-                judge(report.changes, metric, limit.value, lines);
+                add_failures(report.changes, metric, limit.value, lines);
     }
     return lines;
 }

@@ -1,4 +1,4 @@
-// What `brisance compare` found, for people, for programs, and as verdict.
+// The results of `brisance compare`: as text, as JSON, and against limits.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 namespace brisance {
 
 struct ComparedFrame {
-    std::optional<int> frame;  // absent: the file does not tell
+    std::optional<int> frame;  // absent: the file does not say
     std::filesystem::path image;
     std::vector<std::filesystem::path> references;           // one, or two halves
     std::optional<double> render_seconds;                    // of the image
@@ -43,11 +43,11 @@ struct Limit {
 std::vector<std::string> metric_names();
 
 // From "rrmse=0.02". `halves`: there are two references; `several_frames`: there are changes to measure. Throws Error
-// Usage for what is no limit, and for a measure that will not be taken.
+// Usage for text that is not a limit, and for a measure that is not computed.
 Limit parse_limit(const std::string& text, bool halves, bool several_frames);
 
-// One line for each layer and frame in which a limit is exceeded, in which its measure is no number, or in which pixels
-// are not finite: what cannot be measured does not pass.
+// One line for each layer and frame that exceeds a limit, whose measure is not a number, or that has pixels that are
+// not finite: what cannot be measured does not pass.
 std::vector<std::string> exceeded_limits(const CompareReport& report, const std::vector<Limit>& limits);
 
 // "beauty" for "".

@@ -1,4 +1,4 @@
-// `brisance inspect`: what a .vdb file holds, what would be made of it, and a shot to begin with.
+// `brisance inspect`: the grids of a .vdb file, the roles they would play, and a shot to begin with.
 #pragma once
 
 #include <filesystem>

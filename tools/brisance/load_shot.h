@@ -1,4 +1,4 @@
-// The shot a command line means: a shot file, or a bare .vdb with what its numbers suggest.
+// Loads the shot of a command line: a shot file, or a bare .vdb with settings suggested from its values.
 #pragma once
 
 #include <filesystem>

@@ -40,7 +40,7 @@ constexpr const char* kExitCodes = R"(Exit codes:
   66   a file or frame is not there
   73   the output folder or file cannot be made
   74   writing failed half way: the disk is full
-  75   out of memory: worth a retry on a larger machine
+  75   out of memory: retry on a larger machine
   130  interrupted (143: terminated); nothing half-written is left)";
 
 // Ends at once: pixels of an unfinished frame are worth nothing, and every output is whole or absent.
@@ -61,11 +61,11 @@ void install_signal_handlers() {
         if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
             sigaction(signal, &action, nullptr);
     }
-    // A file that grows beyond its limit is then an error of write, reported like a full disk.
+    // Ignored, so that a file beyond its size limit is an error of write(), reported like a full disk.
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
-// What every command that renders takes.
+// Options of every command that renders.
 template <class Options>
 void add_common_options(CLI::App& command, Options& options) {
     static const std::map<std::string, ProgressStyle> styles = {{"auto", ProgressStyle::Automatic},
@@ -94,14 +94,14 @@ void add_shot_options(CLI::App& command, RenderOptions& options) {
         ->check(CLI::IsMember({"lighting_grid", "path"}))
         ->type_name("METHOD");
     add_common_options(command, options);
-    command.add_flag("--keep-going", options.keep_going, "A frame that fails does not stop the others");
+    command.add_flag("--keep-going", options.keep_going, "Renders the remaining frames when one fails");
 }
 
 void add_compare_options(CLI::App& command, CompareOptions& options) {
-    command.add_option("IMAGE", options.image, "The EXR to judge, with or without frame token (####)")->required();
+    command.add_option("IMAGE", options.image, "The EXR to measure, with or without frame token (####)")->required();
     command
         .add_option("REFERENCE", options.references,
-                    "The EXR it should be, or two independent halves of it: their noise is then known, and taken out")
+                    "The reference EXR, or two independent halves of it: their noise is then measured and removed")
         ->required()
         ->expected(1, 2);
     command.add_option("-f,--frames", options.frames, "Frames: 1001-1100x2,1200; without it, all of IMAGE on disk");
@@ -121,7 +121,7 @@ void add_compare_options(CLI::App& command, CompareOptions& options) {
                                 fmt::join(metric_names(), ", ")))
         ->type_name("METRIC=VALUE")
         ->allow_extra_args(false);
-    command.add_option("--pixels-per-degree", options.pixels_per_degree, "How closely HDR-FLIP looks; default 67")
+    command.add_option("--pixels-per-degree", options.pixels_per_degree, "Angular resolution of HDR-FLIP; default 67")
         ->check(CLI::Range(1.0, 1000.0));
     command.add_flag("--force", options.force, "Compares images of different shots or frames");
 }
@@ -157,10 +157,10 @@ void add_report_options(CLI::App& command, ReportOptions& options) {
                     "Paths per pixel of the reference; default: 1024, or four times the largest budget")
         ->check(CLI::Range(4, 1 << 30))
         ->excludes(reference);
-    command.add_option("--reference-seconds", options.reference_seconds, "Ends the reference after this time [s]")
+    command.add_option("--reference-seconds", options.reference_seconds, "Stops the reference after this time [s]")
         ->check(CLI::PositiveNumber)
         ->excludes(reference);
-    command.add_option("--repeats", options.repeats, "Renders each step so often; its time is the median")
+    command.add_option("--repeats", options.repeats, "Renders each step this many times; its time is the median")
         ->check(CLI::Range(1, 1000));
     command.add_option("--exposures", options.exposures, "Of the page's pictures, beside the shot's [stops]: -3,0,3")
         ->delimiter(',')
@@ -176,7 +176,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
     command
         .add_option("--checkpoint", options.checkpoint,
                     "Method path: keeps the state of the render in this file, with #### for the frame number, every "
-                    "tracing.checkpoint_seconds, and goes on from it where it exists: after being stopped, or for "
+                    "tracing.checkpoint_seconds, and resumes from it where it exists: after an interruption, or for "
                     "more paths than before. Its picture has the same bits as that of one uninterrupted render")
         ->type_name("FILE");
     command.add_flag("--certify", options.certify,
@@ -185,7 +185,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
     command
         .add_option("--debug", options.debug,
                     "virtual-lights: pictures of the method beside the EXR, STEM.virtual_lights.*: the virtual lights "
-                    "of surfaces as points (.ply), as the camera sees them (.exr, .png), how many speak for each pixel "
+                    "of surfaces as points (.ply), as the camera sees them (.exr, .png), how many cover each pixel "
                     "(.count.png), how long paths are (.path_length.png), and the glossy ones' profiles "
                     "(.profiles.exr, .profiles.png); the same as --set output.virtual_lights=true")
         ->check(CLI::IsMember({kDebugVirtualLights}))
@@ -205,7 +205,7 @@ void add_trace_path_options(CLI::App& command, TracePathOptions& options) {
     add_common_options(command, options);
 }
 
-// All commands with their options; what was parsed decides which of them runs.
+// All commands with their options; the parsed command runs.
 class CommandLine {
 public:
     CommandLine(int argc, char** argv) : argc_(argc), argv_(argv) {
@@ -266,12 +266,13 @@ private:
     }
 
     void add_studies() {
-        CLI::App& stability = add("stability", "Stiff and extreme cases through every method: a table",
-                                  [this] { return run_stability(extreme_); });
+        CLI::App& stability =
+            add("stability", "Renders extreme cases by every method and prints a table of their errors",
+                [this] { return run_stability(extreme_); });
         stability.add_option("--methods", extreme_.methods, fmt::format("{}", fmt::join(extreme_.methods, ", ")))
             ->check(CLI::IsMember(stability_methods()))
             ->delimiter(',');
-        stability.add_option("--case", extreme_.part, "Only cases whose name has this in it");
+        stability.add_option("--case", extreme_.part, "Only cases whose name contains this");
         stability.add_flag("--markdown", extreme_.markdown, "As a table for a document");
         stability.add_flag("--json", extreme_.json, "As JSON");
         add_trace_path_options(add("trace-path", "Prints one path of method path, vertex by vertex",

@@ -1,4 +1,4 @@
-// Where the files of each frame go.
+// The output files of each frame.
 #pragma once
 
 #include <array>

@@ -37,7 +37,7 @@ public:
     // A line on standard error between those of the progress.
     void say(const std::string& line);
 
-    // Ends the bar, and says of every warning given more than once how often it was.
+    // Ends the bar, and prints how often every repeated warning occurred.
     void finish();
 
 private:

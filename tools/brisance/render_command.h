@@ -17,7 +17,7 @@ struct RenderOptions {
     std::string preset;
     std::string method;  // of rendering; empty: the shot's
     std::vector<std::string> overrides;
-    std::string checkpoint;          // where the state of a long render is kept, and taken up; empty: nowhere
+    std::string checkpoint;          // file that keeps the state of a long render, to resume it; empty: none
     std::vector<std::string> debug;  // pictures of how a method works: kDebugVirtualLights
     bool certify = false;            // also where the shot does not enable it
     int threads = 0;                 // 0: all processors
@@ -27,8 +27,8 @@ struct RenderOptions {
     ProgressStyle progress = ProgressStyle::Automatic;
 };
 
-// Renders every frame and writes the paths of finished files to standard output. Returns the exit code; a failed
-// frame's where --keep-going went on after it. Throws Error for everything that concerns all frames.
+// Renders every frame and writes the paths of finished files to standard output. Returns the exit code, with
+// --keep-going that of a failed frame. Throws Error for everything that concerns all frames.
 int run_render(const RenderOptions& options);
 
 // Prints what a render would read and do, to standard output. Throws Error.

@@ -68,8 +68,8 @@ FrameFile only_frame(const Shot& shot, const ReportOptions& options) {
     numbers.reserve(frames.size());
     for (const FrameFile& frame : frames)
         numbers.push_back(frame.frame);
-    throw Error(ExitCode::Usage,
-                fmt::format("a report is of one frame, and there are {}: name one with -f", describe_frames(numbers)));
+    throw Error(ExitCode::Usage, fmt::format("a report covers one frame, and there are {}: choose one with -f",
+                                             describe_frames(numbers)));
 }
 
 // A camera that is the same for every run, whatever its picture's width.
@@ -87,7 +87,7 @@ int largest_budget(const std::vector<PlannedMethod>& methods) {
     return most;
 }
 
-// Runs and reference of one seed would begin with the same paths.
+// A run with the seed of the reference would share its first paths.
 int seed_of_reference(const std::vector<PlannedMethod>& methods) {
     std::set<int> taken;
     for (const PlannedMethod& method : methods)
@@ -111,7 +111,7 @@ std::vector<std::string> reference_settings(const ReportOptions& options, const 
             "output.halves=true"};
 }
 
-// The words that render with `settings` over the shot as given.
+// The command that renders with `settings` over the given shot.
 std::string render_command(const ReportOptions& options, const std::vector<std::string>& settings,
                            const std::string& output) {
     std::vector<std::string> words = {"brisance", "render", options.input};
@@ -204,7 +204,7 @@ int run_report(const ReportOptions& options) {
     std::vector<fs::path> inputs = {options.input, frame.file};
     inputs.insert(inputs.end(), options.references.begin(), options.references.end());
     check_outputs(files, inputs);
-    const std::vector<PlannedMethod> unframed = plan_runs(shot, methods);  // says what is wrong before anything is read
+    const std::vector<PlannedMethod> unframed = plan_runs(shot, methods);  // reports errors before anything is read
     Report report = begin_report(options, shot, frame);
     std::optional<ReportReference> reference;
     if (!options.references.empty())

@@ -1,4 +1,4 @@
-// `brisance stability`: stiff and extreme cases through every method.
+// `brisance stability`: extreme cases by every method.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace brisance {
 
-// The names of all methods that the cases know.
+// The names of all methods that render the cases.
 std::vector<std::string> stability_methods();
 
 struct StabilityOptions {

@@ -29,7 +29,7 @@ std::string order_name(int order, bool has_cells) {
     return fmt::format("{}{} {}", order, order + 1 == kPathOrders ? "+" : "", has_cells ? "" : cell_name(order));
 }
 
-// Where there are surroundings the number of scatterings does not tell the cell.
+// With surroundings the number of scatterings does not determine the cell.
 std::string vertex_name(const TracedVertex& vertex, bool has_cells) {
     return has_cells ? std::to_string(vertex.order) : fmt::format("{} {}", vertex.order, cell_name(vertex.order));
 }
@@ -45,7 +45,8 @@ std::string coordinates(const dvec3& p) {
 
 void print_vertices(const TracedPath& path) {
     fmt::print(
-        "vertices: scatterings, place [m], throughput, radiance gathered along the segment that leaves it, by a line "
+        "vertices: scatterings, position [m], throughput, radiance gathered along the segment that leaves it, by a "
+        "line "
         "toward the fire, and by a ray toward an emitter:\n");
     for (const TracedVertex& vertex : path.vertices)
         fmt::print("  {:<6} {} {}  throughput {}  along {}  from fire {}  from emitters {}{}\n",

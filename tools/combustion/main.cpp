@@ -77,7 +77,7 @@ void run(Options o) {
     const int last = o.only_frame > 0 ? o.only_frame : o.frames;
     if (o.out.find('#') == std::string::npos && o.only_frame == 0 && last > 1)
         throw Error(ExitCode::Usage, "--out " + o.out + ": " + std::to_string(last) +
-                                         " frames need a # in the name, or ask for one with --only-frame");
+                                         " frames need a # in the name, or choose one with --only-frame");
     o.writing.creator = "brisance-combustion, resolution " + std::to_string(o.simulation.resolution) + ", seed " +
                         std::to_string(o.simulation.seed);
     Simulation simulation(o.simulation);

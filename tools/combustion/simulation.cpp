@@ -37,7 +37,7 @@ std::vector<StepReport> Simulation::advance_frame() {
     const double frame_seconds = 1.0 / settings_.frame_rate;
     const double end = frame_seconds * ++frame_;
     const float shortest = static_cast<float>(frame_seconds) / float(settings_.steps_per_frame_max);
-    // While puffs enter at full speed the flow of the last step does not yet tell how fast the next will be.
+    // While puffs enter at full speed the flow of the last step does not yet show how fast the next will be.
     const bool bursting = time_ < 2.0f * settings_.burst_duration;
     while (end - time_ > 1e-6) {
         const float speed = std::max(maximum_speed(), bursting ? settings_.burst_speed : 0.0f);

@@ -1,5 +1,5 @@
-// Media made from functions of the node, through the same door as those from files: what tests and the stability matrix
-// render.
+// Media made from functions of the node, by the same code as those from files. Tests and the stability matrix render
+// them.
 #pragma once
 
 #include <functional>
@@ -20,7 +20,8 @@ NodeBox cube(int low, int high);
 using NodeScalar = std::function<float(const ivec3&)>;
 using NodeColour = std::function<Rgb(const ivec3&)>;
 
-// As the reader leaves a grid: blocks of 8^3 sorted by origin, negative and NaN values counted in the census.
+// Makes a grid as the reader of files does: blocks of 8^3 sorted by origin, with negative and NaN values counted in the
+// census.
 BlockGrid scalar_grid(const std::string& name, const dmat4& world_from_index, const NodeBox& box,
                       const NodeScalar& value);
 BlockGrid colour_grid(const std::string& name, const dmat4& world_from_index, const NodeBox& box,
@@ -30,7 +31,7 @@ BlockGrid colour_grid(const std::string& name, const dmat4& world_from_index, co
 dmat4 transform(const dmat3& linear, const dvec3& origin);
 dmat4 cubic(double spacing, const dvec3& origin = dvec3(0.0));
 
-// What a medium is made of. Functions left empty mean that the grid is absent.
+// The grids and settings of a medium. An empty function means that the grid is absent.
 struct Recipe {
     NodeBox box;
     dmat4 world_from_index{1.0};
@@ -52,7 +53,7 @@ float ball(const ivec3& node, const dvec3& centre, double radius);
 // ball has radius 1 m and `nodes` nodes per radius.
 Recipe glowing_ball(int nodes, float density);
 
-// A number in [0, 1) that belongs to the node and `salt`.
+// A pseudo-random number in [0, 1), a function of the node and `salt`.
 float noise(const ivec3& node, int salt);
 
 }  // namespace brisance::media

@@ -27,7 +27,7 @@ struct PowerLaw {
 enum class ReadingKind {
     Interpolated,  // between two runs, or at one
     Extrapolated,  // beyond the longest run, by the law of averages after the start-up
-    AtMost,        // the cheapest run is better already, or the method had finished, or the error was too small to tell
+    AtMost,        // the cheapest run is better already, or the method had finished, or the error is 0
     NotReached     // by no run, nor by more time; or before the first run
 };
 
@@ -44,11 +44,11 @@ public:
     // Least squares in the logarithms, over all errors above 0; absent unless two of them differ in time.
     std::optional<PowerLaw> law() const;
 
-    // The same against work instead of time: what no other program on the machine can disturb.
+    // The same against work instead of time, which other programs on the machine do not disturb.
     std::optional<PowerLaw> law_of_work() const;
 
-    // The time [s] that averaging does not shorten, by the straight line through time against work of the two longest
-    // runs; at most the first run's. 0 for a tail that does not average.
+    // The time [s] that does not depend on the number of paths, by the straight line through time against work of the
+    // two longest runs; at most the first run's. 0 for a tail that does not average.
     double startup() const;
 
     // The shortest time [s] after which the error is at most `error` (above 0), along straight lines in the logarithms.

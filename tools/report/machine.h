@@ -1,4 +1,4 @@
-// The machine that measured: times mean nothing without it.
+// The machine on which times were measured.
 #pragma once
 
 #include <array>

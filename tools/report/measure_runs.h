@@ -17,7 +17,7 @@ namespace brisance {
 // One render that is to be measured.
 struct PlannedRun {
     MethodStep step;
-    std::vector<std::string> settings;  // of method and step: what makes this of the shot
+    std::vector<std::string> settings;  // of method and step, applied to the shot
     Shot shot;
 };
 
@@ -27,7 +27,7 @@ struct PlannedMethod {
 };
 
 // Returns the shots of all runs, made from the given one. Throws Error Usage for settings that no shot accepts, and for
-// those that would change what is true instead of how it is computed. Path-traced runs whose seed is `taken` get
+// those that would change the true picture rather than its computation. Path-traced runs whose seed is `taken` get
 // another.
 std::vector<PlannedMethod> plan_runs(const Shot& shot, const std::vector<Method>& methods,
                                      const std::set<int>& taken = {});

@@ -1,10 +1,10 @@
-// What a report compares: methods, each with a ladder of steps from cheap to good.
+// The methods that a report compares, each with a ladder of steps from cheap to accurate.
 //
 // A method:  NAME, or LABEL=NAME, followed by settings:    exact=path,tracing.free_flight=exact
-//   NAME is lighting_grid; path, or path_plain (the path tracer without what makes it fast); a preset of one of the
-//   scattering methods (scattering_methods/list.h), such as ray_lights or volumetric_vpls_bounded; or a
-//   preset of virtual lights (virtual_lights/choices.h): vbnl (virtual blue noise lighting), vbnl_GATHERER (the same
-//   lights, sampled otherwise), rich_vsl, vsl, vpl.
+//   NAME is lighting_grid; path, or path_plain (the path tracer without its acceleration techniques); a preset of one
+//   of the scattering methods (scattering_methods/list.h), such as ray_lights or volumetric_vpls_bounded; or a preset
+//   of virtual lights (virtual_lights/choices.h): vbnl (virtual blue noise lighting), vbnl_GATHERER (the same lights,
+//   sampled otherwise), rich_vsl, vsl, vpl.
 // A budget:  LIST for all path methods, or LABEL:LIST:     4,16,64,256    path:16,64    lighting_grid:2,4
 //   For path methods samples per pixel, for lighting_grid numbers of steps of the built-in ladder, 1 to 4, for those
 //   of virtual lights samples along a pixel's side.
@@ -28,7 +28,7 @@ struct Method {
     std::vector<std::string> settings;  // "method=path", ..., over those of the shot
     std::vector<MethodStep> steps;      // at least one
     bool unbiased = false;
-    bool averages = false;  // its steps average more and more of the same: the error falls as time^-1/2
+    bool averages = false;  // its steps average more and more samples: the error falls as time^-1/2
 };
 
 struct MethodOptions {

@@ -1,4 +1,4 @@
-// Pictures as the page shows them: PNGs at several exposures, and maps of errors.
+// The pictures of the page: PNGs at several exposures, and maps of errors.
 #pragma once
 
 #include <map>

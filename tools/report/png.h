@@ -1,5 +1,5 @@
-// PNG in memory, to be put into a page. Maps of at most 256 colours are stored indexed, at a third of the size: that,
-// and that no file is made, is why this is not film's writer.
+// PNGs in memory, for embedding in a page. Maps of at most 256 colours are stored indexed, at a third of the size. The
+// writer of `film` does neither.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// What a report's methods are measured against.
+// The reference of a report's methods.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,7 @@ namespace brisance {
 struct ReportReference {
     ReferenceSummary summary;
     std::map<std::string, Reference> layers;  // "" the beauty, and the ledger's cells it has
-    std::set<int> seeds;                      // path-traced with these: a run that shares one looks better than it is
+    std::set<int> seeds;  // of path tracing; a run with one of them would share its paths and seem better than it is
 };
 
 // Layers that a report compares, in this order: the beauty and the ledger's cells.

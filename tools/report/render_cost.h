@@ -1,4 +1,4 @@
-// Time that a computation takes, from the making of the meter.
+// Measures the time of a computation, from the construction of the meter.
 #pragma once
 
 #include <sys/resource.h>

@@ -1,4 +1,4 @@
-// What a report holds: methods measured against a reference, at several steps each.
+// The data of a report: methods measured against a reference, at several steps each.
 #pragma once
 
 #include <map>
@@ -26,13 +26,13 @@ struct LayerErrors {
     Differences differences;
     double flip = 0.0;
     NotFinite not_finite;
-    bool below_noise = false;  // differences.rrmse tells about the reference rather than about the image
+    bool below_noise = false;  // differences.rrmse measures the noise of the reference rather than the image
 };
 
 struct MeasuredRun {
     std::string id;  // of its pictures in the page
     MethodStep step;
-    std::string command;  // that renders it again
+    std::string command;  // that repeats the render
     Cost cost;            // median of the repeats, by wall time
     double samples_per_pixel = 0.0;
     Statistics statistics;

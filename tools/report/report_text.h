@@ -1,4 +1,4 @@
-// A report as tables: CSV (RFC 4180) for programs, and text for whoever waits.
+// A report as tables: CSV (RFC 4180) for programs, and text for the terminal.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// One case of the stability matrix: what is rendered, what it ought to be, and how near is near enough.
+// One case of the stability matrix: a scene, its true result, and a tolerance.
 #pragma once
 
 #include <functional>
@@ -15,25 +15,25 @@
 
 namespace brisance::stability {
 
-// A medium, the surfaces and lamps around it if any, and a shot whose camera looks at them. The method is filled in by
-// whoever renders.
+// A medium, the surfaces and lamps around it if any, and a shot whose camera looks at them. The caller that
+// renders sets the method.
 struct Scene {
     Medium medium;
     Shot shot;
     std::shared_ptr<const Surroundings> surroundings = nullptr;
 };
 
-// How far a picture is from what it ought to be, both as parts of the latter.
+// The error of a picture and its uncertainty, relative to the truth.
 struct Measured {
     double error = 0.0;
     double noise = 0.0;  // standard error of `error`, where the method or the reference is random
 };
 
-// Of a method that shares its noise, `image` is the mean of the pictures in `halves`, each by lights of its own.
+// For a method that shares its noise, `image` is the mean of the pictures in `halves`, each by lights of its own.
 using Render = std::function<RenderedFrame(const Scene&, const Method&)>;
 using Measure = std::function<Measured(const Scene&, const RenderedFrame&, const Method&, const Render&)>;
 
-// A method that a case is beyond: how wrong it may be there at most, and why.
+// The limit of a method that cannot solve a case: its largest error there, and the reason.
 struct Limit {
     double tolerance = 0.0;
     std::string reason;
@@ -42,12 +42,12 @@ struct Limit {
 struct Tolerance {
     std::optional<double> lighting_grid, path;  // empty: the method does not render this case
     std::string reason;                         // why no smaller
-    std::map<std::string, Limit> limits = {};   // by the method's name, in place of those above
+    std::map<std::string, Limit> limits = {};   // by the method's name, instead of those above
 };
 
 struct Case {
     std::string name;   // family/what
-    std::string truth;  // what the picture is held against
+    std::string truth;  // what the picture is compared with
     Tolerance tolerance;
     std::function<Scene()> scene;
     Measure measure;
@@ -58,13 +58,13 @@ struct Case {
 
     std::string family() const { return name.substr(0, name.find('/')); }
 
-    // Empty: the method does not render this case. Of methods that own MM and SM, what they leave of the picture is the
-    // grid's, so that they are as wrong as it is where they are not worse.
+    // Empty: the method does not render this case. Methods that own MM and SM take the rest of the picture from the
+    // grid, so that the grid's tolerance is a lower bound of theirs.
     std::optional<double> tolerance_of(const Method& method) const;
     const Limit* limit_of(const Method& method) const;
 };
 
-// Whether the method has a part in the case: the lighting grid and the path tracer always, others where they own a
+// Whether the method contributes to the case: the lighting grid and the path tracer always, others where they own a
 // cell.
 bool owns_a_cell(const Method& method, const Scene& scene);
 
@@ -73,22 +73,22 @@ bool owns_a_cell(const Method& method, const Scene& scene);
 // of their mean. Its standard error comes from the path tracer's two halves, from pictures by other lights, or from the
 // spread of pixels that are sampled independently.
 
-// All pixels of `layer` ought to have this radiance.
+// Expects this radiance in all pixels of `layer`.
 Measure every_pixel_is(const Rgb& radiance, const std::string& layer = "");
 
-// Each pixel of `layer` ought to have the radiance of the ray through its middle; origin and direction in world space.
+// Expects in each pixel of `layer` the radiance of the ray through its centre; origin and direction in world space.
 using RadianceOfRay = std::function<double(const dvec3& origin, const dvec3& direction)>;
 Measure every_ray_is(const RadianceOfRay& radiance, const std::string& layer = "");
 
-// Like the picture of another scene by the same method, or the same path by path: noise is no excuse then.
+// Expects the picture of another scene by the same method. same_paths_as() allows no noise: both have the same paths.
 Measure same_picture_as(const std::function<Scene()>& other);
 Measure same_paths_as(const std::function<Scene()>& other);
 
-// Power through the picture, times 4 pi: for media seen from afar that look the same from everywhere. `power` is over
-// 4 pi [W/sr].
+// Expects this power through the picture, times 4 pi, of a medium seen from afar that is the same from all directions.
+// `power` is over 4 pi [W/sr].
 Measure power_is(const std::function<double(const Scene&)>& power);
 
-// Like the path tracer's picture, of this many paths per pixel; the path tracer itself is held against its other
+// Expects the path tracer's picture, of this many paths per pixel. The path tracer itself is compared with its other
 // estimators (null collisions, ratio tracking, emission at collisions).
 Measure like_the_reference(int samples);
 

@@ -67,7 +67,7 @@ Case conservation(const std::string& name, double radius) {
     return c;
 }
 
-// Channels do not know of each other: each must be the grey picture of its own albedo.
+// Channels are independent: each must equal the grey picture of its own albedo.
 Case coloured() {
     constexpr double radius = 2.0;
     const dvec3 albedo(0.99, 0.6, 0.0);

@@ -1,4 +1,4 @@
-// The camera where it is awkward: inside fire, inside opaque smoke, on faces of voxels, looking along axes.
+// Difficult cameras: inside fire, inside opaque smoke, on faces of voxels, looking along axes.
 #include "stability/closed_forms.h"
 #include "stability/scenes.h"
 

@@ -16,7 +16,7 @@ constexpr double kAlbedo = 0.5;
 constexpr float kHot = 1e10f, kWarm = 1.0f;
 const dvec3 kEye(0.0, -1000.0, 0.0);
 
-// Half the way of a ray along y through the haze: nodes reach half a voxel beyond the outermost.
+// Half the length of a ray along y through the haze: nodes reach half a voxel beyond the outermost.
 constexpr double kReach = (kHalf + 0.5) * kEdge;
 
 media::Recipe haze() {

@@ -26,9 +26,9 @@ media::Recipe block() {
     return r;
 }
 
-// Mean over the sphere of the way from a cube's centre to its surface, for side 1: fluence at the centre of a uniformly
-// emitting cube over 4 pi.
-constexpr double kMeanWay = 7.674134 / (4.0 * kExactPi);
+// Mean over the sphere of the distance from a cube's centre to its surface, for side 1: fluence at the centre of a
+// uniformly emitting cube over 4 pi.
+constexpr double kMeanDistance = 7.674134 / (4.0 * kExactPi);
 
 Case scattered() {
     Case c;
@@ -41,8 +41,8 @@ Case scattered() {
         return scene;
     };
     c.measure = [](const Scene& scene, const RenderedFrame& frame, const Method& method, const Render& render) {
-        const double depth = 0.01 * 6 * 0.01, way = kMeanWay * kSide * 0.01;
-        const double truth = one_minus_transmittance(depth) * way;
+        const double depth = 0.01 * 6 * 0.01, length = kMeanDistance * kSide * 0.01;
+        const double truth = one_minus_transmittance(depth) * length;
         return every_pixel_is(Rgb(static_cast<float>(truth)), "MV")(scene, frame, method, render);
     };
     return c;

@@ -1,4 +1,4 @@
-// The same picture at another size or another place.
+// The same picture at another scale or another position.
 #include <fmt/format.h>
 
 #include "stability/scenes.h"

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kEdge = 0.1;
 constexpr double kDepth = 2.0;  // of the voxel, through its middle
-constexpr int kFire = 14;       // the fire's first layer, or the smoke's place, above the voxel at 0
+constexpr int kFire = 14;       // the fire's first layer, or the smoke's position, above the voxel at 0
 
 double hat(double nodes) {
     return std::max(0.0, 1.0 - std::abs(nodes));
@@ -65,8 +65,8 @@ double fluence(const dvec3& p) {
     double sum = 0.0;
     for (int i = 0; i < n * n * n; ++i) {
         const dvec3 o = (dvec3(i / (n * n), i / n % n, i % n) + 0.5) * (2.0 / n) - 1.0;
-        const dvec3 from = o + dvec3(0.0, 0.0, -kFire / 2), way = p - from;
-        sum += hat(o.x) * hat(o.y) * hat(o.z) * std::exp(-depth_between(from, p)) / glm::dot(way, way);
+        const dvec3 from = o + dvec3(0.0, 0.0, -kFire / 2), offset = p - from;
+        sum += hat(o.x) * hat(o.y) * hat(o.z) * std::exp(-depth_between(from, p)) / glm::dot(offset, offset);
     }
     return sum * 8.0 / (n * n * n);
 }

@@ -1,4 +1,4 @@
-// Surfaces where they are awkward: walls against the fire, two walls in one place, walls that reflect nothing or
+// Difficult surfaces: walls against the fire, two coincident walls, walls that reflect nothing or
 // everything, mirrors, and walls behind smoke that is hardly there or hides all.
 #include <algorithm>
 #include <cmath>
@@ -120,7 +120,7 @@ Scene burning_over_floors(int floors) {
     return with_walls(std::move(scene), std::vector<QuickQuad>(floors, ceiling(-1.5, 4.0, matt(0.5))));
 }
 
-// Which of two surfaces in one place a ray meets is chance; neither may hide the other's light.
+// Which of two coincident surfaces a ray hits is chance; neither may hide the other's light.
 Case touching() {
     Case c;
     c.name = "surface/two-in-one-place";

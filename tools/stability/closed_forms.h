@@ -1,4 +1,4 @@
-// What radiative transfer knows without a renderer: closed forms, and integral equations of one variable.
+// Solutions of radiative transfer without a renderer: closed forms, and integral equations of one variable.
 #pragma once
 
 #include <functional>
@@ -23,7 +23,7 @@ double isothermal_half_space(double albedo, double mu);
 // A homogeneous ball that scatters isotropically and emits uniformly. Lengths in mean free paths, radiance as a part of
 // `emission`, the emitted part of the source function: the source function S solves, with f(x) = x S(x) odd,
 //   f(x) = emission x + albedo/2 integral over [-radius, radius] of E1|x - y| f(y) dy.
-// Solved for piecewise linear f on a grid that is finer toward the surface; right to about 1e-4.
+// Solved for piecewise linear f on a grid that is finer toward the surface; accurate to about 1e-4.
 class ScatteringBall {
 public:
     ScatteringBall(double radius, double albedo, double emission);

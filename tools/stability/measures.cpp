@@ -29,7 +29,7 @@ double norm(const dvec3& v) {
     return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
 }
 
-// Where nothing is wanted, whatever is found is the error itself [W/(m^2 sr)].
+// Where the truth is 0, the error is absolute [W/(m^2 sr)].
 double relative(double error, double wanted) {
     return wanted > 0.0 ? error / wanted : error;
 }
@@ -74,8 +74,8 @@ Measured of_pixels(const std::vector<dvec3>& found, const std::vector<dvec3>& wa
     return {relative(std::sqrt(error), std::sqrt(square)), 0.0};
 }
 
-// Of a picture whose pixels are sampled independently of each other: of its mean, with the noise that their spread
-// tells.
+// Of a picture whose pixels are sampled independently of each other: of its mean, with the noise
+// from their spread.
 Measured of_sampled_pixels(const std::vector<dvec3>& found, const std::vector<dvec3>& wanted) {
     dvec3 sum(0.0), square(0.0);
     for (std::size_t i = 0; i < found.size(); ++i) {

@@ -1,5 +1,5 @@
-// What renders the cases: the path tracer, and the lighting grid with each of the owners of light that was scattered
-// more than once (MM and SM).
+// The methods that render the cases: the path tracer, and the lighting grid with each method for light scattered more
+// than once (MM and SM).
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ public:
     bool is_path() const { return scattering_.empty(); }
     bool is_grid() const { return scattering_ == kLightingGridMethod; }
 
-    // All pixels see the same random lights or particles: only other seeds tell how noisy they are.
+    // All pixels see the same random lights or particles: only other seeds show their noise.
     bool shares_noise() const { return !is_path() && !is_grid(); }
 
     // The same shot by this method. `seed`: other ones draw other lights and particles. Throws Error Usage where the
@@ -36,8 +36,8 @@ private:
     std::string scattering_;  // empty: paths
 };
 
-// The lighting grid first, then the path tracer, which every case knows; then the others, which have a part in those
-// cases alone whose light is scattered twice.
+// The lighting grid first, then the path tracer, which render every case; then the others, which contribute only to
+// cases with light scattered twice.
 const std::vector<Method>& all_methods();
 
 }  // namespace brisance::stability

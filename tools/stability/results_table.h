@@ -1,4 +1,4 @@
-// Results as a table for people, for a document, and for programs.
+// Results as text, as Markdown, and as JSON.
 #pragma once
 
 #include <string>

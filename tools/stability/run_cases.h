@@ -1,4 +1,4 @@
-// Runs cases through methods.
+// Renders cases by methods and judges the results.
 #pragma once
 
 #include <functional>

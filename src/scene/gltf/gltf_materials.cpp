@@ -115,7 +115,7 @@ void GltfMaterials::read_extensions(const tinygltf::Material& material, SceneMat
     if (const Value* const ior = extension(material, "KHR_materials_ior")) {
         const double value = number(*ior, "ior", 1.5);
         if (value == 0.0)
-            file_.reject(label_ + ": its ior is 0, by which other renderers ask for a reflection that no index gives",
+            file_.reject(label_ + ": its ior is 0, for which other renderers reflect all light; no index does that",
                          "give it an ior of 1 to 10");
         surface.ior = clamped(value, 1.0, 10.0, "ior");
     }

@@ -110,7 +110,7 @@ public:
         budget_.claim(file_.path.string(), bytes_with_tree(triangles, vertices), triangles);
         for (const Job& job : jobs)
             read_primitive(job);
-        left_out_.tell(file_.path.string(), progress_);
+        left_out_.warn(file_.path.string(), progress_);
     }
 
 private:
@@ -247,7 +247,7 @@ private:
 
 }  // namespace
 
-void LeftOut::tell(const std::string& where, Progress& progress) const {
+void LeftOut::warn(const std::string& where, Progress& progress) const {
     if (without_area > 0)
         progress.warning("no-area", fmt::format("{}: {} triangles without area are left out", where, without_area));
     if (not_finite > 0)

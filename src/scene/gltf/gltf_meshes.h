@@ -12,7 +12,7 @@ namespace brisance {
 // Counts of triangles left out of a file or a quick shape, by reason.
 struct LeftOut {
     std::size_t without_area = 0, not_finite = 0;
-    void tell(const std::string& where, Progress& progress) const;
+    void warn(const std::string& where, Progress& progress) const;
 };
 
 // Takes triangles without area or with positions that are not finite out of a mesh, and vertices that are not finite.

@@ -37,7 +37,7 @@ using Sections = std::vector<std::pair<std::string, std::string>>;
 
 Sections all_sections() {
     Sections sections = {
-        {"volume", "the OpenVDB file, its grids and its place"},
+        {"volume", "the OpenVDB file, its grids and its position"},
         {"volume.grids", "which grid plays which role: \"name\" or \"name[index]\", null for automatic, \"\" for none"},
         {"smoke", "from density to optical coefficients"},
         {"fire", "what glows"},

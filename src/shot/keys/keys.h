@@ -20,10 +20,10 @@ struct Key {
     std::string help;  // one line, with the unit
     std::string expected;
     Json schema;
-    std::function<bool(Shot&, const Json&)> set;                         // false: not accepted, the shot is unchanged
-    std::function<std::optional<Json>(const Shot&)> get;                 // absent: the shot leaves it open
-    std::function<std::optional<Complaint>(const Json&)> complain = {};  // of values with parts; else empty
-    Affects affects = Affects::Picture;                                  // set for all keys by their paths
+    std::function<bool(Shot&, const Json&)> set;          // false: not accepted, the shot is unchanged
+    std::function<std::optional<Json>(const Shot&)> get;  // absent: the shot leaves it open
+    std::function<std::optional<Mismatch>(const Json&)> find_mismatch = {};  // of values with parts; else empty
+    Affects affects = Affects::Picture;                                      // set for all keys by their paths
 };
 
 Affects affected_by(const std::string& path);
@@ -45,7 +45,7 @@ Key make_key(const std::string& path, const std::string& help, const Codec<T>& c
                 Shot copy = shot;  // so that one accessor reads and writes
                 return codec.write(at(copy));
             },
-            codec.complain};
+            codec.find_mismatch};
 }
 
 // A value whose presence says more than the value: `flag(shot)` becomes true, and it is written only then.

@@ -16,7 +16,7 @@ Key unless_matrix(Key key) {
 Key matrix_key() {
     const Codec<dmat4> codec = matrix();
     return {"camera.world_from_camera",
-            "in place of eye, target and up: x right, y up, looking along -z; rigid",
+            "instead of eye, target and up: x right, y up, looking along -z; rigid",
             codec.expected,
             codec.schema,
             [codec](Shot& shot, const Json& json) {

@@ -17,7 +17,8 @@ std::string method_help() {
     for (const ScatteringMethod& method : scattering_methods())
         help += method.name + ": " + method.help + "; ";
     return help + kAutomaticMethod + ": " + VolumetricPhotonsMethod::kName +
-           " for boxes of haze alone that scatter forward, else the grid";
+           " where all media are homogeneous boxes whose phase function has a sharp peak, " + kLightingGridMethod +
+           " otherwise";
 }
 
 // One key of a method's settings as a key of the shot.

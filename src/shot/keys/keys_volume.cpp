@@ -27,7 +27,7 @@ Codec<GridRoles> roles() {
 
 Codec<FogBox> fog_box() {
     using T = FogBox;
-    return object_of<T>("a box of haze {\"low\": [x, y, z], \"high\": [x, y, z]}",
+    return object_of<T>("a homogeneous box {\"low\": [x, y, z], \"high\": [x, y, z]}",
                         {member<T>(
                              "low", point(), [](T & t) -> auto& { return t.low; }, true),
                          member<T>(

@@ -26,7 +26,7 @@ Member<T> member(const std::string& name, const Codec<V>& codec, At at, bool req
     Codec<Json> untyped{
         codec.schema, codec.expected,
         [codec](const Json& json) { return codec.read(json) ? std::optional<Json>(json) : std::nullopt; },
-        [](const Json& json) { return json; }, codec.complain};
+        [](const Json& json) { return json; }, codec.find_mismatch};
     return {name, untyped, [codec, at](T& object, const Json& json) { at(object) = *codec.read(json); },
             [codec, at](const T& object) {
                 T copy = object;  // so that one accessor reads and writes
@@ -36,10 +36,10 @@ Member<T> member(const std::string& name, const Codec<V>& codec, At at, bool req
 }
 
 template <class T>
-std::optional<Complaint> complain_about_object(const std::vector<Member<T>>& members, const std::string& expected,
-                                               const Json& json) {
+std::optional<Mismatch> find_object_mismatch(const std::vector<Member<T>>& members, const std::string& expected,
+                                             const Json& json) {
     if (!json.is_object())
-        return Complaint{"", expected, json};
+        return Mismatch{"", expected, json};
     const auto find = [&](const std::string& name) {
         return std::find_if(members.begin(), members.end(), [&](const Member<T>& m) { return m.name == name; });
     };
@@ -49,20 +49,20 @@ std::optional<Complaint> complain_about_object(const std::vector<Member<T>>& mem
             std::vector<std::string> names;
             for (const Member<T>& m : members)
                 names.push_back(m.name);
-            return Complaint{"", "keys it knows, such as \"" + nearest_key(item.key(), names) + "\"", Json(item.key())};
+            return Mismatch{"", "keys it knows, such as \"" + nearest_key(item.key(), names) + "\"", Json(item.key())};
         }
         if (found->codec.read(item.value()))
             continue;
-        Complaint inner{"", found->codec.expected, item.value()};
-        if (found->codec.complain)
-            if (const std::optional<Complaint> more = found->codec.complain(item.value()))
+        Mismatch inner{"", found->codec.expected, item.value()};
+        if (found->codec.find_mismatch)
+            if (const std::optional<Mismatch> more = found->codec.find_mismatch(item.value()))
                 inner = *more;
         inner.path = "." + item.key() + inner.path;
         return inner;
     }
     for (const Member<T>& m : members)
         if (m.required && !json.contains(m.name))
-            return Complaint{"", "\"" + m.name + "\", which is missing: " + m.codec.expected, json};
+            return Mismatch{"", "\"" + m.name + "\", which is missing: " + m.codec.expected, json};
     return std::nullopt;
 }
 
@@ -80,9 +80,9 @@ Codec<T> object_of(const std::string& what, const std::vector<Member<T>>& member
     codec.schema = {{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
     if (!required.empty())
         codec.schema["required"] = required;
-    codec.complain = [members, what](const Json& json) { return complain_about_object(members, what, json); };
+    codec.find_mismatch = [members, what](const Json& json) { return find_object_mismatch(members, what, json); };
     codec.read = [members, what](const Json& json) -> std::optional<T> {
-        if (complain_about_object(members, what, json))
+        if (find_object_mismatch(members, what, json))
             return std::nullopt;
         T object;
         for (const Member<T>& m : members)
@@ -124,13 +124,13 @@ Codec<std::vector<T>> list_of(const std::string& what, const Codec<T>& item) {
             json.push_back(item.write(one));
         return json;
     };
-    codec.complain = [item](const Json& json) -> std::optional<Complaint> {
+    codec.find_mismatch = [item](const Json& json) -> std::optional<Mismatch> {
         for (std::size_t i = 0; json.is_array() && i < json.size(); ++i) {
             if (item.read(json[i]))
                 continue;
-            Complaint inner{"", item.expected, json[i]};
-            if (item.complain)
-                if (const std::optional<Complaint> more = item.complain(json[i]))
+            Mismatch inner{"", item.expected, json[i]};
+            if (item.find_mismatch)
+                if (const std::optional<Mismatch> more = item.find_mismatch(json[i]))
                     inner = *more;
             inner.path = "[" + std::to_string(i) + "]" + inner.path;
             return inner;

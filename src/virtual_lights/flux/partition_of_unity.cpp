@@ -75,9 +75,9 @@ void PartitionOfUnity::build(std::span<const VirtualLight> lights, std::span<Sph
 // Between points a little above the surface, so that it does not occlude itself where it is curved.
 bool PartitionOfUnity::hidden(const Sphere& sphere, const vec3& position, const vec3& normal) const {
     const float above = kAbove * sphere.radius;
-    const dvec3 from(position + above * normal), way = dvec3(sphere.centre + above * sphere.normal) - from;
-    const double length = glm::length(way);
-    return length > 0.0 && surfaces_->occluded({from, way / length}, length);
+    const dvec3 from(position + above * normal), offset = dvec3(sphere.centre + above * sphere.normal) - from;
+    const double length = glm::length(offset);
+    return length > 0.0 && surfaces_->occluded({from, offset / length}, length);
 }
 
 LightShares PartitionOfUnity::shares(const dvec3& position, const dvec3& normal, int scene_material) const {

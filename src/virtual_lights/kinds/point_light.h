@@ -30,8 +30,8 @@ struct PointKind {
         // The bound holds for the light's cosine over squared distance; the vertex's cosine belongs to its BSDF.
         Rgb radiance(std::size_t index, const PathVertex& vertex, const dvec3& direction) const {
             const VirtualLight& light = set_.lights[index];
-            const dvec3 way = light.position - vertex.position();
-            const double square = glm::dot(way, way), cosine = -glm::dot(light.frame.normal, direction);
+            const dvec3 offset = light.position - vertex.position();
+            const double square = glm::dot(offset, offset), cosine = -glm::dot(light.frame.normal, direction);
             if (!(cosine > 0.0) || !(square > 0.0))
                 return Rgb(0.0f);
             const double kept = std::min(1.0, set_.settings().point_bound * square / cosine);

@@ -25,27 +25,27 @@ double cap_height(double radius, double square_distance) {
 
 dvec3 sample_toward(const VirtualLight& light, const LitPoint& point, Rng& rng) {
     const double u = rng.next_double(), azimuth = 2.0 * kPi * rng.next_double();
-    const dvec3 way = light.position - point.position;
-    const double square_distance = glm::dot(way, way);
+    const dvec3 offset = light.position - point.position;
+    const double square_distance = glm::dot(offset, offset);
     if (square_distance > light.radius * light.radius)
-        return around(glm::normalize(way), 1.0 - u * cap_height(light.radius, square_distance), azimuth);
+        return around(glm::normalize(offset), 1.0 - u * cap_height(light.radius, square_distance), azimuth);
     if (point.kind == LitPoint::Kind::Surface)
         return around(point.normal, std::sqrt(u), azimuth);
     return around({0.0, 0.0, 1.0}, 1.0 - 2.0 * u, azimuth);
 }
 
 bool leads_into(const VirtualLight& light, const LitPoint& point, const dvec3& direction) {
-    const dvec3 way = light.position - point.position;
-    const double square_distance = glm::dot(way, way), square_radius = light.radius * light.radius;
+    const dvec3 offset = light.position - point.position;
+    const double square_distance = glm::dot(offset, offset), square_radius = light.radius * light.radius;
     if (square_distance <= square_radius)
         return true;
-    const dvec3 across = glm::cross(way, direction);
-    return glm::dot(way, direction) > 0.0 && glm::dot(across, across) < square_radius;
+    const dvec3 across = glm::cross(offset, direction);
+    return glm::dot(offset, direction) > 0.0 && glm::dot(across, across) < square_radius;
 }
 
 double pdf_toward(const VirtualLight& light, const LitPoint& point, const dvec3& direction) {
-    const dvec3 way = light.position - point.position;
-    const double square_distance = glm::dot(way, way);
+    const dvec3 offset = light.position - point.position;
+    const double square_distance = glm::dot(offset, offset);
     if (square_distance > light.radius * light.radius)
         return 1.0 / (2.0 * kPi * cap_height(light.radius, square_distance));
     if (point.kind == LitPoint::Kind::Surface)

@@ -40,8 +40,8 @@ public:
             const auto first = std::lower_bound(entries_.begin(), entries_.end(), key,
                                                 [](const Entry& e, std::uint64_t k) { return e.key < k; });
             for (auto e = first; e != entries_.end() && e->key == key; ++e) {
-                const vec3 way = e->point - at;
-                sum += std::max(0.0f, 1.0f - glm::dot(way, way) / (side_ * side_));
+                const vec3 offset = e->point - at;
+                sum += std::max(0.0f, 1.0f - glm::dot(offset, offset) / (side_ * side_));
             }
         }
         return sum;

@@ -78,7 +78,7 @@ function aboutNoise() {
     const stated = `The reference's own noise is ${percent(noise)} rRMSE (beauty).`;
     return report.measure === "noise_free"
         ? `${stated} Errors are judged by its two independent halves, which leaves that noise out.`
-        : `${stated} Errors below twice that are marked: they tell about the reference.`;
+        : `${stated} Errors below twice that are marked: they measure the reference.`;
 }
 
 // By which settings the steps of each method differ.
@@ -104,8 +104,8 @@ const reachHelp =
     "method is extrapolated from its longest run by the law of averages: after the start-up, the time that fewer " +
     "paths do not shorten, its error falls as time to the power of \u2212\u00bd. A " +
     "biased one stays at its lowest measured error, its bias floor. \u201cOr less\u201d: the cheapest run was already " +
-    "better, or the error had become too small to be told from 0. Slope: least squares through all points, against time " +
-    "and against the number of paths.";
+    "better, or the error had become too small to be distinguished from 0. Slope: least squares through all points, " +
+    "against time and against the number of paths.";
 
 export function addConvergence(plotSection, reachSection, equalTimeSection) {
     const state = { layer: "", measure: takenMeasures[0], clock: "wall" };

@@ -25,8 +25,8 @@ export function nameOf(id) {
     return `${method.label}, ${run.label}`;
 }
 
-// What a plot can show of a method: [{run, seconds, error}], by time. An error of 0 is one too small to be told from
-// the reference, and has no place on a logarithmic axis.
+// The points of a method that a plot can show: [{run, seconds, error}], by time. An error of 0 is too small to measure
+// against the reference, and cannot be drawn on a logarithmic axis.
 export function pointsOf(method, layer, measure, clock) {
     return method.runs
         .map((run) => ({ run, seconds: run[clocks[clock].key], error: run.errors[layer]?.[measure] }))
