@@ -7,67 +7,13 @@
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "gathering/far_kernels.h"
-#include "medium/lattice/local_bounds.h"
+#include "gathering/map_layouts.h"
 #include "medium/phase.h"
 #include "shadows/shadow_maps.h"
 
 namespace brisance {
 
 namespace {
-
-constexpr std::size_t kLeastBatch = 2048;  // lights with maps at once; resolution is reduced rather than fewer lights
-constexpr float kNearestOfBalls = 0.25f;  // first distance of the maps of the finest level's lights, over their spacing
-
-// Distance from any light of the level to the farthest corner of the medium. Nothing attenuates light beyond it.
-float farthest_distance(const GridLevel& level, const Medium& medium) {
-    Box lights;
-    for (const vec3& p : level.position)
-        lights.add(p);
-    const LocalBounds corners = local_bounds(medium);
-    const vec3 far = glm::max(glm::abs(lights.high - corners.low), glm::abs(corners.high - lights.low));
-    return glm::length(far);
-}
-
-ShadowMapLayout layout_of(const LightField& field, const GridLevel& level, bool top) {
-    ShadowMapLayout layout;
-    // A coarser light's map covers more voxels but its own size blurs its shadows: resolution grows as the square root
-    // of the spacing (more gained less than the hierarchy's own error on real smoke), to even numbers.
-    const float growth = std::sqrt(float(1 << std::min(level.level - 1, 6)));
-    layout.resolution =
-        std::min(128, 2 * static_cast<int>(std::lround(0.5f * growth * field.settings.shadow_resolution)));
-    layout.distances = field.settings.shadow_distances;
-    const float radius = field.alpha * level.spacing;
-    layout.near_distance = level.level == field.bottom ? kNearestOfBalls * level.spacing : 0.5f * radius;
-    layout.far_distance = 2.0f * radius;
-    layout.for_outside = field.escape != nullptr;
-    layout.range = layout.for_outside ? 1.0f / FootprintPicker::kLeastShare : 1.0f;
-    if (top) {
-        const float far = std::max(layout.far_distance, farthest_distance(level, field.pyramid->medium()));
-        layout.distances = std::min(64, static_cast<int>(std::ceil(layout.distances * far / layout.far_distance)));
-        layout.far_distance = far;
-    }
-    if (!field.intensity) {  // lights outside of the medium
-        layout.geometric = true;
-        const float range = layout.far_distance - layout.near_distance;
-        layout.distances = std::max(layout.distances, std::min(256, 1 + int(range / field.pyramid->medium().spacing)));
-    }
-    return layout;
-}
-
-// Lowers the resolution, then the number of distances, until at least kLeastBatch lights (or all) fit the memory limit.
-void fit_to_memory(ShadowMapLayout& layout, std::size_t lights, std::uint64_t limit, int level, Progress& progress) {
-    const ShadowMapLayout wish = layout;
-    const auto too_large = [&] { return layout.bytes_per_light() * std::min(lights, kLeastBatch) > limit; };
-    while (too_large() && layout.resolution > 4)
-        layout.resolution /= 2;
-    while (too_large() && layout.distances > 2)
-        layout.distances = std::max(2, layout.distances / 2);
-    if (layout.resolution != wish.resolution || layout.distances != wish.distances)
-        progress.notice("shadow maps of level " + std::to_string(level) + " lowered from " +
-                        std::to_string(wish.resolution) + "^2 x " + std::to_string(wish.distances) + " to " +
-                        std::to_string(layout.resolution) + "^2 x " + std::to_string(layout.distances) +
-                        " to stay within the memory limit of " + std::to_string(limit >> 20) + " MiB");
-}
 
 // Lights of the level that may reach a block, as ascending indices.
 void interaction_list(const LightField& field, const GridLevel& level, bool top, const Box& bounds,
@@ -114,7 +60,7 @@ public:
         ShadowMapLayout layout;
         std::size_t batch = level.size();
         if (maps) {
-            layout = layout_of(field_, level, top);
+            layout = map_layout(field_, level, top);
             fit_to_memory(layout, level.size(), field_.settings.memory_limit_bytes, level.level, progress_);
             batch = std::clamp<std::size_t>(field_.settings.memory_limit_bytes / layout.bytes_per_light(),
                                             std::min(kLeastBatch, level.size()), level.size());
@@ -123,6 +69,15 @@ public:
             cost.map_bytes = layout.bytes_per_light() * level.size();
             cost.held_bytes = layout.bytes_per_light() * batch;
         }
+        if (maps && field_.cache && batch < level.size() && field_.cache->on_demand)
+            gather_needed(level, far_lights(level, top, layout, 0), batch, cost);
+        else
+            gather_batches(level, far_lights(level, top, layout, 0), maps, batch, cost);
+        return cost;
+    }
+
+private:
+    void gather_batches(const GridLevel& level, FarLights lights, bool maps, std::size_t batch, LevelCost& cost) {
         const bool keep = maps && field_.cache && batch == level.size();
         if (keep)
             field_.cache->levels.resize(std::max<std::size_t>(field_.cache->levels.size(), level.level + 1));
@@ -131,12 +86,12 @@ public:
         const bool on_demand = keep && field_.cache->on_demand;
         for (std::size_t first = 0; first < level.size(); first += batch) {
             const std::size_t count = std::min(batch, level.size() - first);
-            const FarLights lights = far_lights(level, top, layout, first);
+            lights.list_base = static_cast<std::uint32_t>(first);
             Stopwatch watch;
             if (on_demand)
                 make_needed_maps(level, lights, made);
             else if (maps && !(keep && !made.maps.empty()))
-                build_shadow_maps(*field_.pyramid, level, *field_.weight, field_.escape, layout, first, count,
+                build_shadow_maps(*field_.pyramid, level, *field_.weight, field_.escape, lights.layout, first, count,
                                   made.maps, field_.occluders);
             cost.map_seconds += watch.seconds();
             watch = Stopwatch();
@@ -146,10 +101,32 @@ public:
         }
         if (on_demand)
             cost.map_bytes = cost.held_bytes = made.maps.size() * sizeof(std::uint16_t);
-        return cost;
     }
 
-private:
+    // Where not all maps of the level can be held: makes those that are needed, `batch` of them at once, and keeps
+    // none.
+    void gather_needed(const GridLevel& level, FarLights lights, std::size_t batch, LevelCost& cost) {
+        Stopwatch watch;
+        ShadowMapCache::Level made;
+        made.map_of.resize(level.size(), FarLights::kNoMap);
+        const std::vector<std::uint32_t> needed = needed_lights(level, lights, made);
+        cost.map_seconds += watch.seconds();
+        cost.map_bytes = needed.size() * lights.layout.bytes_per_light();
+        cost.held_bytes = std::min(batch, needed.size()) * lights.layout.bytes_per_light();
+        for (std::size_t begin = 0; begin < needed.size(); begin += batch) {
+            const std::size_t end = std::min(begin + batch, needed.size());
+            watch = Stopwatch();
+            made.maps.clear();
+            make_maps(level, lights, std::span(needed).subspan(begin, end - begin), made);
+            cost.map_seconds += watch.seconds();
+            watch = Stopwatch();
+            lights.list_base = needed[begin];
+            cost.evaluations += gather_batch(level, lights, needed[end - 1] - needed[begin] + 1, made);
+            cost.gather_seconds += watch.seconds();
+            progress_.fraction(double(end) / needed.size());
+        }
+    }
+
     FarLights far_lights(const GridLevel& level, bool top, const ShadowMapLayout& layout, std::size_t first) const {
         FarLights lights{};
         lights.position = level.position.data();
@@ -174,9 +151,9 @@ private:
         return field_.settings.shadows == ShadowMethod::Maps && level.level > 0;
     }
 
-    // Adds to `made` the missing maps of all lights that may reach some receiver.
-    void make_needed_maps(const GridLevel& level, const FarLights& lights, ShadowMapCache::Level& made) {
-        made.map_of.resize(level.size(), FarLights::kNoMap);
+    // Lights without a map in `made` that may reach some receiver, as ascending indices.
+    std::vector<std::uint32_t> needed_lights(const GridLevel& level, const FarLights& lights,
+                                             const ShadowMapCache::Level& made) {
         std::vector<std::uint8_t> used(level.size(), 0);
         parallel_for(receivers_.blocks().size(), [&](std::size_t b) {
             thread_local std::vector<std::uint32_t> near;
@@ -190,15 +167,27 @@ private:
             }
         });
         std::vector<std::uint32_t> list;
-        const std::size_t stride = lights.layout.stride(), before = made.maps.size();
         for (std::uint32_t i = 0; i < used.size(); ++i)
-            if (used[i]) {
-                made.map_of[i] = static_cast<std::uint32_t>(before / stride + list.size());
+            if (used[i])
                 list.push_back(i);
-            }
+        return list;
+    }
+
+    // Adds the maps of the lights in `list`.
+    void make_maps(const GridLevel& level, const FarLights& lights, std::span<const std::uint32_t> list,
+                   ShadowMapCache::Level& made) {
+        const std::size_t stride = lights.layout.stride(), before = made.maps.size();
+        for (std::size_t k = 0; k < list.size(); ++k)
+            made.map_of[list[k]] = static_cast<std::uint32_t>(before / stride + k);
         made.maps.resize(before + list.size() * stride);
         build_shadow_maps(*field_.pyramid, level, *field_.weight, field_.escape, lights.layout, list,
                           made.maps.data() + before, field_.occluders);
+    }
+
+    // Adds to `made` the missing maps of all lights that may reach some receiver.
+    void make_needed_maps(const GridLevel& level, const FarLights& lights, ShadowMapCache::Level& made) {
+        made.map_of.resize(level.size(), FarLights::kNoMap);
+        make_maps(level, lights, needed_lights(level, lights, made), made);
     }
 
     std::uint64_t gather_batch(const GridLevel& level, const FarLights& all, std::size_t count,
@@ -329,7 +318,7 @@ Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request,
     const NearField near(medium.local_from_index, field.alpha * medium.spacing,
                          field.settings.shadows != ShadowMethod::None);
     near.gather({&medium.lattice, &medium.extinction, field.intensity, field.directional, request.toward_camera,
-                 request.mean_cosine},
+                 request.mean_cosine, request.needed},
                 out);
     LevelCost bottom;
     bottom.lights =

@@ -36,6 +36,7 @@ public:
         const std::vector<float>* directional;   // 24 coefficients per node (far_kernels.h), or null
         const std::vector<vec3>* toward_camera;  // per node, or null: no `scattered`
         float mean_cosine = 0.0f;
+        const std::vector<std::uint8_t>* needed = nullptr;  // per node; bricks without a needed node are skipped
     };
 
     // Adds to `out`, whose arrays are planar over the lattice's nodes.

@@ -68,6 +68,7 @@ struct Gathered {
     void resize(std::size_t receivers, bool camera, bool directional);
     void add(const Gathered& other);
     void scale(const Rgb& factor);
+    std::uint64_t bytes() const { return (fluence.size() + scattered.size() + moments.size()) * sizeof(float); }
 };
 
 }  // namespace brisance

@@ -19,7 +19,8 @@ struct ReflectedLight {
 // Everything by reference must outlive the lighting.
 struct MediumLightingInput {
     const Medium& medium;
-    vec3 eye;  // of the camera, local [m]
+    vec3 eye;           // of the camera, local [m]
+    float pixel_angle;  // width of a pixel per metre of distance
     LightingSettings lighting;
     ScatteringSettings scattering;
     const Surroundings* surroundings = nullptr;  // null: none

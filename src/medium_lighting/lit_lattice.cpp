@@ -11,6 +11,8 @@ namespace {
 // Level of the pyramid that rays toward lights seen from outside march: how much of a light smoke hides needs no finer
 // one.
 constexpr int kExteriorRayLevel = 2;
+// Levels above the medium's own on which light is gathered first.
+constexpr int kLitLevels = 3;
 
 // Nodes whose light the camera or the smoke can look up: corners of voxels with extinction.
 std::vector<std::uint8_t> nodes_beside_extinction(const Medium& medium) {
@@ -28,20 +30,6 @@ std::vector<std::uint8_t> nodes_beside_extinction(const Medium& medium) {
         }
     });
     return needed;
-}
-
-std::vector<vec3> directions_to(const Medium& medium, const vec3& eye) {
-    std::vector<vec3> directions(medium.lattice.node_count());
-    parallel_for(
-        directions.size(),
-        [&](std::size_t i) {
-            const vec3 p = medium.local_of_node(medium.lattice.node(i));
-            const vec3 offset = eye - p;
-            const float d = glm::length(offset);
-            directions[i] = d > 0.0f ? offset / d : vec3(0.0f, 0.0f, 1.0f);
-        },
-        4096);
-    return directions;
 }
 
 }  // namespace
@@ -63,6 +51,8 @@ LitLattice::LitLattice(const MediumLightingInput& input)
                                   input.directional ? std::optional<vec3>(input.eye) : std::nullopt);
     if (!thin_medium_.empty())
         pyramid_.set_homogeneous_bricks(&thin_medium_.homogeneous_bricks());
+    if (input.lighting.error > 0.0f)
+        levels_ = make_lit_levels(pyramid_, needed_, {input.eye, input.pixel_angle}, input.directional, kLitLevels);
 }
 
 LatticeRequest LitLattice::request() const {

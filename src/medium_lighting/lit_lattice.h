@@ -8,6 +8,7 @@
 #include "gathering/gather.h"
 #include "gathering/point_depths.h"
 #include "medium_lighting/input.h"
+#include "medium_lighting/lit_levels.h"
 #include "thin_media/thin_medium.h"
 
 namespace brisance {
@@ -26,6 +27,8 @@ public:
     const Occluders* surfaces() const { return surfaces_.get(); }        // null: none
     const std::vector<std::uint8_t>& needed() const { return needed_; }  // per node: whether light is needed there
     std::size_t node_count() const { return needed_.size(); }
+    // Coarser lattices to gather on first, from level 1 on; empty: every node is lit by itself.
+    const std::vector<LitLevel>& levels() const { return levels_; }
 
     // Of a flight after which light scatters on, with the moments that needs, and of the last one before the camera.
     LatticeRequest request() const;
@@ -47,6 +50,7 @@ private:
     std::vector<vec3> toward_camera_;
     PointDepths depths_;
     ThinMedium thin_medium_;
+    std::vector<LitLevel> levels_;
 };
 
 }  // namespace brisance

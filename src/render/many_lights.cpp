@@ -65,9 +65,13 @@ bool wants_single_scattering_apart(const DrawInput& input) {
 
 MediumLightingInput medium_lighting_input(const DrawInput& input, const Plan& plan, const Medium& medium,
                                           const ReflectedLight& reflected, bool orders_apart) {
-    MediumLightingInput out{
-        medium,   vec3(input.camera.eye_local()), input.shot.lighting, input.shot.scattering, input.surroundings,
-        reflected};
+    MediumLightingInput out{medium,
+                            vec3(input.camera.eye_local()),
+                            static_cast<float>(input.camera.pixel_angle()),
+                            input.shot.lighting,
+                            input.shot.scattering,
+                            input.surroundings,
+                            reflected};
     out.fire = plan.emission;
     out.single = plan.single;
     out.multiple = plan.multiple;

@@ -6,6 +6,7 @@
 #include "core/parallel.h"
 #include "gathering/sh.h"
 #include "lighting_grid/voxel_lights.h"
+#include "medium/coarse_medium.h"
 #include "medium/phase.h"
 #include "scattering/balance.h"
 #include "scattering/multiple_scattering.h"
@@ -19,60 +20,6 @@ constexpr int kBalanceSweeps = 3;
 // A node that sharpening leaves less of its unit light than this is about to be emptied.
 constexpr float kEmptied = 0.1f;
 
-// The medium of a pyramid level: coarse nodes at every 2^level-th index, mean extinction, mean albedo by extinction.
-Medium coarse_medium(const ExtinctionPyramid& fine, int level) {
-    const Medium& f = fine.medium();
-    Medium m;
-    const float scale = float(1 << level);
-    m.lattice = fine.lattice(level);
-    m.extinction = fine.nodes(level);
-    m.world_from_index = f.world_from_index;
-    for (int a = 0; a < 3; ++a)
-        m.world_from_index[a] *= double(scale);
-    m.reference_node = f.reference_node >> level;
-    m.local_from_index = f.local_from_index * scale;
-    m.index_from_local = f.index_from_local * (1.0f / scale);
-    m.voxel_volume = f.voxel_volume * scale * scale * scale;
-    m.spacing = f.spacing * scale;
-    m.albedo = f.albedo;
-    m.mean_cosine = f.mean_cosine;
-    m.max_extinction = m.extinction.empty() ? 0.0f : *std::max_element(m.extinction.begin(), m.extinction.end());
-    if (f.albedo_nodes.empty())
-        return m;
-    std::vector<float> scattering(f.extinction.size() * 3);
-    for (std::size_t i = 0; i < f.extinction.size(); ++i)
-        for (int c = 0; c < 3; ++c)
-            scattering[i * 3 + c] = f.extinction[i] * f.albedo_nodes[i][c];
-    BrickLattice lattice = f.lattice;
-    for (int l = 0; l < level; ++l) {
-        BrickLattice coarse;
-        std::vector<float> values;
-        coarsen(lattice, scattering, 3, coarse, values);
-        lattice = std::move(coarse);
-        scattering = std::move(values);
-    }
-    m.albedo_nodes.resize(m.extinction.size(), Rgb(0.0f));
-    for (std::size_t i = 0; i < m.extinction.size(); ++i)
-        if (m.extinction[i] > 0.0f)
-            m.albedo_nodes[i] = glm::min(
-                Rgb(scattering[i * 3], scattering[i * 3 + 1], scattering[i * 3 + 2]) / m.extinction[i], Rgb(1.0f));
-    return m;
-}
-
-// Splats node values to the lattice 2^levels coarser.
-std::vector<float> splat_down(BrickLattice lattice, std::vector<float> values, int channels, int levels) {
-    for (int l = 0; l < levels; ++l) {
-        BrickLattice coarse;
-        std::vector<float> sums;
-        coarsen(lattice, values, channels, coarse, sums);
-        for (float& v : sums)
-            v *= 8.0f;
-        lattice = std::move(coarse);
-        values = std::move(sums);
-    }
-    return values;
-}
-
 std::vector<float> flattened(const std::vector<Rgb>& v) {
     const auto* p = reinterpret_cast<const float*>(v.data());
     return {p, p + v.size() * 3};
@@ -84,25 +31,6 @@ std::vector<Rgb> as_colours(const std::vector<float>& v) {
         c[i] = {v[i * 3], v[i * 3 + 1], v[i * 3 + 2]};
     return c;
 }
-
-// Coarse node values at fine nodes, trilinearly.
-struct CoarseSampler {
-    const BrickLattice& lattice;
-    int level;
-
-    template <class Add>
-    void at(const ivec3& fine_node, const Add& add) const {
-        const ivec3 base = fine_node >> level;
-        const vec3 f = vec3(fine_node - (base << level)) / float(1 << level);
-        for (int k = 0; k < 8; ++k) {
-            const ivec3 d(k >> 2, k >> 1 & 1, k & 1);
-            const float w = (d.x ? f.x : 1 - f.x) * (d.y ? f.y : 1 - f.y) * (d.z ? f.z : 1 - f.z);
-            const std::int64_t i = w > 0.0f ? lattice.find_node(base + d) : -1;
-            if (i >= 0)
-                add(std::size_t(i), w);
-        }
-    }
-};
 
 }  // namespace
 
@@ -241,11 +169,16 @@ Gathered CoarseOperator::gather(const ScatteredLight& lights, std::vector<LevelC
     return out;
 }
 
-ScatteredLight CoarseOperator::restricted(const ScatteredLight& fine, const BrickLattice& fine_lattice) const {
+ScatteredLight restricted(const ScatteredLight& fine, const BrickLattice& fine_lattice, int levels) {
     ScatteredLight coarse;
-    coarse.intensity = as_colours(splat_down(fine_lattice, flattened(fine.intensity), 3, level_));
+    coarse.intensity = as_colours(splat_down(fine_lattice, flattened(fine.intensity), 3, levels));
     if (!fine.directional.empty())
-        coarse.directional = splat_down(fine_lattice, fine.directional, 24, level_);
+        coarse.directional = splat_down(fine_lattice, fine.directional, 24, levels);
+    return coarse;
+}
+
+ScatteredLight CoarseOperator::restricted(const ScatteredLight& fine, const BrickLattice& fine_lattice) const {
+    ScatteredLight coarse = brisance::restricted(fine, fine_lattice, level_);
     coarse.sharpen(medium_.lattice);
     return coarse;
 }

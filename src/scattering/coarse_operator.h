@@ -21,6 +21,9 @@ struct ScatteredLight {
 // and of its higher moments times those of the phase function. Only nodes with `mask` count.
 ScatteredLight scattered_light(const Medium& medium, const Gathered& arriving, const std::vector<std::uint8_t>& mask);
 
+// Lights splatted to the nodes of the lattice 2^levels coarser, not sharpened.
+ScatteredLight restricted(const ScatteredLight& fine, const BrickLattice& fine_lattice, int levels);
+
 // Where the power of one flight went, over 4 pi [W/sr].
 struct FlightPower {
     dvec3 gathered{0.0};  // collisions as gathered, before they were scaled

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/parallel.h"
+#include "medium/phase.h"
 #include "shadows/octahedral_directions.h"
 #include "shadows/shadow_kernels.h"
 #include "shadows/surface_shadows.h"
@@ -27,16 +28,22 @@ float finest_step(const Medium& medium) {
 // clumps of smoke in which fire burns: on real smoke half a spacing let 5 % too much light through, a sixteenth 1 %.
 constexpr float kFilterShare = 0.0625f;
 
+// Along a ray, averages narrower than this share of the distance between neighbouring texels' rays add nothing.
+constexpr float kTexelShare = 0.5f;
+
 // The pyramid level that strides sample. Its averages reach no farther than a homogeneous brick does.
 constexpr int kStrideLevel = 2;
 
-// Steps one averaged voxel long over [begin, end]; averages shrink to single voxels at the far end of the range.
-void add_steps(const ExtinctionPyramid& pyramid, const GridLevel& level, float far, float begin, float end, int store,
-               std::vector<ShadowStep>& steps) {
+// Steps one averaged voxel long over [begin, end]; averages shrink to single voxels, or to the width of a texel, at the
+// far end of the range.
+void add_steps(const ExtinctionPyramid& pyramid, const GridLevel& level, const ShadowMapLayout& layout, float begin,
+               float end, int store, std::vector<ShadowStep>& steps) {
+    const float far = layout.far_distance, texel = std::sqrt(4.0f * kPi) / float(layout.resolution);
     const float voxel = finest_step(pyramid.medium());
     const int coarsest = std::max(0, std::min(level.level - 1, pyramid.level_count() - 1));
     while (begin < end) {
-        const float width = std::max(voxel, kFilterShare * level.spacing * (1.0f - begin / far));
+        const float width =
+            std::max({voxel, kFilterShare * level.spacing * (1.0f - begin / far), kTexelShare * texel * begin});
         const int mip = std::clamp(static_cast<int>(std::log2(width / voxel)), 0, coarsest);
         const float wish = voxel * float(1 << mip);
         const float rest = end - begin;
@@ -169,10 +176,10 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
     const Medium& medium = pyramid.medium();
     const float far = layout.far_distance;
     std::vector<ShadowStep> near_steps, steps;
-    add_steps(pyramid, level, far, 0.0f, layout.near_distance, 0, near_steps);
+    add_steps(pyramid, level, layout, 0.0f, layout.near_distance, 0, near_steps);
     for (int k = 1; k < layout.distances; ++k) {
         const auto at = [&](int i) { return glm::mix(layout.near_distance, far, float(i) / (layout.distances - 1)); };
-        add_steps(pyramid, level, far, at(k - 1), at(k), k, steps);
+        add_steps(pyramid, level, layout, at(k - 1), at(k), k, steps);
     }
     const TexelTable texels(medium, layout.resolution);
     std::vector<PackedExtinction> mips;

@@ -45,7 +45,8 @@ public:
     Rgb source(std::size_t brick, const vec3& p) const;
     Rgb emission(std::size_t brick, const vec3& p) const;
 
-    // Extinction along a segment that lies in one cell, or in a homogeneous brick [1/m]; never negative beyond rounding.
+    // Extinction along a segment that lies in one cell, or in a homogeneous brick [1/m]; never negative beyond
+    // rounding.
     Cubic extinction_along(const VoxelSegment& segment) const;
     // Whether anything can glow inside the cell of the segment.
     bool voxel_burns(const VoxelSegment& segment) const;

@@ -21,13 +21,13 @@ constexpr int kSize = 24;
 constexpr std::size_t kPixels = std::size_t(kSize) * kSize;
 const std::vector<std::string> kCells = {"", "V", "MV", "MM"};
 
-// Uneven smoke that burns in its middle, 12 nodes across.
+// Uneven smoke that burns in its middle, 24 nodes across.
 Medium burning_ball() {
     testing::Recipe r;
-    r.box = testing::cube(-6, 5);
-    r.world_from_index = testing::cubic(0.2);
-    r.density = [](const ivec3& n) { return testing::ball(n, dvec3(-0.5), 5.5) * (0.3f + testing::noise(n, 1)); };
-    r.flame = [](const ivec3& n) { return testing::ball(n, dvec3(0.5, -0.5, 1.0), 3.5) * testing::noise(n, 2); };
+    r.box = testing::cube(-12, 11);
+    r.world_from_index = testing::cubic(0.1);
+    r.density = [](const ivec3& n) { return testing::ball(n, dvec3(-0.5), 11.0) * (0.3f + testing::noise(n >> 1, 1)); };
+    r.flame = [](const ivec3& n) { return testing::ball(n, dvec3(1.0, -1.0, 2.0), 7.0) * testing::noise(n, 2); };
     r.settings = testing::black_smoke();
     r.settings.smoke.extinction_per_metre = 2.0f;
     r.settings.smoke.albedo = Rgb(0.65f, 0.6f, 0.5f);

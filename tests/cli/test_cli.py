@@ -431,7 +431,7 @@ class Compare(VolumeCase):
         self.assertTrue(layer["below_noise"])
         done = self.expect(0, "compare", image, *halves, says="without a shot of Brisance")
         self.assertIn("below 2 times the reference's noise", done.stdout)
-        self.expect(65, "compare", image, halves[0], halves[0], says="no independent halves")
+        self.expect(65, "compare", image, halves[0], halves[0], says="not independent halves")
 
     def test_pixels_that_are_no_numbers_never_pass(self):
         reference = self.gray("a.exr", lambda x, y: 1)

@@ -2,7 +2,9 @@
 
 #include "core/stopwatch.h"
 #include "lighting_grid/voxel_lights.h"
+#include "medium_lighting/adaptive_gather.h"
 #include "medium_lighting/balance_table.h"
+#include "medium_lighting/gather_lights.h"
 #include "medium_lighting/level_costs.h"
 
 namespace brisance {
@@ -29,9 +31,12 @@ Gathered gather_at_lattice(const LitLattice& lattice, const HierarchyLights& lig
     const LightingSettings& settings = lattice.input().lighting;
     StageCost stage{"light from the fire (MV)", 0.0, 0, {}};
     std::vector<LevelCost> costs;
-    const LightField field = lights.field(lattice.pyramid(), settings.alpha, settings, nullptr);
-    Gathered arriving = gather_at_nodes(field, lattice.request(), costs, progress);
-    prepare_interpolation(lattice.medium().lattice, lattice.needed(), arriving);
+    Gathered arriving = gather_adaptively(
+        lattice, lattice.request().moments,
+        [&](const GatherTarget& target) {
+            return gather_lights(lattice, lights, settings.alpha, target, costs, progress);
+        },
+        stage.detail);
     if (settings.energy_balance) {
         BounceBalance balance;
         balance.emitted = 1.0;
@@ -39,8 +44,7 @@ Gathered gather_at_lattice(const LitLattice& lattice, const HierarchyLights& lig
                                              fluence_at_nodes(arriving, lattice.needed()), balance));
         stage.detail["balance"].push_back(balance_row(balance, "0"));
     }
-    stage.bytes =
-        most_held(costs) + (arriving.fluence.size() + arriving.scattered.size() + arriving.moments.size()) * 4;
+    stage.bytes = most_held(costs) + arriving.bytes();
     stage.detail["levels"] = level_table(costs);
     stage.seconds = watch.seconds();
     statistics.stages.push_back(stage);

@@ -1,7 +1,9 @@
 #include "medium_lighting/stages/smoke_light.h"
 
 #include "core/stopwatch.h"
+#include "medium_lighting/adaptive_gather.h"
 #include "medium_lighting/balance_table.h"
+#include "medium_lighting/gather_lights.h"
 #include "medium_lighting/level_costs.h"
 #include "scattering/balance.h"
 
@@ -55,7 +57,6 @@ public:
         Gathered g = gather_unbalanced(lights, costs);
         if (levels_.empty())
             levels_ = costs;
-        prepare_interpolation(lattice_.medium().lattice, lattice_.needed(), g);
         if (!lattice_.input().lighting.energy_balance)
             return g;
         BounceBalance balance;
@@ -69,6 +70,7 @@ public:
     StageCost cost(const Gathered& sum) const {
         StageCost stage{"light from the smoke (MM)", watch_.seconds(), 0, {}};
         stage.bytes = most_held(levels_) + (sum.fluence.size() + sum.scattered.size()) * 4;
+        stage.detail = detail_;
         stage.detail["levels"] = level_table(levels_);
         if (!balances_.empty())
             stage.detail["balance"] = balances_;
@@ -80,16 +82,20 @@ private:
     Gathered gather_unbalanced(HierarchyLights& lights, std::vector<LevelCost>& costs) {
         const std::vector<std::uint32_t>& thin_bricks = lattice_.thin_medium().even_bricks();
         const auto thin = take_thin_medium_lights(lattice_.medium(), thin_bricks, lights);
-        const auto field = [&](const HierarchyLights& h) {
-            const MediumLightingInput& input = lattice_.input();
-            return h.field(lattice_.pyramid(), input.scattering.alpha, input.lighting, nullptr);
-        };
-        Gathered g = gather_at_nodes(field(lights), lattice_.last_request(), costs, progress_);
+        const MediumLightingInput& input = lattice_.input();
+        Gathered g = gather_adaptively(
+            lattice_, false,
+            [&](const GatherTarget& target) {
+                return gather_lights(lattice_, lights, input.scattering.alpha, target, costs, progress_);
+            },
+            detail_);
         if (!thin)
             return g;
-        LightField of_thin = field(thin->lights);
+        LightField of_thin = thin->lights.field(lattice_.pyramid(), input.scattering.alpha, input.lighting, nullptr);
         of_thin.bottom = kFinestThinLights;
-        g.add(gather_from_outside(of_thin, lattice_.last_request(), costs, progress_));
+        Gathered more = gather_from_outside(of_thin, lattice_.last_request(), costs, progress_);
+        prepare_interpolation(lattice_.medium().lattice, lattice_.needed(), more);
+        g.add(more);
         give_back(*thin, thin_bricks, lights.light);
         return g;
     }
@@ -98,6 +104,7 @@ private:
     Progress& progress_;
     Stopwatch watch_;
     std::vector<LevelCost> levels_;  // of the first gather
+    nlohmann::ordered_json detail_;  // of the last one
     nlohmann::ordered_json balances_ = nlohmann::ordered_json::array();
 };
 

@@ -1,0 +1,66 @@
+#include "gathering/map_layouts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "medium/lattice/local_bounds.h"
+
+namespace brisance {
+
+namespace {
+
+constexpr float kNearestOfBalls = 0.25f;  // first distance of the maps of the finest level's lights, over their spacing
+
+// Distance from any light of the level to the farthest corner of the medium. Nothing attenuates light beyond it.
+float farthest_distance(const GridLevel& level, const Medium& medium) {
+    Box lights;
+    for (const vec3& p : level.position)
+        lights.add(p);
+    const LocalBounds corners = local_bounds(medium);
+    const vec3 far = glm::max(glm::abs(lights.high - corners.low), glm::abs(corners.high - lights.low));
+    return glm::length(far);
+}
+
+}  // namespace
+
+ShadowMapLayout map_layout(const LightField& field, const GridLevel& level, bool top) {
+    ShadowMapLayout layout;
+    // A coarser light's map covers more voxels but its own size blurs its shadows: resolution grows as the square root
+    // of the spacing (more gained less than the hierarchy's own error on real smoke), to even numbers.
+    const float growth = std::sqrt(float(1 << std::min(level.level - 1, 6)));
+    layout.resolution =
+        std::min(128, 2 * static_cast<int>(std::lround(0.5f * growth * field.settings.shadow_resolution)));
+    layout.distances = field.settings.shadow_distances;
+    const float radius = field.alpha * level.spacing;
+    layout.near_distance = level.level == field.bottom ? kNearestOfBalls * level.spacing : 0.5f * radius;
+    layout.far_distance = 2.0f * radius;
+    layout.for_outside = field.escape != nullptr;
+    layout.range = layout.for_outside ? 1.0f / FootprintPicker::kLeastShare : 1.0f;
+    if (top) {
+        const float far = std::max(layout.far_distance, farthest_distance(level, field.pyramid->medium()));
+        layout.distances = std::min(64, static_cast<int>(std::ceil(layout.distances * far / layout.far_distance)));
+        layout.far_distance = far;
+    }
+    if (!field.intensity) {  // lights outside of the medium
+        layout.geometric = true;
+        const float range = layout.far_distance - layout.near_distance;
+        layout.distances = std::max(layout.distances, std::min(256, 1 + int(range / field.pyramid->medium().spacing)));
+    }
+    return layout;
+}
+
+void fit_to_memory(ShadowMapLayout& layout, std::size_t lights, std::uint64_t limit, int level, Progress& progress) {
+    const ShadowMapLayout wish = layout;
+    const auto too_large = [&] { return layout.bytes_per_light() * std::min(lights, kLeastBatch) > limit; };
+    while (too_large() && layout.resolution > 4)
+        layout.resolution /= 2;
+    while (too_large() && layout.distances > 2)
+        layout.distances = std::max(2, layout.distances / 2);
+    if (layout.resolution != wish.resolution || layout.distances != wish.distances)
+        progress.notice("shadow maps of level " + std::to_string(level) + " lowered from " +
+                        std::to_string(wish.resolution) + "^2 x " + std::to_string(wish.distances) + " to " +
+                        std::to_string(layout.resolution) + "^2 x " + std::to_string(layout.distances) +
+                        " to stay within the memory limit of " + std::to_string(limit >> 20) + " MiB");
+}
+
+}  // namespace brisance

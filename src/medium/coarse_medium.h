@@ -1,0 +1,36 @@
+// A medium on a coarser lattice, and fields between the two lattices.
+#pragma once
+
+#include <vector>
+
+#include "medium/lattice/extinction_pyramid.h"
+
+namespace brisance {
+
+// The medium of a pyramid level: coarse nodes at every 2^level-th index, mean extinction, mean albedo by extinction.
+// Without emission.
+Medium coarse_medium(const ExtinctionPyramid& fine, int level);
+
+// Splats node values (`channels` interleaved) to the lattice 2^levels coarser; keeps their sum.
+std::vector<float> splat_down(BrickLattice lattice, std::vector<float> values, int channels, int levels);
+
+// Coarse node values at fine nodes, trilinearly.
+struct CoarseSampler {
+    const BrickLattice& lattice;
+    int level;
+
+    template <class Add>
+    void at(const ivec3& fine_node, const Add& add) const {
+        const ivec3 base = fine_node >> level;
+        const vec3 f = vec3(fine_node - (base << level)) / float(1 << level);
+        for (int k = 0; k < 8; ++k) {
+            const ivec3 d(k >> 2, k >> 1 & 1, k & 1);
+            const float w = (d.x ? f.x : 1 - f.x) * (d.y ? f.y : 1 - f.y) * (d.z ? f.z : 1 - f.z);
+            const std::int64_t i = w > 0.0f ? lattice.find_node(base + d) : -1;
+            if (i >= 0)
+                add(std::size_t(i), w);
+        }
+    }
+};
+
+}  // namespace brisance

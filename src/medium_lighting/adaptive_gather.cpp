@@ -1,0 +1,280 @@
+#include "medium_lighting/adaptive_gather.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "lighting_grid/voxel_lights.h"
+#include "medium/phase.h"
+#include "scattering/multiple_scattering.h"
+
+namespace brisance {
+
+namespace {
+
+// The part of the error allowed that the interpolation of one node may have: errors of the nodes along a ray add up as
+// random ones do.
+constexpr float kShare = 0.5f;
+
+// Light changes from a level to the next finer one by about this part of what it changed by before.
+constexpr float kNextChange = 0.5f;
+
+// Planes of all fields of a Gathered, each of `nodes` values.
+std::vector<std::span<float>> planes(Gathered& g, std::size_t nodes) {
+    std::vector<std::span<float>> out;
+    for (std::vector<float>* field : {&g.fluence, &g.scattered, &g.moments})
+        for (std::size_t c = 0; c * nodes < field->size(); ++c)
+            out.push_back(std::span<float>(*field).subspan(c * nodes, nodes));
+    return out;
+}
+
+// Radiance per unit albedo that node `i` of `n` scatters toward the camera, as luminance.
+float scattered_radiance(const Gathered& g, std::size_t i, std::size_t n) {
+    const std::vector<float>& field = g.scattered.empty() ? g.fluence : g.scattered;
+    const float unit = g.scattered.empty() ? 1.0f / (4.0f * kPi) : 1.0f;
+    return unit * luminance(Rgb(field[i], field[n + i], field[2 * n + i]));
+}
+
+class Refinement {
+public:
+    Refinement(const LitLattice& lattice, bool moments, const GatherAt& gather)
+        : lattice_(lattice), moments_(moments), gather_(gather) {}
+
+    Gathered run(nlohmann::ordered_json& detail) {
+        int level = static_cast<int>(lattice_.levels().size());
+        Gathered light = gather_at(level, needed(level), false);
+        auto counts = nlohmann::ordered_json::array({{{"level", level}, {"nodes", count(needed(level))}}});
+        prepare_interpolation(nodes(level), needed(level), light);
+        // Of the source functions, from the next coarser level to this one. Of the coarsest, all is new.
+        std::vector<float> change = level > 0 ? sources(level, light) : std::vector<float>{};
+        for (; level > 0; --level) {
+            const std::vector<float> weight = refinement_weights(level, light, change);
+            light = refine(level - 1, light, weight, change, counts);
+        }
+        detail["lit_nodes"] = counts;
+        return light;
+    }
+
+private:
+    const LitLevel& at(int level) const { return lattice_.levels()[level - 1]; }
+    const BrickLattice& nodes(int level) const {
+        return level == 0 ? lattice_.medium().lattice : at(level).medium.lattice;
+    }
+    const std::vector<std::uint8_t>& needed(int level) const {
+        return level == 0 ? lattice_.needed() : at(level).needed;
+    }
+    static std::size_t count(const std::vector<std::uint8_t>& mask) {
+        return std::size_t(std::count_if(mask.begin(), mask.end(), [](std::uint8_t m) { return m != 0; }));
+    }
+
+    Gathered gather_at(int level, const std::vector<std::uint8_t>& mask, bool sparse) const {
+        LatticeRequest request = lattice_.request();
+        request.needed = &mask;
+        request.moments = moments_;
+        if (level > 0 && request.toward_camera)
+            request.toward_camera = &at(level).toward_camera;
+        return gather_({level, level == 0 ? lattice_.pyramid() : *at(level).pyramid, request, sparse});
+    }
+
+    // Root mean square over what the camera sees [W/(m^2 sr)].
+    float brightness(int level, const Gathered& light) const {
+        const LitLevel& l = at(level);
+        double sum = 0.0, weights = 0.0;
+        for (std::size_t i = 0; i < l.visible.size(); ++i) {
+            const double s = l.visible[i] > 0.0f ? source(l, light, i) : 0.0;
+            sum += l.visible[i] * s * s;
+            weights += l.visible[i];
+        }
+        return weights > 0.0 ? static_cast<float>(std::sqrt(sum / weights)) : 0.0f;
+    }
+
+    static float source(const LitLevel& l, const Gathered& light, std::size_t i) {
+        return luminance(l.medium.albedo_at(i)) * scattered_radiance(light, i, l.needed.size());
+    }
+
+    std::vector<float> sources(int level, const Gathered& light) const {
+        const LitLevel& l = at(level);
+        std::vector<float> out(l.needed.size(), 0.0f);
+        parallel_for(
+            out.size(), [&](std::size_t i) { out[i] = l.needed[i] ? source(l, light, i) : 0.0f; }, 4096);
+        return out;
+    }
+
+    // Per node of the level, how much of the light gathered at the next finer level counts there, in [0, 1].
+    std::vector<float> refinement_weights(int level, const Gathered& light, const std::vector<float>& change) const {
+        const LitLevel& l = at(level);
+        const float allowed = kShare * lattice_.input().lighting.error * brightness(level, light);
+        std::vector<float> error = interpolation_error(l, light);
+        for (std::size_t i = 0; i < error.size(); ++i)
+            error[i] = std::max(error[i], kNextChange * change[i]);
+        std::vector<float> weight(error.size(), 0.0f);
+        parallel_for(
+            weight.size(),
+            [&](std::size_t i) {
+                if (!l.needed[i] || !(allowed > 0.0f))
+                    return;
+                const float part = l.importance[i] * largest_around(l, error, i) / allowed;
+                weight[i] = glm::smoothstep(0.5f, 1.0f, part);
+            },
+            4096);
+        return weight;
+    }
+
+    // A quarter of the difference between a node and the interpolant through the even nodes around it.
+    static std::vector<float> interpolation_error(const LitLevel& l, const Gathered& light) {
+        const BrickLattice& nodes = l.medium.lattice;
+        std::vector<float> error(l.needed.size(), 0.0f);
+        parallel_for(
+            nodes.brick_count(),
+            [&](std::size_t b) {
+                for (int k = 0; k < BrickLattice::kNodes; ++k) {
+                    const std::size_t i = b * BrickLattice::kNodes + k;
+                    if (!l.needed[i])
+                        continue;
+                    const ivec3 node = nodes.node(i), odd = node & 1;
+                    if (odd == ivec3(0))
+                        continue;
+                    float sum = 0.0f, weights = 0.0f;
+                    for (int c = 0; c < 8; ++c) {
+                        const ivec3 side(c >> 2, c >> 1 & 1, c & 1);
+                        if (glm::any(glm::greaterThan(side, odd)))
+                            continue;
+                        const std::int64_t j = nodes.find_node(node + odd * (2 * side - 1));
+                        if (j >= 0 && l.needed[j]) {
+                            sum += source(l, light, std::size_t(j));
+                            weights += 1.0f;
+                        }
+                    }
+                    if (weights > 0.0f)
+                        error[i] = 0.25f * std::abs(source(l, light, i) - sum / weights);
+                }
+            },
+            4);
+        return error;
+    }
+
+    static float largest_around(const LitLevel& l, const std::vector<float>& error, std::size_t i) {
+        const ivec3 node = l.medium.lattice.node(i);
+        float largest = 0.0f;
+        for (int k = 0; k < 27; ++k) {
+            const std::int64_t j = l.medium.lattice.find_node(node + ivec3(k / 9, k / 3 % 3, k % 3) - 1);
+            if (j >= 0)
+                largest = std::max(largest, error[j]);
+        }
+        return largest;
+    }
+
+    // Light of the next coarser level at the nodes of this one, mixed with light gathered here where it has weight.
+    // `change`: replaced by that of this level's source functions.
+    Gathered refine(int level, Gathered& coarse, const std::vector<float>& coarse_weight, std::vector<float>& change,
+                    nlohmann::ordered_json& counts) const {
+        const std::size_t n = nodes(level).node_count();
+        Gathered out;
+        out.resize(n, !coarse.scattered.empty(), !coarse.moments.empty());
+        std::vector<float> weight(n, 0.0f);
+        interpolate(level, planes(coarse, coarse_weight.size()), coarse_weight, planes(out, n), weight);
+        keep_collisions(level, coarse, out);
+        std::vector<std::uint8_t> mask(n);
+        for (std::size_t i = 0; i < n; ++i)
+            mask[i] = weight[i] > 0.0f;
+        const std::size_t gathered = count(mask);
+        counts.push_back({{"level", level}, {"nodes", gathered}});
+        change = level > 0 ? sources(level, out) : std::vector<float>{};
+        if (gathered > 0) {
+            Gathered fine = gather_at(level, mask, true);
+            mix(level, mask, weight, fine, out);
+        }
+        for (std::size_t i = 0; i < change.size(); ++i)
+            change[i] = needed(level)[i] ? std::abs(change[i] - source(at(level), out, i)) : 0.0f;
+        return out;
+    }
+
+    void interpolate(int level, const std::vector<std::span<float>>& from, const std::vector<float>& coarse_weight,
+                     const std::vector<std::span<float>>& to, std::vector<float>& weight) const {
+        const BrickLattice &fine = nodes(level), &coarse = nodes(level + 1);
+        const std::vector<std::uint8_t>& wanted = needed(level);
+        const CoarseSampler sampler{coarse, 1};
+        parallel_for(
+            fine.brick_count(),
+            [&](std::size_t b) {
+                for (int k = 0; k < BrickLattice::kNodes; ++k) {
+                    const std::size_t i = b * BrickLattice::kNodes + k;
+                    if (!wanted[i])
+                        continue;
+                    sampler.at(fine.first_node(b) + BrickLattice::node_in_brick(k), [&](std::size_t j, float w) {
+                        for (std::size_t c = 0; c < from.size(); ++c)
+                            to[c][i] += w * from[c][j];
+                        weight[i] += w * coarse_weight[j];
+                    });
+                }
+            },
+            4);
+    }
+
+    const Medium& medium(int level) const { return level == 0 ? lattice_.medium() : at(level).medium; }
+
+    // Light is dim where smoke is dense, which an interpolant through coarse nodes does not know: it would collide too
+    // often. It is scaled so that as much collides around every coarse node as in the coarse medium.
+    void keep_collisions(int level, const Gathered& coarse, Gathered& out) const {
+        const BrickLattice &fine = nodes(level), &below = nodes(level + 1);
+        const std::vector<Rgb> wanted =
+            project_extinction_times(medium(level + 1), fluence_at_nodes(coarse, needed(level + 1)));
+        const std::vector<Rgb> found = project_extinction_times(medium(level), fluence_at_nodes(out, needed(level)));
+        const std::vector<float> sums =
+            splat_down(fine, std::vector<float>(&found[0].x, &found[0].x + 3 * found.size()), 3, 1);
+        std::vector<Rgb> factor(wanted.size(), Rgb(1.0f));
+        for (std::size_t i = 0; i < wanted.size(); ++i)
+            for (int c = 0; c < 3; ++c)
+                if (sums[3 * i + c] > 0.0f && wanted[i][c] > 0.0f)
+                    factor[i][c] = std::clamp(wanted[i][c] / sums[3 * i + c], 0.2f, 5.0f);
+        const CoarseSampler sampler{below, 1};
+        const std::size_t n = fine.node_count();
+        const auto fields = planes(out, n);
+        parallel_for(
+            fine.brick_count(),
+            [&](std::size_t b) {
+                for (int k = 0; k < BrickLattice::kNodes; ++k) {
+                    const std::size_t i = b * BrickLattice::kNodes + k;
+                    if (!needed(level)[i])
+                        continue;
+                    Rgb scale(0.0f);
+                    sampler.at(fine.first_node(b) + BrickLattice::node_in_brick(k),
+                               [&](std::size_t j, float w) { scale += w * factor[j]; });
+                    for (std::size_t c = 0; c < fields.size(); ++c)
+                        fields[c][i] *= scale[int(c % 3)];
+                }
+            },
+            4);
+    }
+
+    // Sharpened among its neighbours, which have the coarser level's light where none was gathered.
+    void mix(int level, const std::vector<std::uint8_t>& mask, const std::vector<float>& weight, Gathered& fine,
+             Gathered& out) const {
+        const std::size_t n = mask.size();
+        const auto from = planes(fine, n), to = planes(out, n);
+        parallel_for(from.size(), [&](std::size_t c) {
+            for (std::size_t i = 0; i < n; ++i)
+                if (!mask[i])
+                    from[c][i] = to[c][i];
+        });
+        prepare_interpolation(nodes(level), needed(level), fine);
+        parallel_for(from.size(), [&](std::size_t c) {
+            for (std::size_t i = 0; i < n; ++i)
+                if (mask[i])
+                    to[c][i] += weight[i] * (from[c][i] - to[c][i]);
+        });
+    }
+
+    const LitLattice& lattice_;
+    bool moments_;
+    const GatherAt& gather_;
+};
+
+}  // namespace
+
+Gathered gather_adaptively(const LitLattice& lattice, bool moments, const GatherAt& gather,
+                           nlohmann::ordered_json& detail) {
+    return Refinement(lattice, moments, gather).run(detail);
+}
+
+}  // namespace brisance

@@ -1,0 +1,35 @@
+// Gathers light at the nodes of a medium at the resolution that the picture needs.
+//
+// Light is gathered on the coarsest lattice first (lit_levels.h), where a node costs as much as a voxel's but is one of
+// 8^level. Its interpolation error is measured: nodes between even ones are compared with the interpolant through
+// those, and the error of the next finer lattice is a quarter of it. Where this error, weighted by what the picture
+// shows of the node, exceeds the share of the error allowed, light is gathered again at the nodes twice as fine, and so
+// on down to the medium's own lattice. Nodes that are hidden, or smaller than a pixel, stay coarse. Refinement enters
+// by a weight that fades from 0 to 1, so that a change of the camera or of the medium changes the field continuously.
+//
+// At each level the medium is that level's: mean extinction, with lights splatted to its nodes.
+#pragma once
+
+#include <functional>
+
+#include "medium_lighting/lit_lattice.h"
+#include "statistics/statistics.h"
+
+namespace brisance {
+
+// Where to gather: level 0 is the medium's own lattice.
+struct GatherTarget {
+    int level;
+    const ExtinctionPyramid& pyramid;
+    LatticeRequest request;
+    bool sparse;  // few of the lattice's nodes are requested
+};
+
+using GatherAt = std::function<Gathered(const GatherTarget&)>;
+
+// Light at the needed nodes of the lattice, prepared for interpolation. `moments`: with them. Adds the number of nodes
+// gathered at each level to `detail`.
+Gathered gather_adaptively(const LitLattice& lattice, bool moments, const GatherAt& gather,
+                           nlohmann::ordered_json& detail);
+
+}  // namespace brisance

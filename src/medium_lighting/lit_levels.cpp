@@ -1,0 +1,110 @@
+#include "medium_lighting/lit_levels.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "gathering/point_depths.h"
+
+namespace brisance {
+
+namespace {
+
+// Level of the pyramid that rays to the camera march.
+constexpr int kCameraRayLevel = 2;
+
+// Coarse nodes with a share in the interpolation at some needed node of the lattice twice as fine.
+std::vector<std::uint8_t> nodes_below(const BrickLattice& fine, const std::vector<std::uint8_t>& needed,
+                                      const BrickLattice& coarse) {
+    std::vector<std::uint8_t> out(coarse.node_count(), 0);
+    const CoarseSampler sampler{coarse, 1};
+    for (std::size_t i = 0; i < needed.size(); ++i)
+        if (needed[i])
+            sampler.at(fine.node(i), [&](std::size_t k, float) { out[k] = 1; });
+    return out;
+}
+
+// From the needed nodes to the eye.
+std::vector<float> depths_to_eye(const LitLevel& level, const PointDepths& depths, const vec3& eye) {
+    std::vector<std::uint32_t> nodes;
+    for (std::size_t i = 0; i < level.needed.size(); ++i)
+        if (level.needed[i])
+            nodes.push_back(static_cast<std::uint32_t>(i));
+    std::vector<float> out(level.needed.size(), 0.0f);
+    parallel_for((nodes.size() + PointDepths::kRays - 1) / PointDepths::kRays,
+                 [&](std::size_t group) {
+                     std::array<vec3, PointDepths::kRays> to;
+                     std::array<float, PointDepths::kRays> depth;
+                     const std::size_t first = group * PointDepths::kRays;
+                     for (std::size_t k = 0; k < to.size(); ++k)
+                         to[k] = level.medium.local_of_node(
+                             level.medium.lattice.node(nodes[std::min(first + k, nodes.size() - 1)]));
+                     depths.between(eye, to.data(), depth.data());
+                     for (std::size_t k = 0; k < to.size() && first + k < nodes.size(); ++k)
+                         out[nodes[first + k]] = depth[k];
+                 },
+                 64);
+    return out;
+}
+
+void weigh_by_camera(LitLevel& level, const PointDepths& depths, const LightingCamera& camera) {
+    const std::vector<float> depth = depths_to_eye(level, depths, camera.eye);
+    const float width = level.medium.spacing;
+    level.importance.assign(depth.size(), 0.0f);
+    level.visible.assign(depth.size(), 0.0f);
+    parallel_for(
+        depth.size(),
+        [&](std::size_t i) {
+            if (!level.needed[i])
+                return;
+            const float own = level.medium.extinction[i] * width;
+            const float distance =
+                std::max(glm::length(level.medium.local_of_node(level.medium.lattice.node(i)) - camera.eye), width);
+            // A voxel is seen from its near side on.
+            const float seen = std::exp(-std::max(0.0f, depth[i] - 0.5f * own)) * -std::expm1(-own);
+            level.importance[i] = seen * std::min(1.0f, width / (distance * camera.pixel_angle));
+            level.visible[i] = seen * (width / distance) * (width / distance);
+        },
+        4096);
+}
+
+}  // namespace
+
+std::vector<vec3> directions_to(const Medium& medium, const vec3& eye) {
+    std::vector<vec3> directions(medium.lattice.node_count());
+    parallel_for(
+        directions.size(),
+        [&](std::size_t i) {
+            const vec3 p = medium.local_of_node(medium.lattice.node(i));
+            const vec3 offset = eye - p;
+            const float d = glm::length(offset);
+            directions[i] = d > 0.0f ? offset / d : vec3(0.0f, 0.0f, 1.0f);
+        },
+        4096);
+    return directions;
+}
+
+std::vector<LitLevel> make_lit_levels(const ExtinctionPyramid& pyramid, const std::vector<std::uint8_t>& needed,
+                                      const LightingCamera& camera, bool directional, int count) {
+    std::vector<LitLevel> levels;
+    const PointDepths depths(pyramid, kCameraRayLevel);
+    for (int l = 1; l <= std::min(count, pyramid.level_count() - 1); ++l) {
+        LitLevel level;
+        level.level = l;
+        level.medium = coarse_medium(pyramid, l);
+        level.needed = l == 1 ? nodes_below(pyramid.lattice(0), needed, level.medium.lattice)
+                              : nodes_below(pyramid.lattice(l - 1), levels.back().needed, level.medium.lattice);
+        if (directional)
+            level.toward_camera = directions_to(level.medium, camera.eye);
+        weigh_by_camera(level, depths, camera);
+        levels.push_back(std::move(level));
+    }
+    for (LitLevel& level : levels) {
+        level.pyramid = std::make_unique<ExtinctionPyramid>(level.medium, ExtinctionPyramid::kMaxLevels);
+        level.pyramid->set_occluders(pyramid.occluders());
+    }
+    return levels;
+}
+
+}  // namespace brisance

@@ -1,0 +1,39 @@
+// Coarser lattices of a medium on which light is gathered first, and what the picture shows of their nodes.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "medium/coarse_medium.h"
+
+namespace brisance {
+
+// The camera, as far as the resolution of the lighting depends on it.
+struct LightingCamera {
+    vec3 eye{0.0f};            // local [m]
+    float pixel_angle = 0.0f;  // width of a pixel per metre of distance
+};
+
+// The lattice 2^level coarser than the medium's.
+struct LitLevel {
+    int level = 0;
+    Medium medium;
+    std::unique_ptr<ExtinctionPyramid> pyramid;  // of `medium`
+    std::vector<std::uint8_t> needed;            // per node: whether finer nodes are interpolated from it
+    std::vector<vec3> toward_camera;             // per node; empty: light needs no direction
+    // Per node: how much of a pixel's radiance a change of the source function there changes, transmittance to the
+    // camera times opacity times the part of a pixel that a voxel covers. In [0, 1].
+    std::vector<float> importance;
+    // Per node: transmittance to the camera times opacity times solid angle, to average over what is seen [sr].
+    std::vector<float> visible;
+};
+
+// Levels 1 to `count`, fewer where the pyramid has fewer. `needed`: nodes of the medium where light is needed;
+// `directional`: fills toward_camera.
+std::vector<LitLevel> make_lit_levels(const ExtinctionPyramid& pyramid, const std::vector<std::uint8_t>& needed,
+                                      const LightingCamera& camera, bool directional, int count);
+
+// Unit vectors from all nodes to `eye` (local).
+std::vector<vec3> directions_to(const Medium& medium, const vec3& eye);
+
+}  // namespace brisance

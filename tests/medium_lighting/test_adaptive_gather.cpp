@@ -1,0 +1,140 @@
+// Light gathered at the resolution that the picture needs: as good as asked for, for fewer nodes, wherever it is seen.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+
+#include "core/parallel.h"
+#include "fixtures/media.h"
+#include "render/render_frame.h"
+
+namespace brisance {
+namespace {
+
+using namespace testing;
+
+// Ragged smoke of 32 nodes across that burns to one side; `shift`: of the whole volume, in nodes.
+Medium burst(float extinction, const ivec3& shift = ivec3(0)) {
+    Recipe r;
+    r.box = {ivec3(-16) + shift, ivec3(16) + shift};
+    r.world_from_index = cubic(0.075);
+    r.density = [shift](const ivec3& n) {
+        return ball(n - shift, dvec3(0.0), 15.0) * (0.4f + noise((n - shift) >> 2, 1));
+    };
+    r.flame = [shift](const ivec3& n) {
+        return ball(n - shift, dvec3(3.0, -4.0, 0.0), 6.0) * noise((n - shift) >> 1, 2);
+    };
+    r.settings.smoke.extinction_per_metre = extinction;
+    r.settings.smoke.albedo = Rgb(0.7f);
+    r.settings.fire.convention = EmissionConvention::Direct;
+    return make_medium(r);
+}
+
+Shot shot_of(float error, int size = 32) {
+    Shot shot;
+    shot.lighting.error = error;
+    shot.camera_given = true;
+    shot.camera.eye = {0.5, -5.0, 0.5};
+    shot.camera.vertical_fov_degrees = 28.0;
+    shot.camera.width = shot.camera.height = size;
+    shot.camera.samples_per_axis = 2;
+    shot.output.cell_layers = true;
+    return shot;
+}
+
+RenderedFrame picture(const Medium& medium, const Shot& shot) {
+    Progress silent;
+    return render_medium(shot, medium, silent);
+}
+
+// Nodes gathered at each level, for the fire's light.
+std::map<int, std::size_t> lit_nodes(const RenderedFrame& frame) {
+    std::map<int, std::size_t> out;
+    for (const StageCost& stage : frame.statistics.stages)
+        if (stage.name == "light from the fire (MV)")
+            for (const auto& row : stage.detail.at("lit_nodes"))
+                out[row.at("level").get<int>()] = row.at("nodes").get<std::size_t>();
+    return out;
+}
+
+// Root of the summed squared differences over that of the squares.
+double difference(const RenderedFrame& a, const RenderedFrame& b, const char* layer = "") {
+    const std::vector<float>&x = a.image.layer(layer).pixels, &y = b.image.layer(layer).pixels;
+    double square = 0.0, norm = 0.0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        square += std::pow(double(x[i]) - y[i], 2);
+        norm += double(y[i]) * y[i];
+    }
+    return std::sqrt(square / norm);
+}
+
+TEST(AdaptiveGather, WithoutAnErrorEveryNodeIsLitByItself) {
+    const auto nodes = lit_nodes(picture(burst(3.0f), shot_of(0.0f)));
+    ASSERT_EQ(nodes.size(), 1u);
+    EXPECT_GT(nodes.at(0), std::size_t{10000});
+}
+
+// What the error bounds is the light in smoke; interpolation errors of single nodes vary by a factor of two.
+TEST(AdaptiveGather, IsAsNearToTheFullLightingAsItIsAskedToBe) {
+    const Medium medium = burst(3.0f);
+    const RenderedFrame full = picture(medium, shot_of(0.0f));
+    std::size_t before = lit_nodes(full).at(0);
+    for (const float error : {0.005f, 0.02f, 0.08f}) {
+        const RenderedFrame frame = picture(medium, shot_of(error));
+        const std::size_t nodes = lit_nodes(frame).at(0);
+        std::printf("error %.3f: picture %.4f, MV %.4f, MM %.4f, %zu nodes\n", error, difference(frame, full),
+                    difference(frame, full, "MV"), difference(frame, full, "MM"), nodes);
+        for (const char* layer : {"", "MV", "MM"})
+            EXPECT_LT(difference(frame, full, layer), 2.0 * error) << layer;
+        EXPECT_LT(nodes, before);
+        before = nodes;
+    }
+}
+
+// Behind opaque smoke nothing is seen.
+TEST(AdaptiveGather, HiddenSmokeStaysCoarse) {
+    const Medium medium = burst(200.0f);
+    const auto nodes = lit_nodes(picture(medium, shot_of(0.02f)));
+    EXPECT_LT(nodes.at(0), lit_nodes(picture(medium, shot_of(0.0f))).at(0) / 2);
+}
+
+// A picture of 4 x 4 pixels needs three quarters of the nodes of one of 32 x 32 at most.
+TEST(AdaptiveGather, SmokeSmallerThanAPixelStaysCoarse) {
+    const Medium medium = burst(3.0f);
+    const auto large = lit_nodes(picture(medium, shot_of(0.02f))),
+               small = lit_nodes(picture(medium, shot_of(0.02f, 4)));
+    EXPECT_LT(4 * small.at(0), 3 * large.at(0));
+}
+
+TEST(AdaptiveGather, ConservesEnergy) {
+    for (const StageCost& stage : picture(burst(6.0f), shot_of(0.05f)).statistics.stages)
+        if (stage.detail.contains("balance")) {
+            for (const auto& row : stage.detail["balance"])
+                EXPECT_NEAR(row["sum"].get<double>(), 1.0, 0.01 + 4.0 * row["escape_standard_error"].get<double>())
+                    << stage.name;
+        }
+}
+
+TEST(AdaptiveGather, IsTheSameOnAnyNumberOfThreads) {
+    const Medium medium = burst(3.0f);
+    const auto pixels = [&](int threads) {
+        const ThreadLimit limit(threads);
+        return picture(medium, shot_of(0.02f, 16)).image.layer("").pixels;
+    };
+    EXPECT_EQ(pixels(1), pixels(2));
+}
+
+// The volume and the camera moved by whole nodes that are no multiple of the coarse lattices': only what is
+// interpolated where changes.
+TEST(AdaptiveGather, MovesWithTheVolume) {
+    const ivec3 shift(3, -1, 2);
+    Shot moved = shot_of(0.02f);
+    for (dvec3* p : {&moved.camera.eye, &moved.camera.target})
+        *p += 0.075 * dvec3(shift);
+    EXPECT_LT(difference(picture(burst(3.0f, shift), moved), picture(burst(3.0f), shot_of(0.02f))), 0.02);
+}
+
+}  // namespace
+}  // namespace brisance
