@@ -57,7 +57,7 @@ double detail(const openvdb::Vec3d& p, int n, double amplitude) {
 }
 
 openvdb::FloatGrid::Ptr refined(const openvdb::FloatGrid& old, int n, double amplitude) {
-    const openvdb::FloatGrid::Ptr grid = openvdb::FloatGrid::create(old.background());
+    openvdb::FloatGrid::Ptr grid = openvdb::FloatGrid::create(old.background());
     grid->insertMeta(old);
     grid->setName(old.getName());
     // New voxel i lies at (i + 1/2) / n - 1/2 of the old ones: n new voxels fill an old one.

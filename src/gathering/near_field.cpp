@@ -50,6 +50,7 @@ std::vector<NearField::Tap> line_taps(const ivec3& o, double metres) {
             add_trilinear(taps, dvec3(o) * t, 0.5 * length * metres);
     }
     std::vector<NearField::Tap> list;
+    list.reserve(taps.size());
     for (const auto& [node, weight] : taps)
         list.push_back({node, static_cast<float>(weight)});
     return list;
