@@ -127,7 +127,8 @@ private:
         Rng rng(Stream::Certificate, std::uint64_t(seed_) << 32 | number, std::uint64_t(k) + 1);
         const double x = rng.next_double() - 0.5, y = rng.next_double() - 0.5, position = rng.next_double();
         const double column = double(pixel % s.width) + 0.5 + x * s.filter_width_pixels;
-        const double row = double(pixel / s.width) + 0.5 + y * s.filter_width_pixels;
+        const std::size_t rows_above = pixel / s.width;
+        const double row = double(rows_above) + 0.5 + y * s.filter_width_pixels;
         PathSum path{};
         PathStatistics ignored;
         tracer_.trace(camera_.ray(column, row), position, rng, path, ignored);

@@ -40,7 +40,8 @@ PixelSurvey::PixelSurvey(const std::vector<double>& size, int width, std::size_t
     const std::size_t strata = (std::max<std::size_t>(draws, 2) + 1) / 2;
     for (std::size_t i = 0; i < 2 * strata; ++i) {
         Rng rng(Stream::Certificate, seed << 32 | i);
-        const double at = (static_cast<double>(i / 2) + rng.next_double()) / static_cast<double>(strata) * total;
+        const std::size_t stratum = i / 2;
+        const double at = (static_cast<double>(stratum) + rng.next_double()) / static_cast<double>(strata) * total;
         // The first pixel whose running sum exceeds `at`; its size is never 0.
         auto found = std::upper_bound(upto.begin(), upto.end(), at);
         if (found == upto.end())

@@ -56,6 +56,7 @@ void MediumLighting::at_surfaces(std::vector<SurfaceReceiver>& points) const {
     if (points.empty())
         return;
     std::vector<ReceiverPoint> at;
+    at.reserve(points.size());
     for (const SurfaceReceiver& p : points)
         at.push_back({p.local, p.normal});
     std::vector<std::uint32_t> order;

@@ -26,6 +26,7 @@ std::uint64_t vertex_key(const ivec3& v) {
 
 std::vector<float> luminances(const std::vector<Rgb>& intensity) {
     std::vector<float> y;
+    y.reserve(intensity.size());
     for (const Rgb& i : intensity)
         y.push_back(std::max(0.0f, luminance(i)));
     return y;

@@ -183,6 +183,7 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
     }
     const TexelTable texels(medium, layout.resolution);
     std::vector<PackedExtinction> mips;
+    mips.reserve(std::size_t(pyramid.level_count()));
     for (int l = 0; l < pyramid.level_count(); ++l)
         mips.push_back(pyramid.view(l));
     const HomogeneousBricks* even = pyramid.homogeneous_bricks();

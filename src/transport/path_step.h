@@ -144,7 +144,7 @@ void walk_path(const DirectLight& scene, PathState state, Reader& reader, Rng& r
         std::optional<PathState> next = next_state(scene, state, step);
         if (!next || !reader.arrive(state, step, *next))
             return;
-        state = *std::move(next);
+        state = *next;
     }
 }
 

@@ -237,6 +237,7 @@ std::vector<TechniquePreset> make_presets() {
 const std::vector<TechniqueChoice>& light_placements() {
     static const std::vector<TechniqueChoice> all = [] {
         std::vector<TechniqueChoice> out;
+        out.reserve(std::size(kPlacements));
         for (const Placement& row : kPlacements)
             out.push_back({row.name, row.help});
         return out;
