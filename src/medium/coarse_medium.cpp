@@ -58,4 +58,9 @@ std::vector<float> splat_down(BrickLattice lattice, std::vector<float> values, i
     return values;
 }
 
+std::vector<float> flattened(const std::vector<Rgb>& colours) {
+    const auto* p = reinterpret_cast<const float*>(colours.data());
+    return {p, p + colours.size() * 3};
+}
+
 }  // namespace brisance

@@ -14,6 +14,9 @@ Medium coarse_medium(const ExtinctionPyramid& fine, int level);
 // Splats node values (`channels` interleaved) to the lattice 2^levels coarser; keeps their sum.
 std::vector<float> splat_down(BrickLattice lattice, std::vector<float> values, int channels, int levels);
 
+// Colours as interleaved channels, for splat_down().
+std::vector<float> flattened(const std::vector<Rgb>& colours);
+
 // Coarse node values at fine nodes, trilinearly.
 struct CoarseSampler {
     const BrickLattice& lattice;

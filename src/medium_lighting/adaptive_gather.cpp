@@ -220,8 +220,7 @@ private:
         const std::vector<Rgb> wanted =
             project_extinction_times(medium(level + 1), fluence_at_nodes(coarse, needed(level + 1)));
         const std::vector<Rgb> found = project_extinction_times(medium(level), fluence_at_nodes(out, needed(level)));
-        const std::vector<float> sums =
-            splat_down(fine, std::vector<float>(&found[0].x, &found[0].x + 3 * found.size()), 3, 1);
+        const std::vector<float> sums = splat_down(fine, flattened(found), 3, 1);
         std::vector<Rgb> factor(wanted.size(), Rgb(1.0f));
         for (std::size_t i = 0; i < wanted.size(); ++i)
             for (int c = 0; c < 3; ++c)

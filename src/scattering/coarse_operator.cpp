@@ -20,11 +20,6 @@ constexpr int kBalanceSweeps = 3;
 // A node that sharpening leaves less of its unit light than this is about to be emptied.
 constexpr float kEmptied = 0.1f;
 
-std::vector<float> flattened(const std::vector<Rgb>& v) {
-    const auto* p = reinterpret_cast<const float*>(v.data());
-    return {p, p + v.size() * 3};
-}
-
 std::vector<Rgb> as_colours(const std::vector<float>& v) {
     std::vector<Rgb> c(v.size() / 3);
     for (std::size_t i = 0; i < c.size(); ++i)

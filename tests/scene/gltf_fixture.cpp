@@ -191,4 +191,17 @@ double area_of(const SceneMesh& mesh) {
     return area;
 }
 
+std::string base64(const std::string& bytes) {
+    static const char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        std::uint32_t triple = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            triple = triple << 8 | static_cast<unsigned char>(bytes[i + k]);
+        for (int shift = 18; shift >= 0; shift -= 6)
+            text += kDigits[triple >> shift & 63];
+    }
+    return text;
+}
+
 }  // namespace brisance::testing

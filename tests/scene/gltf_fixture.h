@@ -72,4 +72,7 @@ std::string encoded_png16(int width, int height, int channels, const std::vector
 dvec3 cross_of(const SceneMesh& mesh, std::size_t triangle);  // twice the area, along the normal
 double area_of(const SceneMesh& mesh);
 
+// For data: URIs; of lengths that 3 divides.
+std::string base64(const std::string& bytes);
+
 }  // namespace brisance::testing
