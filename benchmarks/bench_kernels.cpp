@@ -80,7 +80,7 @@ void near_stencil(benchmark::State& state, bool shadows) {
     Gathered out;
     out.resize(fire.medium.lattice.node_count(), false, false);
     for (auto _ : state) {
-        near.gather({&fire.medium.lattice, &fire.medium.extinction, &fire.intensity, nullptr, nullptr, 0.0f}, out);
+        near.gather({&fire.medium.lattice, &fire.medium.extinction, &fire.intensity, nullptr}, out);
         benchmark::DoNotOptimize(out.fluence.data());
     }
     state.counters["evaluations/s"] =

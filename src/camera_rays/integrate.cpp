@@ -16,8 +16,8 @@ float position_in_part(int part, int parts) {
 }
 
 // What is seen of a thick cell is its near end: sources that vary along it want more parts than extinction does.
-constexpr double kThickVoxel = 1.0;
-constexpr int kThickVoxelParts = 8;
+constexpr float kThickVoxel = 0.5f;
+constexpr int kThickVoxelParts = 4, kOpaqueVoxelParts = 8;
 
 Rgb slot(const float* record, int at) {
     return {record[at], record[at + 1], record[at + 2]};
@@ -78,13 +78,19 @@ void add_part(RaySum& sum, const SourceField& field, const Part& p) {
     sum.distance_sum += own.opacity * p.distance;
 }
 
+int parts_of(const SourceField& field, const VoxelSegment& s, float length) {
+    if (field.majorant(s.brick) * length <= kThickVoxel)
+        return 1;
+    const float depth = field.majorant_of_cell(s.brick, s.cube) * length;
+    return depth <= kThickVoxel ? 1 : (depth <= 2.0f * kThickVoxel ? kThickVoxelParts : kOpaqueVoxelParts);
+}
+
 // Visits every part of every cell until visit(part) returns false.
 template <class Visit>
 void walk_parts(const SourceField& field, const Ray& ray, int parts, double end, const Visit& visit) {
     const auto visit_parts = [&](const VoxelSegment& s) {
         const double length = s.end - s.begin;
-        const bool thick = field.majorant(s.brick) * length > kThickVoxel;
-        const int n = thick ? std::max(parts, kThickVoxelParts) : parts;
+        const int n = std::max(parts, parts_of(field, s, static_cast<float>(length)));
         for (int k = 0; k < n; ++k) {
             const double t = s.begin + length * position_in_part(k, n);
             const vec3 p = sample_position(s, t);

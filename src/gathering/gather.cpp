@@ -8,6 +8,7 @@
 #include "core/stopwatch.h"
 #include "gathering/far_kernels.h"
 #include "gathering/map_layouts.h"
+#include "gathering/node_receivers.h"
 #include "medium/phase.h"
 #include "shadows/shadow_maps.h"
 
@@ -225,61 +226,40 @@ private:
     PackedExtinction fine_;
 };
 
-// The needed nodes of every brick as one block, in sub-blocks of 4 x 2 x 2 so that groups of 16 are compact.
-Receivers node_receivers(const Medium& medium, const LatticeRequest& request, std::vector<std::uint32_t>& node_of) {
-    Receivers receivers;
-    std::vector<vec3> points, directions;
-    for (std::size_t b = 0; b < medium.lattice.brick_count(); ++b) {
-        points.clear();
-        directions.clear();
-        const std::size_t first = node_of.size();
-        for (int k = 0; k < BrickLattice::kNodes; ++k) {
-            const int sub = k >> 4, in = k & 15;
-            const ivec3 p((sub >> 4) * 4 + (in >> 2), (sub >> 2 & 3) * 2 + (in >> 1 & 1), (sub & 3) * 2 + (in & 1));
-            const std::size_t node = b * BrickLattice::kNodes + BrickLattice::offset_in_brick(p);
-            if (!(*request.needed)[node])
-                continue;
-            points.push_back(medium.local_of_node(medium.lattice.first_node(b) + p));
-            if (request.toward_camera)
-                directions.push_back((*request.toward_camera)[node]);
-            node_of.push_back(static_cast<std::uint32_t>(node));
-        }
-        receivers.add_block(points, directions);
-        while (node_of.size() > first && node_of.size() < receivers.size())
-            node_of.push_back(node_of.back());
-    }
-    return receivers;
+// Light of the levels from `first` to `last` at the nodes of a lattice.
+Gathered gather_levels(const LightField& field, const LatticeRequest& request, const NodeReceivers& at,
+                       std::size_t first, std::size_t last, std::vector<LevelCost>& costs, Progress& progress) {
+    const auto& levels = field.grid->levels;
+    Gathered light;
+    light.resize(at.receivers.size(), request.eye.has_value(), request.moments);
+    FarGather gather(field, at.receivers, request.mean_cosine, light, progress);
+    for (std::size_t l = first; l < last; ++l)
+        costs.push_back(gather.run(levels[l], l + 1 == levels.size()));
+    return light;
 }
 
-void gather_upper_levels(const LightField& field, FarGather& far, std::vector<LevelCost>& costs) {
+// Adds the light of levels from `first` on to `out`, at the nodes of the lattice `at` and at coarser ones below it.
+void gather_down(const LightField& field, const LatticeRequest& request, const NodeReceivers& at, std::size_t first,
+                 int coarsening, Gathered& out, std::vector<LevelCost>& costs, Progress& progress) {
     const auto& levels = field.grid->levels;
-    for (std::size_t l = 0; l < levels.size(); ++l)
-        costs.push_back(far.run(levels[l], l + 1 == levels.size()));
+    std::size_t last = first;
+    while (last < levels.size() && coarsening_of(field, levels[last]) <= coarsening)
+        ++last;
+    if (last > first)
+        add_at_nodes(at, gather_levels(field, request, at, first, last, costs, progress), out);
+    if (last == levels.size())
+        return;
+    const NodeReceivers coarser = coarser_receivers(field.pyramid->medium(), request, at, coarsening + 1);
+    Gathered light;
+    light.resize(coarser.needed.size(), request.eye.has_value(), request.moments);
+    gather_down(field, request, coarser, last, coarsening + 1, light, costs, progress);
+    add_interpolated(coarser, light, at, out);
 }
 
 // Adds the contributions of all levels of the grid to the requested nodes.
 void gather_grid(const LightField& field, const LatticeRequest& request, Gathered& out, std::vector<LevelCost>& costs,
                  Progress& progress) {
-    const std::size_t nodes = field.pyramid->medium().lattice.node_count();
-    std::vector<std::uint32_t> node_of;
-    const Receivers receivers = node_receivers(field.pyramid->medium(), request, node_of);
-    Gathered far;
-    far.resize(receivers.size(), request.toward_camera != nullptr, request.moments);
-    FarGather gather(field, receivers, request.mean_cosine, far, progress);
-    gather_upper_levels(field, gather, costs);
-    const auto add = [&](const std::vector<float>& from, std::vector<float>& to, int channels) {
-        parallel_for(from.empty() ? 0 : channels, [&](std::size_t c) {
-            std::uint32_t last = ~0u;
-            for (std::size_t i = 0; i < node_of.size(); ++i) {
-                if (node_of[i] != last)  // padding repeats a block's last node
-                    to[c * nodes + node_of[i]] += from[c * node_of.size() + i];
-                last = node_of[i];
-            }
-        });
-    };
-    add(far.fluence, out.fluence, 3);
-    add(far.scattered, out.scattered, 3);
-    add(far.moments, out.moments, 24);
+    gather_down(field, request, node_receivers(field.pyramid->medium(), request), 0, 0, out, costs, progress);
 }
 
 }  // namespace
@@ -312,13 +292,13 @@ Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request,
     const Medium& medium = field.pyramid->medium();
     const std::size_t nodes = medium.lattice.node_count();
     Gathered out;
-    out.resize(nodes, request.toward_camera != nullptr, request.moments);
+    out.resize(nodes, request.eye.has_value(), request.moments);
 
     const Stopwatch watch;
     const NearField near(medium.local_from_index, field.alpha * medium.spacing,
                          field.settings.shadows != ShadowMethod::None);
-    near.gather({&medium.lattice, &medium.extinction, field.intensity, field.directional, request.toward_camera,
-                 request.mean_cosine, request.needed},
+    near.gather({&medium.lattice, &medium.extinction, field.intensity, field.directional, request.eye,
+                 medium.reference_node, request.mean_cosine, request.needed},
                 out);
     LevelCost bottom;
     bottom.lights =
@@ -333,7 +313,7 @@ Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request,
 Gathered gather_from_outside(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
                              Progress& progress) {
     Gathered out;
-    out.resize(field.pyramid->medium().lattice.node_count(), request.toward_camera != nullptr, request.moments);
+    out.resize(field.pyramid->medium().lattice.node_count(), request.eye.has_value(), request.moments);
     gather_grid(field, request, out, costs, progress);
     return out;
 }
@@ -346,7 +326,9 @@ Gathered gather_at_points(const LightField& field, const GridLevel& bottom, cons
     FarGather gather(field, receivers, mean_cosine, out, progress, kind);
     if (field.bottom == 0)
         costs.push_back(gather.run(bottom, false));
-    gather_upper_levels(field, gather, costs);
+    const auto& levels = field.grid->levels;
+    for (std::size_t l = 0; l < levels.size(); ++l)
+        costs.push_back(gather.run(levels[l], l + 1 == levels.size()));
     return out;
 }
 

@@ -6,6 +6,7 @@
 // [r_0, 2 r_0]. Level l fades in over [r_l / 2, r_l] and out over [r_l, 2 r_l]. The top level never fades out.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -60,10 +61,10 @@ struct LightField {
     int bottom = 0;  // the finest level: does not fade in, its lights are balls
 };
 
-// The nodes that need light, and the direction in which they scatter it.
+// The nodes that need light, and the point toward which they scatter it.
 struct LatticeRequest {
     const std::vector<std::uint8_t>* needed;  // per node
-    const std::vector<vec3>* toward_camera;   // per node, unit, or null
+    std::optional<vec3> eye;                  // local [m]; none: no `scattered`
     bool moments = false;
     float mean_cosine = 0.0f;
 };

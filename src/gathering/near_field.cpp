@@ -203,6 +203,7 @@ void NearField::gather(const Input& in, Gathered& out) const {
         if (in.needed && !any_needed(*in.needed, b))
             return;
         thread_local std::vector<float> extinction, intensity, directional;
+        std::vector<vec3> toward_camera;
         const ivec3 low = lattice.first_node(b) - margin_;
         intensity.resize(plane * 3);
         copy_box(lattice, flat(*in.intensity), 3, low, ivec3(wide), intensity);
@@ -221,7 +222,11 @@ void NearField::gather(const Input& in, Gathered& out) const {
         brick.extinction = extinction.data();
         brick.intensity = intensity.data();
         brick.directional = in.directional ? directional.data() : nullptr;
-        brick.toward_camera = in.toward_camera ? &(*in.toward_camera)[b * BrickLattice::kNodes] : nullptr;
+        for (int k = 0; in.eye && k < BrickLattice::kNodes; ++k) {
+            const ivec3 node = lattice.first_node(b) + BrickLattice::node_in_brick(k) - in.reference_node;
+            toward_camera.push_back(direction_toward(*in.eye, local_from_index_ * vec3(node)));
+        }
+        brick.toward_camera = in.eye ? toward_camera.data() : nullptr;
         brick.mean_cosine = in.mean_cosine;
         brick.out_plane = nodes;
         brick.fluence = out.fluence.data() + b * BrickLattice::kNodes;

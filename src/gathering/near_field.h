@@ -16,6 +16,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,10 +32,11 @@ public:
 
     struct Input {
         const BrickLattice* lattice;
-        const std::vector<float>* extinction;    // per node [1/m]
-        const std::vector<Rgb>* intensity;       // per node [W/sr]
-        const std::vector<float>* directional;   // 24 coefficients per node (far_kernels.h), or null
-        const std::vector<vec3>* toward_camera;  // per node, or null: no `scattered`
+        const std::vector<float>* extinction;   // per node [1/m]
+        const std::vector<Rgb>* intensity;      // per node [W/sr]
+        const std::vector<float>* directional;  // 24 coefficients per node (far_kernels.h), or null
+        std::optional<vec3> eye;                // local [m]; none: no `scattered`
+        ivec3 reference_node{0};                // at the origin of local space
         float mean_cosine = 0.0f;
         const std::vector<std::uint8_t>* needed = nullptr;  // per node; bricks without a needed node are skipped
     };

@@ -1,6 +1,20 @@
 #include "gathering/receivers.h"
 
+#include "core/parallel.h"
+
 namespace brisance {
+
+namespace {
+
+constexpr std::size_t kAtOnce = 1 << 16;  // values that one task adds or scales
+
+}  // namespace
+
+vec3 direction_toward(const vec3& eye, const vec3& p) {
+    const vec3 offset = eye - p;
+    const float distance = glm::length(offset);
+    return distance > 0.0f ? offset / distance : vec3(0.0f, 0.0f, 1.0f);
+}
 
 void Receivers::add_block(const std::vector<vec3>& points, const std::vector<vec3>& toward_camera) {
     if (points.empty())
@@ -36,8 +50,8 @@ void Gathered::resize(std::size_t receivers, bool camera, bool directional) {
 
 void Gathered::add(const Gathered& other) {
     const auto sum = [](std::vector<float>& a, const std::vector<float>& b) {
-        for (std::size_t i = 0; i < a.size() && i < b.size(); ++i)
-            a[i] += b[i];
+        parallel_for(
+            std::min(a.size(), b.size()), [&](std::size_t i) { a[i] += b[i]; }, kAtOnce);
     };
     sum(fluence, other.fluence);
     sum(scattered, other.scattered);
@@ -47,8 +61,8 @@ void Gathered::add(const Gathered& other) {
 void Gathered::scale(const Rgb& factor) {
     for (auto* field : {&fluence, &scattered, &moments}) {
         const std::size_t plane = field == &moments ? field->size() / 24 : field->size() / 3;
-        for (std::size_t i = 0; i < field->size(); ++i)
-            (*field)[i] *= factor[int(i / plane % 3)];
+        parallel_for(
+            field->size(), [&](std::size_t i) { (*field)[i] *= factor[int(i / plane % 3)]; }, kAtOnce);
     }
 }
 

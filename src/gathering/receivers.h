@@ -33,6 +33,9 @@ enum class ReceiverKind {
     Surface  // cosine / pi to the normal, which is passed as `toward_camera`; 0 from below
 };
 
+// Unit vector from `p` to `eye` (local [m]).
+vec3 direction_toward(const vec3& eye, const vec3& p);
+
 class Receivers {
 public:
     static constexpr int kGroup = 16;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <span>
 
 #include "core/parallel.h"
@@ -17,93 +18,102 @@ constexpr int at(int x, int y, int z) {
     return (x * kWide + y) * kWide + z;
 }
 
-constexpr int corner_offset(int k) {
-    return at(k >> 2, k >> 1 & 1, k & 1);
-}
+// The two Gauss points of the unit interval: weights of its ends.
+constexpr float kGauss[2][2] = {{0.78867513459481288225f, 0.21132486540518711775f},
+                                {0.21132486540518711775f, 0.78867513459481288225f}};
+constexpr int kStride[3] = {at(0, 0, 1), at(0, 1, 0), at(1, 0, 0)};
 
-// Trilinear weights of the eight corners at the eight Gauss points of the unit cell.
-std::array<std::array<float, 8>, 8> gauss_weights() {
-    constexpr double point[2] = {0.21132486540518711775, 0.78867513459481288225};
-    std::array<std::array<float, 8>, 8> w;
-    for (int g = 0; g < 8; ++g)
-        for (int c = 0; c < 8; ++c) {
-            double product = 1.0;
-            for (int a = 0; a < 3; ++a) {
-                const double t = point[g >> a & 1];
-                product *= (c >> (2 - a) & 1) ? t : 1.0 - t;
-            }
-            w[g][c] = static_cast<float>(product);
-        }
-    return w;
-}
+using Box = std::array<float, kPlane>;
+using GaussBoxes = std::array<Box, 8>;  // one value per cell at each of its Gauss points
 
-const std::array<std::array<float, 8>, 8> kGauss = gauss_weights();
-
-struct Boxes {
-    std::vector<float> extinction = std::vector<float>(kPlane);
-    std::vector<float> factor = std::vector<float>(3 * kPlane);
-    std::vector<float> emission = std::vector<float>(3 * kPlane);
-    std::vector<float> sum = std::vector<float>(3 * kPlane);
-};
-
-// Adds one cell's integral of hat * (extinction * factor + emission) to its eight corners, in units of a cell's volume.
-void add_cell(Boxes& box, int cell) {
-    for (int g = 0; g < 8; ++g) {
-        float sigma = 0.0f;
-        Rgb q(0.0f), j(0.0f);
-        for (int c = 0; c < 8; ++c) {
-            const int i = cell + corner_offset(c);
-            const float w = kGauss[g][c];
-            sigma += w * box.extinction[i];
-            for (int a = 0; a < 3; ++a) {
-                q[a] += w * box.factor[a * kPlane + i];
-                j[a] += w * box.emission[a * kPlane + i];
+// Node values at the Gauss points of all cells, one axis after the other. A cell is known by its lowest node. Cells
+// that begin at the last node of a row read the next row: they add to nodes of the margin only, which no one reads.
+void to_gauss_points(const float* nodes, GaussBoxes& points) {
+    std::copy_n(nodes, kPlane, points[0].begin());
+    for (int a = 0; a < 3; ++a)
+        for (int g = 0; g < 1 << a; ++g) {
+            Box &low = points[g], &high = points[g | 1 << a];
+            for (int i = 0; i < kPlane - kStride[a]; ++i) {
+                const float begin = low[i], end = low[i + kStride[a]];
+                high[i] = kGauss[1][0] * begin + kGauss[1][1] * end;
+                low[i] = kGauss[0][0] * begin + kGauss[0][1] * end;
             }
         }
-        const Rgb value = (sigma * q + j) * 0.125f;
-        for (int c = 0; c < 8; ++c)
-            for (int a = 0; a < 3; ++a)
-                box.sum[a * kPlane + cell + corner_offset(c)] += kGauss[g][c] * value[a];
-    }
 }
 
-bool voxel_is_dark(const Boxes& box, int cell) {
-    bool absorbs = false, factor = false, emits = false;
-    for (int c = 0; c < 8; ++c) {
-        const int i = cell + corner_offset(c);
-        absorbs = absorbs || box.extinction[i] != 0.0f;
-        for (int a = 0; a < 3; ++a) {
-            factor = factor || box.factor[a * kPlane + i] != 0.0f;
-            emits = emits || box.emission[a * kPlane + i] != 0.0f;
+// The transpose: values of cells at their Gauss points, as sums at the nodes. Uses `points` up.
+void from_gauss_points(GaussBoxes& points, float* nodes) {
+    for (int a = 2; a >= 0; --a)
+        for (int g = 0; g < 1 << a; ++g) {
+            Box &low = points[g], &high = points[g | 1 << a];
+            Box sum;
+            sum.fill(0.0f);
+            for (int i = 0; i < kPlane - kStride[a]; ++i)
+                sum[i] = kGauss[0][0] * low[i] + kGauss[1][0] * high[i];
+            for (int i = 0; i < kPlane - kStride[a]; ++i)
+                sum[i + kStride[a]] += kGauss[0][1] * low[i] + kGauss[1][1] * high[i];
+            low = sum;
         }
-    }
-    return !(absorbs && factor) && !emits;
+    std::copy(points[0].begin(), points[0].end(), nodes);
 }
 
 std::span<const float> flat(const std::vector<Rgb>& field) {
     return {reinterpret_cast<const float*>(field.data()), field.size() * 3};
 }
 
+bool dark(std::span<const float> box) {
+    return std::all_of(box.begin(), box.end(), [](float v) { return v == 0.0f; });
+}
+
+// Integrals over a brick and its margin of hat * (extinction * factor + emission), in units of a cell's volume.
+struct BrickProjection {
+    Box extinction;
+    std::array<float, 3 * kPlane> factor, emission, sum;
+    GaussBoxes sigma, value, emitted;
+
+    void run() {
+        const bool scatters = !dark(extinction) && !dark(factor), emits = !dark(emission);
+        sum.fill(0.0f);
+        if (scatters)
+            to_gauss_points(extinction.data(), sigma);
+        for (int c = 0; c < 3 && (scatters || emits); ++c) {
+            const int plane = c * kPlane;
+            if (scatters)
+                to_gauss_points(&factor[plane], value);
+            if (emits)
+                to_gauss_points(&emission[plane], emitted);
+            for (int g = 0; g < 8; ++g)
+                for (int i = 0; i < kPlane; ++i)
+                    value[g][i] =
+                        0.125f * ((scatters ? sigma[g][i] * value[g][i] : 0.0f) + (emits ? emitted[g][i] : 0.0f));
+            from_gauss_points(value, &sum[plane]);
+        }
+    }
+};
+
 std::vector<Rgb> project(const Medium& medium, const std::vector<Rgb>& factor, const std::vector<Rgb>& emission) {
     const BrickLattice& lattice = medium.lattice;
     std::vector<Rgb> lights(lattice.node_count(), Rgb(0.0f));
-    parallel_for(lattice.brick_count(), [&](std::size_t b) {
-        Boxes box;
-        const ivec3 low = lattice.first_node(b) - 1;
-        copy_box(lattice, medium.extinction, 1, low, ivec3(kWide), box.extinction);
-        if (!factor.empty())
-            copy_box(lattice, flat(factor), 3, low, ivec3(kWide), box.factor);
-        if (!emission.empty())
-            copy_box(lattice, flat(emission), 3, low, ivec3(kWide), box.emission);
-        for (int x = 0; x < kWide - 1; ++x)
-            for (int y = 0; y < kWide - 1; ++y)
-                for (int z = 0; z < kWide - 1; ++z)
-                    if (!voxel_is_dark(box, at(x, y, z)))
-                        add_cell(box, at(x, y, z));
-        for (int n = 0; n < BrickLattice::kNodes; ++n) {
-            const ivec3 p = BrickLattice::node_in_brick(n) + 1;
-            for (int a = 0; a < 3; ++a)
-                lights[b * BrickLattice::kNodes + n][a] = medium.voxel_volume * box.sum[a * kPlane + at(p.x, p.y, p.z)];
+    parallel_blocks(lattice.brick_count(), 16, [&](std::size_t begin, std::size_t end) {
+        const auto box = std::make_unique<BrickProjection>();
+        for (std::size_t b = begin; b < end; ++b) {
+            const ivec3 low = lattice.first_node(b) - 1;
+            const auto copy = [&](std::span<const float> field, int channels, std::span<float> to) {
+                if (field.empty())
+                    std::fill(to.begin(), to.end(), 0.0f);
+                else
+                    copy_box(lattice, field, channels, low, ivec3(kWide), to);
+            };
+            copy(medium.extinction, 1, box->extinction);
+            copy(flat(factor), 3, box->factor);
+            copy(flat(emission), 3, box->emission);
+            box->run();
+            for (int n = 0; n < BrickLattice::kNodes; ++n) {
+                const ivec3 p = BrickLattice::node_in_brick(n) + 1;
+                for (int a = 0; a < 3; ++a)
+                    lights[b * BrickLattice::kNodes + n][a] =
+                        medium.voxel_volume * box->sum[a * kPlane + at(p.x, p.y, p.z)];
+            }
         }
     });
     return lights;

@@ -71,8 +71,6 @@ private:
         LatticeRequest request = lattice_.request();
         request.needed = &mask;
         request.moments = moments_;
-        if (level > 0 && request.toward_camera)
-            request.toward_camera = &at(level).toward_camera;
         return gather_({level, level == 0 ? lattice_.pyramid() : *at(level).pyramid, request, sparse});
     }
 

@@ -44,20 +44,19 @@ LitLattice::LitLattice(const MediumLightingInput& input)
         if (surfaces_reach_into(input.surroundings->scene(), input.medium))
             pyramid_.set_occluders(surfaces_.get());
     }
-    if (input.directional)
-        toward_camera_ = directions_to(input.medium, input.eye);
     if (input.single || input.multiple)
         thin_medium_ = ThinMedium(input.medium, depths_, needed_,
                                   input.directional ? std::optional<vec3>(input.eye) : std::nullopt);
     if (!thin_medium_.empty())
         pyramid_.set_homogeneous_bricks(&thin_medium_.homogeneous_bricks());
     if (input.lighting.error > 0.0f)
-        levels_ = make_lit_levels(pyramid_, needed_, {input.eye, input.pixel_angle}, input.directional, kLitLevels);
+        levels_ = make_lit_levels(pyramid_, needed_, {input.eye, input.pixel_angle}, kLitLevels);
 }
 
 LatticeRequest LitLattice::request() const {
     const bool moments = input_.multiple && input_.directional;
-    return {&needed_, input_.directional ? &toward_camera_ : nullptr, moments, medium().mean_cosine};
+    const std::optional<vec3> eye = input_.directional ? std::optional<vec3>(input_.eye) : std::nullopt;
+    return {&needed_, eye, moments, medium().mean_cosine};
 }
 
 LatticeRequest LitLattice::last_request() const {

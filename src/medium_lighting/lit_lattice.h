@@ -47,7 +47,6 @@ private:
     std::unique_ptr<Occluders> surfaces_;
     ExtinctionPyramid pyramid_;
     std::vector<std::uint8_t> needed_;
-    std::vector<vec3> toward_camera_;
     PointDepths depths_;
     ThinMedium thin_medium_;
     std::vector<LitLevel> levels_;

@@ -71,22 +71,8 @@ void weigh_by_camera(LitLevel& level, const PointDepths& depths, const LightingC
 
 }  // namespace
 
-std::vector<vec3> directions_to(const Medium& medium, const vec3& eye) {
-    std::vector<vec3> directions(medium.lattice.node_count());
-    parallel_for(
-        directions.size(),
-        [&](std::size_t i) {
-            const vec3 p = medium.local_of_node(medium.lattice.node(i));
-            const vec3 offset = eye - p;
-            const float d = glm::length(offset);
-            directions[i] = d > 0.0f ? offset / d : vec3(0.0f, 0.0f, 1.0f);
-        },
-        4096);
-    return directions;
-}
-
 std::vector<LitLevel> make_lit_levels(const ExtinctionPyramid& pyramid, const std::vector<std::uint8_t>& needed,
-                                      const LightingCamera& camera, bool directional, int count) {
+                                      const LightingCamera& camera, int count) {
     std::vector<LitLevel> levels;
     const PointDepths depths(pyramid, kCameraRayLevel);
     for (int l = 1; l <= std::min(count, pyramid.level_count() - 1); ++l) {
@@ -95,8 +81,6 @@ std::vector<LitLevel> make_lit_levels(const ExtinctionPyramid& pyramid, const st
         level.medium = coarse_medium(pyramid, l);
         level.needed = l == 1 ? nodes_below(pyramid.lattice(0), needed, level.medium.lattice)
                               : nodes_below(pyramid.lattice(l - 1), levels.back().needed, level.medium.lattice);
-        if (directional)
-            level.toward_camera = directions_to(level.medium, camera.eye);
         weigh_by_camera(level, depths, camera);
         levels.push_back(std::move(level));
     }

@@ -20,7 +20,6 @@ struct LitLevel {
     Medium medium;
     std::unique_ptr<ExtinctionPyramid> pyramid;  // of `medium`
     std::vector<std::uint8_t> needed;            // per node: whether finer nodes are interpolated from it
-    std::vector<vec3> toward_camera;             // per node; empty: light needs no direction
     // Per node: how much of a pixel's radiance a change of the source function there changes, transmittance to the
     // camera times opacity times the part of a pixel that a voxel covers. In [0, 1].
     std::vector<float> importance;
@@ -29,11 +28,7 @@ struct LitLevel {
 };
 
 // Levels 1 to `count`, fewer where the pyramid has fewer. `needed`: nodes of the medium where light is needed;
-// `directional`: fills toward_camera.
 std::vector<LitLevel> make_lit_levels(const ExtinctionPyramid& pyramid, const std::vector<std::uint8_t>& needed,
-                                      const LightingCamera& camera, bool directional, int count);
-
-// Unit vectors from all nodes to `eye` (local).
-std::vector<vec3> directions_to(const Medium& medium, const vec3& eye);
+                                      const LightingCamera& camera, int count);
 
 }  // namespace brisance

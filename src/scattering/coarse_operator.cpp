@@ -152,7 +152,7 @@ Gathered CoarseOperator::gather(const ScatteredLight& lights, std::vector<LevelC
                            &maps_,
                            pyramid_->occluders()};
     std::vector<LevelCost> these;
-    Gathered out = gather_at_nodes(field, {&mask_, nullptr, directional, medium_.mean_cosine}, these, progress);
+    Gathered out = gather_at_nodes(field, {&mask_, std::nullopt, directional, medium_.mean_cosine}, these, progress);
     if (costs.empty())
         costs = these;
     const std::size_t n = factor_.size();

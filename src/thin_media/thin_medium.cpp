@@ -162,8 +162,8 @@ Gathered ThinMedium::gather(const LightField& field, const GridLevel& bottom, co
         std::vector<vec3> points, directions;
         for (int p = 0; p < LightPoints::kCount; ++p) {
             points.push_back(medium.local_of_node(medium.lattice.first_node(b) + LightPoints::node(p)));
-            if (request.toward_camera)
-                directions.push_back(glm::normalize(*eye_ - points.back()));
+            if (request.eye)
+                directions.push_back(direction_toward(*request.eye, points.back()));
         }
         receivers.add_block(points, directions);
     }

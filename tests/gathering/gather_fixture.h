@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "fixtures/media.h"
@@ -33,12 +34,12 @@ inline LightingSettings lighting(ShadowMethod shadows, float alpha = 2.0f) {
 
 // Fluence of all nodes, planar.
 inline Gathered at_all_nodes(const Lit& lit, const LightingSettings& settings,
-                             const std::vector<vec3>* toward_camera = nullptr, bool moments = false,
+                             const std::optional<vec3>& eye = std::nullopt, bool moments = false,
                              float mean_cosine = 0.0f) {
     const std::vector<std::uint8_t> needed(lit.medium.lattice.node_count(), 1);
     std::vector<LevelCost> costs;
     Progress silent;
-    return gather_at_nodes(field_of(lit, settings), {&needed, toward_camera, moments, mean_cosine}, costs, silent);
+    return gather_at_nodes(field_of(lit, settings), {&needed, eye, moments, mean_cosine}, costs, silent);
 }
 
 // The same at the nodes for which `is_needed` returns true.
@@ -50,7 +51,7 @@ Gathered at_nodes(const Lit& lit, const LightingSettings& settings, const IsNeed
                               BrickLattice::node_in_brick(static_cast<int>(i % BrickLattice::kNodes)));
     std::vector<LevelCost> costs;
     Progress silent;
-    return gather_at_nodes(field_of(lit, settings), {&needed, nullptr, false, 0.0f}, costs, silent);
+    return gather_at_nodes(field_of(lit, settings), {&needed, std::nullopt, false, 0.0f}, costs, silent);
 }
 
 // Fluence of the first channel at points, one block per run of up to 64 points.

@@ -43,6 +43,34 @@ TEST(Agreement, MapsAgreeWithExactShadows) {
     EXPECT_LT(d.rms, 0.05);
 }
 
+struct NoSurfaces : Occluders {
+    float first_hit(const vec3&, const vec3&, float far) const override { return far; }
+    bool any_within(const vec3&, float) const override { return false; }
+};
+
+TEST(Agreement, FarLightBetweenNodesIsThatOfTheNodes) {
+    Recipe r = fireball(3.0f);
+    r.box = cube(-26, 25);
+    r.density = [](const ivec3& n) { return ball(n, dvec3(0.0), 26.0) * (0.3f + noise(n >> 1, 1)); };
+    const Lit lit(make_medium(r));
+    ASSERT_GE(lit.grid.levels.size(), 4u);
+    const Gathered interpolated = at_all_nodes(lit, lighting(ShadowMethod::Maps));
+    // Beside surfaces, light of every level is gathered at every node.
+    const NoSurfaces none;
+    LightField field = field_of(lit, lighting(ShadowMethod::Maps));
+    field.occluders = &none;
+    const std::vector<std::uint8_t> needed(lit.medium.lattice.node_count(), 1);
+    std::vector<LevelCost> every, fewer;
+    Progress silent;
+    const Gathered at_every_node = gather_at_nodes(field, {&needed, std::nullopt, false, 0.0f}, every, silent);
+    gather_at_nodes(field_of(lit, lighting(ShadowMethod::Maps)), {&needed, std::nullopt, false, 0.0f}, fewer, silent);
+    EXPECT_LT(fewer.back().evaluations * 8, every.back().evaluations);
+    const Difference d = difference(interpolated.fluence, at_every_node.fluence);
+    std::printf("mean %+.3f %%, rms %.3f %%\n", 100.0 * d.mean, 100.0 * d.rms);
+    EXPECT_LT(std::abs(d.mean), 0.002);
+    EXPECT_LT(d.rms, 0.005);
+}
+
 TEST(Agreement, PointsAtTheNodesSeeWhatTheNodesSee) {
     const Lit lit(make_medium(fireball(2.0f)));
     std::vector<vec3> points;
@@ -68,7 +96,7 @@ TEST(Agreement, NodesThatAskAloneGetWhatTheyGetTogether) {
     std::vector<LevelCost> costs;
     Progress silent;
     const Gathered some = gather_at_nodes(field_of(lit, lighting(ShadowMethod::Maps, 1.0f)),
-                                          {&needed, nullptr, false, 0.0f}, costs, silent);
+                                          {&needed, std::nullopt, false, 0.0f}, costs, silent);
     const std::size_t nodes = needed.size();
     for (std::size_t i = 0; i < nodes; ++i)
         for (int c = 0; needed[i] && c < 3; ++c)
@@ -109,8 +137,7 @@ TEST(Agreement, TheNumberOfThreadsDoesNotShow) {
     for (const int threads : {1, 2, 8}) {
         const ThreadLimit limit(threads);
         const Lit lit(medium);
-        const std::vector<vec3> camera(medium.lattice.node_count(), glm::normalize(vec3(1.0f, 2.0f, 3.0f)));
-        const Gathered g = at_all_nodes(lit, lighting(ShadowMethod::Maps, 1.0f), &camera, true, 0.5f);
+        const Gathered g = at_all_nodes(lit, lighting(ShadowMethod::Maps, 1.0f), vec3(1.0f, 2.0f, 3.0f), true, 0.5f);
         nodes.push_back(g.fluence);
         nodes.back().insert(nodes.back().end(), g.scattered.begin(), g.scattered.end());
         nodes.back().insert(nodes.back().end(), g.moments.begin(), g.moments.end());
@@ -133,7 +160,7 @@ TEST(Agreement, LittleMemoryIsMentionedAndCostsLittle) {
     const std::vector<std::uint8_t> needed(lit.medium.lattice.node_count(), 1);
     std::vector<LevelCost> costs;
     Listener listener;
-    const Gathered g = gather_at_nodes(field_of(lit, tight), {&needed, nullptr, false, 0.0f}, costs, listener);
+    const Gathered g = gather_at_nodes(field_of(lit, tight), {&needed, std::nullopt, false, 0.0f}, costs, listener);
     ASSERT_FALSE(listener.notices.empty());
     EXPECT_NE(listener.notices[0].find("memory limit of 1 MiB"), std::string::npos) << listener.notices[0];
     for (const LevelCost& cost : costs)
@@ -157,7 +184,7 @@ TEST(Agreement, InBatchesOrAtOnceTheLightIsTheSame) {
         needed[i] = 1;
     std::vector<LevelCost> whole_costs, costs;
     Progress silent;
-    const LatticeRequest request{&needed, nullptr, false, 0.0f};
+    const LatticeRequest request{&needed, std::nullopt, false, 0.0f};
     const Gathered whole = gather_at_nodes(field_of(lit, settings), request, whole_costs, silent);
     settings.memory_limit_bytes = whole_costs[1].map_bytes * 4 / 5;  // too little for the first level alone
     const Gathered batches = gather_at_nodes(field_of(lit, settings), request, costs, silent);
@@ -181,15 +208,15 @@ TEST(Agreement, MapsKeptForLaterAreTheSameMaps) {
     LightingSettings small = lighting(ShadowMethod::Maps, 1.0f);
     small.shadow_resolution = 4;
     small.shadow_distances = 2;
-    const Gathered whole = gather_at_nodes(field_of(lit, small), {&needed, nullptr, false, 0.0f}, costs, silent);
+    const Gathered whole = gather_at_nodes(field_of(lit, small), {&needed, std::nullopt, false, 0.0f}, costs, silent);
     for (const LevelCost& cost : costs)
         EXPECT_EQ(cost.map_bytes, cost.held_bytes);
     ShadowMapCache cache;
     LightField kept = field_of(lit, small);
     kept.cache = &cache;
     std::vector<LevelCost> ignored;
-    const Gathered first = gather_at_nodes(kept, {&needed, nullptr, false, 0.0f}, ignored, silent);
-    const Gathered second = gather_at_nodes(kept, {&needed, nullptr, false, 0.0f}, ignored, silent);
+    const Gathered first = gather_at_nodes(kept, {&needed, std::nullopt, false, 0.0f}, ignored, silent);
+    const Gathered second = gather_at_nodes(kept, {&needed, std::nullopt, false, 0.0f}, ignored, silent);
     EXPECT_EQ(whole.fluence, first.fluence);
     EXPECT_EQ(whole.fluence, second.fluence);
 }

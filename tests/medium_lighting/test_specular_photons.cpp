@@ -47,7 +47,7 @@ TEST(SpecularPhotons, AMirrorCastsTheLightOfAnotherLamp) {
     ASSERT_FALSE(cast.empty());
     const std::size_t nodes = medium.lattice.node_count();
     const std::vector<std::uint8_t> needed(nodes, 1);
-    const Gathered g = cast.on(medium, {&needed, nullptr, true, 0.0f});
+    const Gathered g = cast.on(medium, {&needed, std::nullopt, true, 0.0f});
     double sum = 0.0, expected = 0.0;
     dvec3 heading(0.0), expected_heading(0.0);
     for (std::size_t i = 0; i < nodes; ++i) {

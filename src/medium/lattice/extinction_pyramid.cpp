@@ -13,27 +13,39 @@ namespace {
 
 constexpr float kStoredMaximum = 60000.0f;  // of a half float: leaves nine decades before values turn subnormal
 
+constexpr int kAveraged = 2 * BrickLattice::kSize + 1;  // fine nodes per axis that one coarse brick averages
+
+// Averages over one axis of `groups` boxes of kAveraged slabs, each of `slab` values: kSize slabs remain of each.
+void average_slabs(const float* values, int groups, int slab, std::vector<float>& out) {
+    out.resize(std::size_t(groups) * BrickLattice::kSize * slab);
+    for (int g = 0; g < groups; ++g)
+        for (int k = 0; k < BrickLattice::kSize; ++k) {
+            const float* v = values + (std::size_t(g) * kAveraged + 2 * k) * slab;
+            float* to = &out[(std::size_t(g) * BrickLattice::kSize + k) * slab];
+            for (int i = 0; i < slab; ++i)
+                to[i] = 0.25f * (v[i] + v[i + 2 * slab]) + 0.5f * v[i + slab];
+        }
+}
+
 }  // namespace
 
 void coarsen(const BrickLattice& fine, std::span<const float> values, int channels, BrickLattice& coarse,
              std::vector<float>& coarse_values) {
     coarse = coarse_lattice(fine);
     coarse_values.assign(coarse.node_count() * channels, 0.0f);
-    constexpr int kWide = 2 * BrickLattice::kSize + 1;  // fine nodes that one coarse brick averages
-    parallel_for(coarse.brick_count(), [&](std::size_t b) {
-        std::vector<float> box(std::size_t(kWide) * kWide * kWide * channels);
-        copy_box(fine, values, channels, coarse.first_node(b) * 2 - 1, ivec3(kWide), box);
-        constexpr float weight[3] = {0.25f, 0.5f, 0.25f};
-        for (int n = 0; n < BrickLattice::kNodes; ++n) {
-            const ivec3 p = BrickLattice::node_in_brick(n) * 2;
+    const std::size_t plane = std::size_t(kAveraged) * kAveraged * kAveraged;
+    parallel_blocks(coarse.brick_count(), 4, [&](std::size_t begin, std::size_t end) {
+        std::vector<float> box(plane * channels), along_x, along_y;
+        for (std::size_t b = begin; b < end; ++b) {
+            copy_box(fine, values, channels, coarse.first_node(b) * 2 - 1, ivec3(kAveraged), box);
             for (int c = 0; c < channels; ++c) {
-                const float* plane = &box[std::size_t(c) * kWide * kWide * kWide];
-                float sum = 0.0f;
-                for (int k = 0; k < 27; ++k) {
-                    const int x = k / 9, y = k / 3 % 3, z = k % 3;
-                    sum += weight[x] * weight[y] * weight[z] * plane[((p.x + x) * kWide + p.y + y) * kWide + p.z + z];
+                average_slabs(&box[plane * c], 1, kAveraged * kAveraged, along_x);
+                average_slabs(along_x.data(), BrickLattice::kSize, kAveraged, along_y);
+                for (int n = 0; n < BrickLattice::kNodes; ++n) {
+                    const float* v = &along_y[std::size_t(n / BrickLattice::kSize) * kAveraged +
+                                              std::size_t(2 * (n % BrickLattice::kSize))];
+                    coarse_values[(b * BrickLattice::kNodes + n) * channels + c] = 0.25f * (v[0] + v[2]) + 0.5f * v[1];
                 }
-                coarse_values[(b * BrickLattice::kNodes + n) * channels + c] = sum;
             }
         }
     });

@@ -76,17 +76,15 @@ Gathered gather_from_emitters(const Surroundings& surroundings, const Extinction
     const Medium& medium = pyramid.medium();
     const std::size_t nodes = medium.lattice.node_count();
     Gathered out;
-    out.resize(nodes, request.toward_camera != nullptr, request.moments);
+    out.resize(nodes, request.eye.has_value(), request.moments);
     const NodeGather gather(surroundings, pyramid);
-    const auto add = [&](std::size_t node, const vec3& direction, const Rgb& light) {
+    const auto add = [&](std::size_t node, const vec3& toward_camera, const vec3& direction, const Rgb& light) {
         const float phase =
-            request.toward_camera
-                ? henyey_greenstein(glm::dot(direction, (*request.toward_camera)[node]), request.mean_cosine)
-                : 0.0f;
+            request.eye ? henyey_greenstein(glm::dot(direction, toward_camera), request.mean_cosine) : 0.0f;
         const auto basis = sh_basis(direction);
         for (int c = 0; c < 3; ++c) {
             out.fluence[c * nodes + node] += light[c];
-            if (request.toward_camera)
+            if (request.eye)
                 out.scattered[c * nodes + node] += phase * light[c];
             for (int m = 0; request.moments && m < kShMoments; ++m)
                 out.moments[(3 * m + c) * nodes + node] += light[c] * basis[m];
@@ -98,11 +96,12 @@ Gathered gather_from_emitters(const Surroundings& surroundings, const Extinction
             if (!(*request.needed)[node])
                 return;
             const vec3 p = medium.local_of_node(medium.lattice.node(node));
+            const vec3 toward_camera = request.eye ? direction_toward(*request.eye, p) : vec3(0.0f);
             for (int batch = 0; batch < kBatches; ++batch) {
                 const Arriving a = gather.sample_batch(node, p, batch);
                 for (int k = 0; k < kRays; ++k)
                     if (a.light[k] != Rgb(0.0f))
-                        add(node, a.direction[k], a.light[k]);
+                        add(node, toward_camera, a.direction[k], a.light[k]);
             }
         },
         64);

@@ -28,7 +28,7 @@ public:
         : medium_(medium),
           request_(request),
           track_lengths_(medium),
-          kinds_(1 + (request.toward_camera ? 1 : 0) + (request.moments ? kShMoments : 0)),
+          kinds_(1 + (request.eye ? 1 : 0) + (request.moments ? kShMoments : 0)),
           sums_(kinds_ * medium.lattice.node_count(), power * medium.spacing) {}
 
     void add(const Ray& ray, double end, const Rgb& power) {
@@ -42,7 +42,7 @@ public:
     Gathered fluence() const {
         const std::size_t nodes = medium_.lattice.node_count();
         Gathered out;
-        out.resize(nodes, request_.toward_camera != nullptr, request_.moments);
+        out.resize(nodes, request_.eye.has_value(), request_.moments);
         const auto read = [&](std::vector<float>& values, std::size_t first, std::size_t count) {
             for (std::size_t k = 0; k < count; ++k)
                 for (std::size_t i = 0; i < nodes; ++i) {
@@ -52,7 +52,7 @@ public:
                 }
         };
         read(out.fluence, 0, 1);
-        if (request_.toward_camera)
+        if (request_.eye)
             read(out.scattered, 1, 1);
         if (request_.moments)
             read(out.moments, kinds_ - kShMoments, kShMoments);
@@ -65,8 +65,10 @@ private:
         std::size_t sum = std::size_t(node) * kinds_;
         const auto put = [&](float factor) { sums_.add(sum++, dvec3(track) * double(factor)); };
         put(1.0f);
-        if (request_.toward_camera)
-            put(henyey_greenstein(glm::dot(direction, (*request_.toward_camera)[node]), request_.mean_cosine));
+        if (request_.eye) {
+            const vec3 p = medium_.local_of_node(medium_.lattice.node(std::size_t(node)));
+            put(henyey_greenstein(glm::dot(direction, direction_toward(*request_.eye, p)), request_.mean_cosine));
+        }
         for (int m = 0; request_.moments && m < kShMoments; ++m)
             put(basis[m]);
     }

@@ -1,0 +1,129 @@
+#include "gathering/node_receivers.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/parallel.h"
+
+namespace brisance {
+
+namespace {
+
+// The needed nodes of every brick as one block, in sub-blocks of 4 x 2 x 2 so that groups of 16 are compact.
+void add_receivers(const Medium& medium, const LatticeRequest& request, int coarsening, NodeReceivers& out) {
+    std::vector<vec3> points, directions;
+    for (std::size_t b = 0; b < out.lattice.brick_count(); ++b) {
+        points.clear();
+        directions.clear();
+        const std::size_t first = out.node_of.size();
+        for (int k = 0; k < BrickLattice::kNodes; ++k) {
+            const int sub = k >> 4, in = k & 15;
+            const ivec3 p((sub >> 4) * 4 + (in >> 2), (sub >> 2 & 3) * 2 + (in >> 1 & 1), (sub & 3) * 2 + (in & 1));
+            const std::size_t node = b * BrickLattice::kNodes + BrickLattice::offset_in_brick(p);
+            if (!out.needed[node])
+                continue;
+            points.push_back(medium.local_of_node((out.lattice.first_node(b) + p) * (1 << coarsening)));
+            if (request.eye)
+                directions.push_back(direction_toward(*request.eye, points.back()));
+            out.node_of.push_back(static_cast<std::uint32_t>(node));
+        }
+        out.receivers.add_block(points, directions);
+        while (out.node_of.size() > first && out.node_of.size() < out.receivers.size())
+            out.node_of.push_back(out.node_of.back());
+    }
+}
+
+// Planes of all fields, each of `size` values.
+template <class Light>
+auto planes(Light& light, std::size_t size) {
+    std::vector<decltype(light.fluence.data())> out;
+    for (auto* field : {&light.fluence, &light.scattered, &light.moments})
+        for (std::size_t first = 0; first < field->size(); first += size)
+            out.push_back(field->data() + first);
+    return out;
+}
+
+// Coarse nodes around one brick of the fine lattice: it reaches from the first node's to beyond the last one's.
+constexpr int kParents = BrickLattice::kSize / 2 + 1;
+
+// Value at node `p` of a brick whose parents' values are in `box`.
+float between_parents(const float* box, const ivec3& p) {
+    const ivec3 low = p >> 1, high = (p + 1) >> 1;
+    const auto along_z = [&](int x, int y) {
+        const float* row = box + (x * kParents + y) * kParents;
+        return 0.5f * (row[low.z] + row[high.z]);
+    };
+    const auto along_y = [&](int x) { return 0.5f * (along_z(x, low.y) + along_z(x, high.y)); };
+    return 0.5f * (along_y(low.x) + along_y(high.x));
+}
+
+}  // namespace
+
+NodeReceivers node_receivers(const Medium& medium, const LatticeRequest& request) {
+    NodeReceivers out{medium.lattice, *request.needed, {}, {}};
+    add_receivers(medium, request, 0, out);
+    return out;
+}
+
+NodeReceivers coarser_receivers(const Medium& medium, const LatticeRequest& request, const NodeReceivers& fine,
+                                int coarsening) {
+    NodeReceivers out;
+    std::vector<float> children;
+    coarsen(fine.lattice, std::vector<float>(fine.needed.begin(), fine.needed.end()), 1, out.lattice, children);
+    out.needed.resize(children.size());
+    std::transform(children.begin(), children.end(), out.needed.begin(), [](float sum) { return sum > 0.0f; });
+    add_receivers(medium, request, coarsening, out);
+    return out;
+}
+
+int coarsening_of(const LightField& field, const GridLevel& level) {
+    // Without maps nothing is smoothed. Light of the finest level comes from within a voxel. Behind surfaces light ends
+    // at once.
+    if (field.settings.shadows != ShadowMethod::Maps || level.level == field.bottom || field.occluders)
+        return 0;
+    const float lengths = field.alpha * level.spacing / (8.0f * field.pyramid->medium().spacing);
+    return std::clamp(static_cast<int>(std::floor(std::log2(lengths))), 0, std::max(0, level.level - 1));
+}
+
+void add_at_nodes(const NodeReceivers& from, const Gathered& values, Gathered& out) {
+    const auto source = planes(values, from.node_of.size());
+    const auto sum = planes(out, from.needed.size());
+    const auto& blocks = from.receivers.blocks();
+    parallel_for(
+        blocks.size(),
+        [&](std::size_t b) {
+            const std::size_t first = blocks[b].first_group * Receivers::kGroup,
+                              end = first + blocks[b].group_count * Receivers::kGroup;
+            for (std::size_t c = 0; c < source.size(); ++c)
+                for (std::size_t i = first; i < end; ++i)
+                    if (i == first || from.node_of[i] != from.node_of[i - 1])  // padding repeats a block's last node
+                        sum[c][from.node_of[i]] += source[c][i];
+        },
+        16);
+}
+
+void add_interpolated(const NodeReceivers& from, const Gathered& values, const NodeReceivers& to, Gathered& out) {
+    const std::size_t count = from.needed.size();
+    const auto source = planes(values, count);
+    const auto sum = planes(out, to.needed.size());
+    parallel_for(
+        to.lattice.brick_count(),
+        [&](std::size_t b) {
+            const auto needed = to.needed.begin() + std::ptrdiff_t(b * BrickLattice::kNodes);
+            if (std::none_of(needed, needed + BrickLattice::kNodes, [](std::uint8_t n) { return n != 0; }))
+                return;
+            std::array<float, kParents * kParents * kParents> box;
+            const ivec3 low = to.lattice.first_node(b) >> 1;
+            for (std::size_t c = 0; c < source.size(); ++c) {
+                copy_box(from.lattice, {source[c], count}, 1, low, ivec3(kParents), box);
+                float* const node = sum[c] + b * BrickLattice::kNodes;
+                for (int k = 0; k < BrickLattice::kNodes; ++k)
+                    if (needed[k])
+                        node[k] += between_parents(box.data(), BrickLattice::node_in_brick(k));
+            }
+        },
+        16);
+}
+
+}  // namespace brisance

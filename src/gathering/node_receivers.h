@@ -1,0 +1,41 @@
+// The lattices at whose nodes light of each level is gathered, and the way back to the finest.
+//
+// A level's shadow maps know its light no finer than by about a quarter of the level's own spacing: their texels, and
+// their steps along a ray, are as long. At the least distance of such a light, an interpolant over that length errs by
+// some thousandths. So the light of level l is gathered at every 2^m-th node, with 2^m at most an eighth of the level's
+// blending radius, and interpolated to the nodes between, coarsest lattice first. All light of far levels together then
+// costs less than that of the nearest.
+#pragma once
+
+#include <vector>
+
+#include "gathering/gather.h"
+
+namespace brisance {
+
+// The nodes of a lattice that need light, as receivers.
+struct NodeReceivers {
+    BrickLattice lattice;
+    std::vector<std::uint8_t> needed;    // per node
+    Receivers receivers;                 // the needed nodes of every brick as one block
+    std::vector<std::uint32_t> node_of;  // per receiver
+};
+
+// The requested nodes of the pyramid's medium.
+NodeReceivers node_receivers(const Medium& medium, const LatticeRequest& request);
+
+// Every second node per axis: those with a share in the interpolation at some needed node of `fine`. `coarsening`: of
+// the result, relative to the medium.
+NodeReceivers coarser_receivers(const Medium& medium, const LatticeRequest& request, const NodeReceivers& fine,
+                                int coarsening);
+
+// By how many halvings of the lattice a level's receivers may be fewer than the medium's nodes.
+int coarsening_of(const LightField& field, const GridLevel& level);
+
+// Adds `values`, one per receiver and channel, to `out`, planar over the nodes.
+void add_at_nodes(const NodeReceivers& from, const Gathered& values, Gathered& out);
+
+// Adds light at the nodes of a lattice to the needed nodes of one twice as fine, trilinearly.
+void add_interpolated(const NodeReceivers& from, const Gathered& values, const NodeReceivers& to, Gathered& out);
+
+}  // namespace brisance
