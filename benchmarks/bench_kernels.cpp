@@ -80,7 +80,8 @@ void near_stencil(benchmark::State& state, bool shadows) {
     Gathered out;
     out.resize(fire.medium.lattice.node_count(), false, false);
     for (auto _ : state) {
-        near.gather({&fire.medium.lattice, &fire.medium.extinction, &fire.intensity, nullptr}, out);
+        near.gather({&fire.medium.lattice, &fire.medium.extinction, &fire.intensity, nullptr, std::nullopt, ivec3(0)},
+                    out);
         benchmark::DoNotOptimize(out.fluence.data());
     }
     state.counters["evaluations/s"] =

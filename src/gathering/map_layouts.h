@@ -7,6 +7,11 @@
 
 namespace brisance {
 
+// Texels along one side of the maps of the finest level that has some, and samples along each texel's ray: as given, or
+// from the error asked for.
+int shadow_resolution(const LightingSettings& settings);
+int shadow_distances(const LightingSettings& settings);
+
 // Lights with maps at once; resolution is reduced rather than fewer lights.
 constexpr std::size_t kLeastBatch = 2048;
 

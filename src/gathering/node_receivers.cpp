@@ -10,28 +10,52 @@ namespace brisance {
 
 namespace {
 
-// The needed nodes of every brick as one block, in sub-blocks of 4 x 2 x 2 so that groups of 16 are compact.
-void add_receivers(const Medium& medium, const LatticeRequest& request, int coarsening, NodeReceivers& out) {
-    std::vector<vec3> points, directions;
+// The distance between the nodes at which a level's light is gathered, over its blending radius. An interpolant errs as
+// the square of that distance.
+constexpr float kShareOfRadius = 0.125f, kErrorOfShare = 0.02f;
+
+// The k-th node of a brick, in sub-blocks of 4 x 2 x 2 so that groups of 16 are compact.
+ivec3 node_in_sub_blocks(int k) {
+    const int sub = k >> 4, in = k & 15;
+    return {(sub >> 4) * 4 + (in >> 2), (sub >> 2 & 3) * 2 + (in >> 1 & 1), (sub & 3) * 2 + (in & 1)};
+}
+
+// Fills in the receivers from the lattice and its needed nodes.
+void place_receivers(const Medium& medium, const LatticeRequest& request, int coarsening, NodeReceivers& out) {
+    std::vector<std::size_t> bricks, counts;
     for (std::size_t b = 0; b < out.lattice.brick_count(); ++b) {
-        points.clear();
-        directions.clear();
-        const std::size_t first = out.node_of.size();
-        for (int k = 0; k < BrickLattice::kNodes; ++k) {
-            const int sub = k >> 4, in = k & 15;
-            const ivec3 p((sub >> 4) * 4 + (in >> 2), (sub >> 2 & 3) * 2 + (in >> 1 & 1), (sub & 3) * 2 + (in & 1));
-            const std::size_t node = b * BrickLattice::kNodes + BrickLattice::offset_in_brick(p);
-            if (!out.needed[node])
-                continue;
-            points.push_back(medium.local_of_node((out.lattice.first_node(b) + p) * (1 << coarsening)));
-            if (request.eye)
-                directions.push_back(direction_toward(*request.eye, points.back()));
-            out.node_of.push_back(static_cast<std::uint32_t>(node));
-        }
-        out.receivers.add_block(points, directions);
-        while (out.node_of.size() > first && out.node_of.size() < out.receivers.size())
-            out.node_of.push_back(out.node_of.back());
+        const auto first = out.needed.begin() + std::ptrdiff_t(b * BrickLattice::kNodes);
+        const auto count = std::count_if(first, first + BrickLattice::kNodes, [](std::uint8_t n) { return n != 0; });
+        if (count == 0)
+            continue;
+        bricks.push_back(b);
+        counts.push_back(std::size_t(count));
     }
+    out.receivers = Receivers(counts, request.eye.has_value());
+    out.node_of.resize(out.receivers.size());
+    parallel_blocks(bricks.size(), 64, [&](std::size_t begin, std::size_t end) {
+        std::vector<vec3> points, directions;
+        for (std::size_t i = begin; i < end; ++i) {
+            points.clear();
+            directions.clear();
+            const ReceiverBlock& block = out.receivers.blocks()[i];
+            const auto first = out.node_of.begin() + std::ptrdiff_t(block.first_group * Receivers::kGroup);
+            for (int k = 0; k < BrickLattice::kNodes; ++k) {
+                const ivec3 p = node_in_sub_blocks(k);
+                const std::size_t node = bricks[i] * BrickLattice::kNodes + BrickLattice::offset_in_brick(p);
+                if (!out.needed[node])
+                    continue;
+                first[std::ptrdiff_t(points.size())] = static_cast<std::uint32_t>(node);
+                points.push_back(medium.local_of_node((out.lattice.first_node(bricks[i]) + p) * (1 << coarsening)));
+                if (request.eye)
+                    directions.push_back(direction_toward(*request.eye, points.back()));
+            }
+            std::fill(first + std::ptrdiff_t(points.size()),
+                      first + std::ptrdiff_t(block.group_count * Receivers::kGroup),
+                      first[std::ptrdiff_t(points.size()) - 1]);
+            out.receivers.set_block(i, points, directions);
+        }
+    });
 }
 
 // Planes of all fields, each of `size` values.
@@ -62,7 +86,7 @@ float between_parents(const float* box, const ivec3& p) {
 
 NodeReceivers node_receivers(const Medium& medium, const LatticeRequest& request) {
     NodeReceivers out{medium.lattice, *request.needed, {}, {}};
-    add_receivers(medium, request, 0, out);
+    place_receivers(medium, request, 0, out);
     return out;
 }
 
@@ -73,7 +97,7 @@ NodeReceivers coarser_receivers(const Medium& medium, const LatticeRequest& requ
     coarsen(fine.lattice, std::vector<float>(fine.needed.begin(), fine.needed.end()), 1, out.lattice, children);
     out.needed.resize(children.size());
     std::transform(children.begin(), children.end(), out.needed.begin(), [](float sum) { return sum > 0.0f; });
-    add_receivers(medium, request, coarsening, out);
+    place_receivers(medium, request, coarsening, out);
     return out;
 }
 
@@ -82,7 +106,8 @@ int coarsening_of(const LightField& field, const GridLevel& level) {
     // at once.
     if (field.settings.shadows != ShadowMethod::Maps || level.level == field.bottom || field.occluders)
         return 0;
-    const float lengths = field.alpha * level.spacing / (8.0f * field.pyramid->medium().spacing);
+    const float share = kShareOfRadius * std::sqrt(field.settings.error / kErrorOfShare);
+    const float lengths = share * field.alpha * level.spacing / field.pyramid->medium().spacing;
     return std::clamp(static_cast<int>(std::floor(std::log2(lengths))), 0, std::max(0, level.level - 1));
 }
 

@@ -16,30 +16,56 @@ vec3 direction_toward(const vec3& eye, const vec3& p) {
     return distance > 0.0f ? offset / distance : vec3(0.0f, 0.0f, 1.0f);
 }
 
+namespace {
+
+std::size_t groups_of(std::size_t points) {
+    return (points + Receivers::kGroup - 1) / Receivers::kGroup;
+}
+
+}  // namespace
+
+Receivers::Receivers(const std::vector<std::size_t>& counts, bool directions) {
+    std::size_t groups = 0;
+    for (const std::size_t count : counts) {
+        blocks_.push_back({groups, groups_of(count), {}});
+        groups += blocks_.back().group_count;
+    }
+    group_bounds.resize(groups);
+    for (std::vector<float>* list : {&x, &y, &z})
+        list->resize(groups * kGroup);
+    for (std::vector<float>* list : {&out_x, &out_y, &out_z})
+        list->resize(directions ? groups * kGroup : 0);
+}
+
+void Receivers::set_block(std::size_t block, const std::vector<vec3>& points, const std::vector<vec3>& toward_camera) {
+    ReceiverBlock& b = blocks_[block];
+    for (std::size_t i = 0; i < b.group_count * kGroup; ++i) {
+        const std::size_t k = std::min(i, points.size() - 1), at = b.first_group * kGroup + i;
+        const vec3& p = points[k];
+        x[at] = p.x;
+        y[at] = p.y;
+        z[at] = p.z;
+        if (!toward_camera.empty()) {
+            out_x[at] = toward_camera[k].x;
+            out_y[at] = toward_camera[k].y;
+            out_z[at] = toward_camera[k].z;
+        }
+        group_bounds[at / kGroup].add(p);
+        b.bounds.add(p);
+    }
+}
+
 void Receivers::add_block(const std::vector<vec3>& points, const std::vector<vec3>& toward_camera) {
     if (points.empty())
         return;
-    ReceiverBlock block;
-    block.first_group = x.size() / kGroup;
-    const std::size_t padded = (points.size() + kGroup - 1) / kGroup * kGroup;
-    block.group_count = padded / kGroup;
-    for (std::size_t i = 0; i < padded; ++i) {
-        const std::size_t k = std::min(i, points.size() - 1);
-        const vec3& p = points[k];
-        x.push_back(p.x);
-        y.push_back(p.y);
-        z.push_back(p.z);
-        if (!toward_camera.empty()) {
-            out_x.push_back(toward_camera[k].x);
-            out_y.push_back(toward_camera[k].y);
-            out_z.push_back(toward_camera[k].z);
-        }
-        if (i % kGroup == 0)
-            group_bounds.emplace_back();
-        group_bounds.back().add(p);
-        block.bounds.add(p);
-    }
-    blocks_.push_back(block);
+    const std::size_t groups = group_bounds.size(), more = groups_of(points.size());
+    blocks_.push_back({groups, more, {}});
+    group_bounds.resize(groups + more);
+    for (std::vector<float>* list : {&x, &y, &z})
+        list->resize((groups + more) * kGroup);
+    for (std::vector<float>* list : {&out_x, &out_y, &out_z})
+        list->resize(toward_camera.empty() ? 0 : (groups + more) * kGroup);
+    set_block(blocks_.size() - 1, points, toward_camera);
 }
 
 void Gathered::resize(std::size_t receivers, bool camera, bool directional) {

@@ -40,6 +40,11 @@ class Receivers {
 public:
     static constexpr int kGroup = 16;
 
+    Receivers() = default;
+    // Room for one block for each of `counts` (at least 1 point). set_block() fills each once; several threads may.
+    Receivers(const std::vector<std::size_t>& counts, bool directions);
+    void set_block(std::size_t block, const std::vector<vec3>& points, const std::vector<vec3>& toward_camera);
+
     // Appends a block of points (local [m]); `toward_camera` (unit, or empty) is the direction light must leave in.
     // Consecutive points should lie close together.
     void add_block(const std::vector<vec3>& points, const std::vector<vec3>& toward_camera);

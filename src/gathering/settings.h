@@ -12,14 +12,16 @@ enum class ShadowMethod {
 };
 
 struct LightingSettings {
+    // Relative error that shadow maps may add to the picture. Their resolution follows from it where it is not given.
+    float error = 0.02f;
     // Relative error of the light that the picture shows up to which nodes are interpolated from coarser ones. 0: none
     // are, every node is lit by itself.
-    float error = 0.0f;
+    float interpolation = 0.0f;
     float alpha = 2.0f;  // blending radius of level l is alpha * spacing of level l; at least 1
     int levels = 0;      // hierarchy levels above the voxels; 0: from the volume's extent
     ShadowMethod shadows = ShadowMethod::Maps;
-    int shadow_resolution = 20;  // texels along one side of a light's octahedral map
-    int shadow_distances = 12;   // transmittance samples along a texel's ray, levels below the top
+    int shadow_resolution = 0;  // texels along one side of the finest lights' octahedral maps; 0: from the error
+    int shadow_distances = 0;   // transmittance samples along a texel's ray, levels below the top; 0: from the error
     std::uint64_t memory_limit_bytes = std::uint64_t{2} << 30;  // for shadow maps; resolution is lowered to respect it
     bool energy_balance = true;  // scale each bounce so that emitted = collided + escaped
 };

@@ -1,8 +1,24 @@
 #include "lighting_grid/footprint.h"
 
 #include <algorithm>
+#include <numeric>
+
+#include "core/parallel.h"
 
 namespace brisance {
+
+BrickWeights sum_over_bricks(const Medium& medium, const NodeWeights& weights) {
+    BrickWeights sums(medium.lattice.brick_count());
+    parallel_for(
+        sums.size(),
+        [&](std::size_t b) {
+            const auto first = weights.begin() + std::ptrdiff_t(b * BrickLattice::kNodes);
+            sums[b] = std::accumulate(first, first + BrickLattice::kNodes, 0.0,
+                                      [](double sum, float w) { return sum + std::max(0.0f, w); });
+        },
+        256);
+    return sums;
+}
 
 double FootprintPicker::search_brick(int brick, const ivec3& centre, double passed) {
     const int h = 1 << level_;
@@ -21,6 +37,33 @@ double FootprintPicker::search_brick(int brick, const ivec3& centre, double pass
     return passed;
 }
 
+double FootprintPicker::find_whole_brick(int brick, const ivec3& centre, double passed) {
+    const double weight = (*bricks_)[std::size_t(brick)];
+    if (!(weight > 0.0))
+        return passed;
+    const ivec3 first = medium_.lattice.first_node(brick);
+    const dvec3 middle = dvec3(first) + 0.5 * (BrickLattice::kSize - 1);
+    const dvec3 rest = 1.0 - glm::abs(middle - dvec3(centre)) / double(1 << level_);
+    passed += weight * rest.x * rest.y * rest.z;
+    found_.push_back({first, std::size_t(brick), passed});
+    return passed;
+}
+
+ivec3 FootprintPicker::node_at(std::size_t brick, double share) const {
+    const float* weights = &weights_[brick * BrickLattice::kNodes];
+    double rest = share * (*bricks_)[brick];
+    int last = 0;
+    for (int n = 0; n < BrickLattice::kNodes; ++n) {
+        if (!(weights[n] > 0.0f))
+            continue;
+        last = n;
+        rest -= double(weights[n]);
+        if (rest <= 0.0)
+            break;
+    }
+    return medium_.lattice.first_node(brick) + BrickLattice::node_in_brick(last);
+}
+
 void FootprintPicker::search(const ivec3& vertex) {
     const int h = 1 << level_;
     const ivec3 centre = vertex * h;
@@ -31,7 +74,7 @@ void FootprintPicker::search(const ivec3& vertex) {
         for (int y = low.y; y <= high.y; ++y)
             for (int z = low.z; z <= high.z; ++z)
                 if (const int b = medium_.lattice.find({x, y, z}); b >= 0)
-                    passed = search_brick(b, centre, passed);
+                    passed = bricks_ ? find_whole_brick(b, centre, passed) : search_brick(b, centre, passed);
 }
 
 const std::vector<ivec3>& FootprintPicker::pick(const ivec3& vertex, int count) {
@@ -42,7 +85,8 @@ const std::vector<ivec3>& FootprintPicker::pick(const ivec3& vertex, int count) 
         const double goal = (k + 0.5) / count * found_.back().passed;
         while (at + 1 < found_.size() && found_[at].passed < goal)
             ++at;
-        picks_.push_back(found_[at].node);
+        const double before = at > 0 ? found_[at - 1].passed : 0.0, own = found_[at].passed - before;
+        picks_.push_back(bricks_ ? node_at(found_[at].index, (goal - before) / own) : found_[at].node);
     }
     return picks_;
 }

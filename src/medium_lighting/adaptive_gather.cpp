@@ -101,7 +101,7 @@ private:
     // Per node of the level, how much of the light gathered at the next finer level counts there, in [0, 1].
     std::vector<float> refinement_weights(int level, const Gathered& light, const std::vector<float>& change) const {
         const LitLevel& l = at(level);
-        const float allowed = kShare * lattice_.input().lighting.error * brightness(level, light);
+        const float allowed = kShare * lattice_.input().lighting.interpolation * brightness(level, light);
         std::vector<float> error = interpolation_error(l, light);
         for (std::size_t i = 0; i < error.size(); ++i)
             error[i] = std::max(error[i], kNextChange * change[i]);

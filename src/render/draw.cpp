@@ -1,9 +1,11 @@
 #include "render/draw.h"
 
 #include "camera_rays/picture.h"
+#include "core/available_memory.h"
 #include "core/error.h"
 #include "core/stopwatch.h"
 #include "render/many_lights.h"
+#include "render/memory_need.h"
 #include "scattering_methods/scattering_pass.h"
 #include "surface_lighting/path_lengths.h"
 #include "surface_lighting/surface_shader.h"
@@ -158,6 +160,10 @@ std::optional<LightPictures> picture_lights(const DrawInput& input, const Virtua
 Drawn draw_by_many_lights(const DrawInput& input, Statistics& statistics, Progress& progress) {
     if (input.surroundings)
         check_surroundings(input.shot);
+    if (input.plan.single || input.plan.multiple)
+        check_memory(input.medium,
+                     bytes_to_light(input.medium, input.plan.directional, input.shot.lighting.memory_limit_bytes),
+                     available_memory());
     const ManyLights lights(input, statistics, progress);
     progress.stage("camera");
     const Stopwatch watch;

@@ -219,7 +219,7 @@ void march_parallel(const PackedExtinction* mips, std::span<const ShadowStep> ne
     const hn::RebindToSigned<D> di;
     const std::size_t lanes = hn::Lanes(d);
     const V start[3] = {hn::Set(d, origin.x), hn::Set(d, origin.y), hn::Set(d, origin.z)};
-    HWY_ALIGN std::int32_t quantised[16];
+    HWY_ALIGN std::int32_t quantised[16] = {};
     for (std::size_t r = 0; r < rays.count; r += lanes) {
         V direction[3];
         for (int a = 0; a < 3; ++a)

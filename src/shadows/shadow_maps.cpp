@@ -189,11 +189,13 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
     const HomogeneousBricks* even = pyramid.homogeneous_bricks();
     const HomogeneousStrides strides{even ? even->view() : HomogeneousBricks::View{},
                                      std::min(kStrideLevel, pyramid.level_count() - 1)};
+    const bool by_bricks = !layout.for_outside && level.level >= FootprintPicker::kLevelOfWholeBricks;
+    const BrickWeights bricks = by_bricks ? sum_over_bricks(medium, weights) : BrickWeights{};
     parallel_blocks(list.size(), 8, [&](std::size_t begin, std::size_t end) {
         std::vector<std::uint16_t> marched(texels.rays * layout.distances);
         std::vector<std::uint16_t> interior(std::size_t(layout.resolution) * layout.resolution * layout.distances);
         Starts starts;
-        FootprintPicker picker(medium, weights, level.level);
+        FootprintPicker picker(medium, weights, level.level, by_bricks ? &bricks : nullptr);
         for (std::size_t k = begin; k < end; ++k) {
             const std::size_t light = list[k];
             pick_starts(picker, medium, level, light, layout.for_outside ? escape : nullptr, starts);

@@ -28,7 +28,7 @@ struct Preset {
 const std::vector<Preset>& presets() {
     static const std::vector<Preset> all = {
         {"draft",
-         {"lighting.alpha=1", "lighting.shadow_resolution=8", "camera.samples_per_axis=1", "camera.edge_refinement=1",
+         {"lighting.alpha=1", "lighting.error=0.05", "camera.samples_per_axis=1", "camera.edge_refinement=1",
           "scattering.alpha=1", "scattering.remainder=0.01"}},
         {"final", {}},
     };

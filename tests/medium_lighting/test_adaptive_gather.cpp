@@ -34,7 +34,7 @@ Medium burst(float extinction, const ivec3& shift = ivec3(0)) {
 
 Shot shot_of(float error, int size = 32) {
     Shot shot;
-    shot.lighting.error = error;
+    shot.lighting.interpolation = error;
     shot.camera_given = true;
     shot.camera.eye = {0.5, -5.0, 0.5};
     shot.camera.vertical_fov_degrees = 28.0;

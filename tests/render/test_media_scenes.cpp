@@ -36,7 +36,7 @@ constexpr double kStandardErrors = 3.0;
 Shot read(const MediaScene& scene, std::vector<std::string> more) {
     more.insert(more.end(), scene.more.begin(), scene.more.end());
     more.insert(more.end(), {"camera.width=" + std::to_string(kWidth), "camera.height=" + std::to_string(kHeight),
-                             "camera.samples_per_axis=4", "camera.edge_refinement=4", "lighting.shadow_resolution=20",
+                             "camera.samples_per_axis=4", "camera.edge_refinement=4", "lighting.error=0.02",
                              "virtual_lights.count=1500", "virtual_lights.photons=200000", "output.layers.cells=true"});
     return read_shot(std::filesystem::path(BRISANCE_SHOTS) / "media" / (std::string(scene.name) + ".json"),
                      {"draft", more});

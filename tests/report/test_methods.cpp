@@ -85,8 +85,8 @@ TEST(Methods, OfThePathTracerShareABudgetUnlessTheyHaveTheirOwn) {
     EXPECT_EQ(methods[1].steps[0].settings, (Strings{"tracing.samples=2"}));
     EXPECT_EQ(labels(methods[2]), (Strings{"32 spp"}));
     ASSERT_EQ(methods[0].steps.size(), 2u);
-    EXPECT_HAS(joined(methods[0].steps[0].settings), "lighting.shadow_resolution=24");
-    EXPECT_HAS(joined(methods[0].steps[1].settings), "lighting.shadow_resolution=8");
+    EXPECT_HAS(joined(methods[0].steps[0].settings), "lighting.error=0.01");
+    EXPECT_HAS(joined(methods[0].steps[1].settings), "lighting.error=0.05");
 }
 
 TEST(Methods, KeepTheirOwnSettingsAtEveryStepOfTheBuiltInLadder) {
@@ -94,9 +94,7 @@ TEST(Methods, KeepTheirOwnSettingsAtEveryStepOfTheBuiltInLadder) {
     for (const MethodStep& step : method.steps)
         EXPECT_LACKS(joined(step.settings), "lighting.alpha=");
     // Steps that would then be the same are one.
-    const Method fixed =
-        parse({"a=lighting_grid,lighting.alpha=2,lighting.shadow_resolution=8,lighting.shadow_distances=6,"
-               "scattering.alpha=1"})[0];
+    const Method fixed = parse({"a=lighting_grid,lighting.alpha=2,lighting.error=0.02,scattering.alpha=1"})[0];
     EXPECT_EQ(fixed.steps.size(), 1u);
 }
 
@@ -160,7 +158,7 @@ TEST(Runs, OfEveryBuiltInMethodAreShots) {
     ASSERT_EQ(planned.size(), 3u);
     const Shot& grid = planned[0].runs[2].shot;
     EXPECT_EQ(grid.lighting.alpha, Shot().lighting.alpha) << "step 3 is the default";
-    EXPECT_EQ(grid.lighting.shadow_resolution, Shot().lighting.shadow_resolution);
+    EXPECT_EQ(grid.lighting.error, Shot().lighting.error);
     EXPECT_EQ(grid.scattering.alpha, Shot().scattering.alpha);
     const Shot& plain = planned[2].runs[1].shot;
     EXPECT_EQ(plain.method, RenderMethod::Path);

@@ -126,7 +126,7 @@ TEST(ReadShot, LaterLayersWin) {
     EXPECT_EQ(parsed(file, {"final", {}}).lighting.alpha, 4.0f);
     const Shot draft = parsed(file, {"draft", {}});
     EXPECT_LT(draft.lighting.alpha, 4.0f);
-    EXPECT_LT(draft.lighting.shadow_resolution, LightingSettings{}.shadow_resolution);
+    EXPECT_GT(draft.lighting.error, LightingSettings{}.error);
     EXPECT_EQ(draft.lighting.levels, 3);
     EXPECT_EQ(parsed(file, {"draft", {"lighting.alpha=5", "lighting.alpha=6"}}).lighting.alpha, 6.0f);
 }

@@ -99,6 +99,12 @@ protected:
         return {std::sqrt(error / square), sum / truth - 1.0};
     }
 
+    static Shot with_fine_shadows() {
+        Shot shot;
+        shot.lighting.error = 0.01f;
+        return shot;
+    }
+
     static Plan plan_of_sets() {
         Plan plan;
         plan.emission = plan.surfaces = true;
@@ -110,7 +116,7 @@ protected:
     const ExtinctionPyramid pyramid{medium, ExtinctionPyramid::kMaxLevels};
     const PointDepths depths{pyramid, 0};
     const std::vector<Rgb> intensity = voxel_lights(medium);
-    const Shot shot;
+    const Shot shot = with_fine_shadows();
     const Plan plan = plan_of_sets();
     Statistics statistics;
     Progress silent;

@@ -70,11 +70,10 @@ const std::vector<BuiltIn>& built_ins() {
 
 // From coarse to finer than the default, which is the third.
 const std::vector<Settings>& grid_ladder() {
-    static const std::vector<Settings> all = {
-        {"lighting.alpha=1", "lighting.shadow_resolution=8", "lighting.shadow_distances=6", "scattering.alpha=1"},
-        {"lighting.alpha=1.5", "lighting.shadow_resolution=12", "lighting.shadow_distances=8", "scattering.alpha=1.25"},
-        {"lighting.alpha=2", "lighting.shadow_resolution=20", "lighting.shadow_distances=12", "scattering.alpha=1.5"},
-        {"lighting.alpha=3", "lighting.shadow_resolution=24", "lighting.shadow_distances=12", "scattering.alpha=2"}};
+    static const std::vector<Settings> all = {{"lighting.alpha=1", "lighting.error=0.05", "scattering.alpha=1"},
+                                              {"lighting.alpha=1.5", "lighting.error=0.03", "scattering.alpha=1.25"},
+                                              {"lighting.alpha=2", "lighting.error=0.02", "scattering.alpha=1.5"},
+                                              {"lighting.alpha=3", "lighting.error=0.01", "scattering.alpha=2"}};
     return all;
 }
 

@@ -5,8 +5,12 @@ namespace brisance {
 void add_lighting_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "lighting.error",
+        "relative error that precomputed shadows may add to the picture: sets the resolution of shadow maps",
+        real_float({0.0, 1.0, true}), [](Shot & s) -> auto& { return s.lighting.error; }));
+    keys.push_back(make_key(
+        "lighting.interpolation",
         "relative error of the light in smoke up to which it is interpolated from coarser nodes; 0: every node is lit",
-        real_float({0.0, 1.0}), [](Shot & s) -> auto& { return s.lighting.error; }));
+        real_float({0.0, 1.0}), [](Shot & s) -> auto& { return s.lighting.interpolation; }));
     keys.push_back(make_key(
         "lighting.alpha", "a light of level l serves up to about alpha spacings of its level: larger is more exact",
         real_float({1.0, 64.0}), [](Shot & s) -> auto& { return s.lighting.alpha; }));
@@ -19,11 +23,11 @@ void add_lighting_keys(std::vector<Key>& keys) {
             {{"maps", ShadowMethod::Maps}, {"exact", ShadowMethod::Exact}, {"none", ShadowMethod::None}}),
         [](Shot & s) -> auto& { return s.lighting.shadows; }));
     keys.push_back(make_key(
-        "lighting.shadow_resolution", "texels along one side of a light's octahedral map", whole(2, 256),
-        [](Shot & s) -> auto& { return s.lighting.shadow_resolution; }));
+        "lighting.shadow_resolution", "texels along one side of a light's octahedral map; auto: from lighting.error",
+        or_word(whole(2, 256), "auto", 0), [](Shot & s) -> auto& { return s.lighting.shadow_resolution; }));
     keys.push_back(make_key(
-        "lighting.shadow_distances", "transmittance samples along a texel's ray", whole(2, 256),
-        [](Shot & s) -> auto& { return s.lighting.shadow_distances; }));
+        "lighting.shadow_distances", "transmittance samples along a texel's ray; auto: from lighting.error",
+        or_word(whole(2, 256), "auto", 0), [](Shot & s) -> auto& { return s.lighting.shadow_distances; }));
     keys.push_back(make_key(
         "lighting.memory_limit_mebibytes",
         "for shadow maps [MiB]; their resolution is lowered to respect it, with a notice", mebibytes(1.0, 16777216.0),

@@ -1,0 +1,18 @@
+// Whether a medium can be lit in the memory that there is, before any of it is taken.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "medium/medium.h"
+
+namespace brisance {
+
+// Bytes that lighting and drawing take at most beside the medium itself, from measurements: so much for each node of
+// its lattice, more where light keeps its direction, and the shadow maps. `map_bytes`: their limit.
+std::uint64_t bytes_to_light(const Medium& medium, bool directional, std::uint64_t map_bytes);
+
+// Throws Error Temporary where `needed` is more than `available`; none: not known.
+void check_memory(const Medium& medium, std::uint64_t needed, std::optional<std::uint64_t> available);
+
+}  // namespace brisance
