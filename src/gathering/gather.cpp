@@ -243,7 +243,8 @@ void gather_down(const LightField& field, const LatticeRequest& request, const N
                  int coarsening, Gathered& out, std::vector<LevelCost>& costs, Progress& progress) {
     const auto& levels = field.grid->levels;
     std::size_t last = first;
-    while (last < levels.size() && coarsening_of(field, levels[last]) <= coarsening)
+    while (last < levels.size() &&
+           (!request.interpolates_far_light || coarsening_of(field, levels[last]) <= coarsening))
         ++last;
     if (last > first)
         add_at_nodes(at, gather_levels(field, request, at, first, last, costs, progress), out);

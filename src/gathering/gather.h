@@ -67,6 +67,7 @@ struct LatticeRequest {
     std::optional<vec3> eye;                  // local [m]; none: no `scattered`
     bool moments = false;
     float mean_cosine = 0.0f;
+    bool interpolates_far_light = true;  // between fewer nodes (node_receivers.h)
 };
 
 // Gathers at the nodes of the lights' own lattice: the near field exactly, the levels above with precomputed shadows.

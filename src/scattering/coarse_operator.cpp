@@ -152,7 +152,9 @@ Gathered CoarseOperator::gather(const ScatteredLight& lights, std::vector<LevelC
                            &maps_,
                            pyramid_->occluders()};
     std::vector<LevelCost> these;
-    Gathered out = gather_at_nodes(field, {&mask_, std::nullopt, directional, medium_.mean_cosine}, these, progress);
+    // At every node: bounces multiply errors, and the lattice is small.
+    const LatticeRequest request{&mask_, std::nullopt, directional, medium_.mean_cosine, false};
+    Gathered out = gather_at_nodes(field, request, these, progress);
     if (costs.empty())
         costs = these;
     const std::size_t n = factor_.size();
