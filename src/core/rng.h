@@ -1,6 +1,7 @@
 // Random numbers named by who draws them, never by what was drawn before: no thread or order can change them.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <initializer_list>
 
@@ -44,6 +45,8 @@ public:
     // Uniform in [0, 1).
     float next() { return static_cast<float>(mix(state_ += kGolden) >> 40) * 0x1p-24f; }
     double next_double() { return static_cast<double>(mix(state_ += kGolden) >> 11) * 0x1p-53; }
+    // Exponentially distributed, of mean 1: an optical depth to a collision.
+    double next_exponential() { return -std::log1p(-next_double()); }
 
 private:
     static constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15;

@@ -9,7 +9,7 @@ namespace brisance {
 namespace {
 
 constexpr float kFar = 1e18f;  // squares still fit a float
-constexpr std::size_t kGrain = 512;
+constexpr std::size_t kLeafGrain = 512;
 
 float square_gap(const LeafBox& a, const LeafBox& b) {
     const vec3 gap = glm::max(glm::max(a.low - b.high, b.low - a.high), vec3(0.0f));
@@ -108,7 +108,7 @@ LeafTree boxes_around(const Candidates& candidates, std::span<const std::uint32_
             }
             boxes[l] = box;
         },
-        kGrain);
+        kLeafGrain);
     return LeafTree(std::move(boxes));
 }
 

@@ -10,8 +10,9 @@ namespace brisance {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180.0;
+using std::numbers::pi;
+
+constexpr double kDegree = pi / 180.0;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Least luminance of a triangle, relative to its largest: a texture that is black at the sample points may be bright
 // elsewhere.
@@ -60,7 +61,7 @@ double spot_falloff(const LightSettings& light, double cosine) {
 // Integral of the falloff over the sphere [sr].
 double spot_solid_angle(const LightSettings& light) {
     const double inner = cosine_of_degrees(light.inner_degrees), outer = cosine_of_degrees(light.outer_degrees);
-    return 2.0 * kPi * ((1.0 - inner) + std::max(inner - outer, 0.0) / 3.0);
+    return 2.0 * pi * ((1.0 - inner) + std::max(inner - outer, 0.0) / 3.0);
 }
 
 }  // namespace
@@ -92,10 +93,10 @@ void Emitters::add_triangles() {
             light_[m][t] = static_cast<std::int32_t>(near_.size());
             near_.push_back({m, t, nullptr, {}, area});
             const double before = near_power_.empty() ? 0.0 : near_power_.back();
-            near_power_.push_back(before + kPi * area * radiance * (material.double_sided ? 2.0 : 1.0));
+            near_power_.push_back(before + pi * area * radiance * (material.double_sided ? 2.0 : 1.0));
             bounds_.push_back({glm::min(triangle.a, glm::min(triangle.b, triangle.c)),
                                glm::max(triangle.a, glm::max(triangle.b, triangle.c)), glm::normalize(normal), 0.0,
-                               kPi / 2.0, area * radiance, material.double_sided});
+                               pi / 2.0, area * radiance, material.double_sided});
         }
     }
 }
@@ -111,9 +112,9 @@ void Emitters::add_light(const LightSettings& light, const Texture* picture) {
         points_.push_back({position, axis, spot ? cosine_of_degrees(light.outer_degrees) : -1.0, power});
         near_.push_back({0, 0, &light, position, 0.0});
         const double before = near_power_.empty() ? 0.0 : near_power_.back();
-        near_power_.push_back(before + power * (spot ? spot_solid_angle(light) : 4.0 * kPi));
-        bounds_.push_back({position, position, axis, spot ? light.outer_degrees * kDegree : kPi,
-                           spot ? kSharpReach : kPi / 2.0, power, false});
+        near_power_.push_back(before + power * (spot ? spot_solid_angle(light) : 4.0 * pi));
+        bounds_.push_back({position, position, axis, spot ? light.outer_degrees * kDegree : pi,
+                           spot ? kSharpReach : pi / 2.0, power, false});
         return;
     }
     Far far;
@@ -124,7 +125,7 @@ void Emitters::add_light(const LightSettings& light, const Texture* picture) {
         far.toward = -glm::normalize(light.direction);
         far.cosine = std::cos(0.5 * light.angle_degrees * kDegree);
         const double sine = std::sin(0.5 * light.angle_degrees * kDegree);
-        far.solid_angle = light.angle_degrees > 0.0 ? 2.0 * kPi * sine * sine / (1.0 + far.cosine) : 0.0;
+        far.solid_angle = light.angle_degrees > 0.0 ? 2.0 * pi * sine * sine / (1.0 + far.cosine) : 0.0;
     }
     // A sample of directions is enough to share particles out by.
     double irradiance = power;
@@ -218,7 +219,7 @@ std::optional<EmitterSample> Emitters::sample_far(const Far& far, Rng& rng) cons
     if (far.environment)
         s.direction = far.environment->sample(u, v);
     else if (far.solid_angle > 0.0)
-        s.direction = around(far.toward, 1.0 - u * (1.0 - far.cosine), 2.0 * kPi * v);
+        s.direction = around(far.toward, 1.0 - u * (1.0 - far.cosine), 2.0 * pi * v);
     else
         return EmitterSample{far.toward, kInfinity, {}, far.light->power, 0.0};
     s.pdf = pdf_of_far(far, s.direction);
@@ -241,7 +242,7 @@ Rgb Emitters::radiance_of_far(const Far& far, const dvec3& direction) const {
     if (far.solid_angle == 0.0 || glm::dot(direction, far.toward) < far.cosine)
         return Rgb(0.0f);
     // Of a disc whose light, cosine included, adds up to the irradiance.
-    return far.light->power / float(kPi * (1.0 - far.cosine * far.cosine));
+    return far.light->power / float(pi * (1.0 - far.cosine * far.cosine));
 }
 
 double Emitters::pdf_of_far(const Far& far, const dvec3& direction) const {
@@ -278,7 +279,7 @@ double Emitters::pdf_of_background(const dvec3& direction) const {
 }
 
 double Emitters::power(double radius) const {
-    const double disc = kPi * radius * radius;
+    const double disc = pi * radius * radius;
     return (near_power_.empty() ? 0.0 : near_power_.back()) +
            (far_irradiance_.empty() ? 0.0 : far_irradiance_.back() * disc);
 }
@@ -300,7 +301,7 @@ std::optional<EmittedParticle> Emitters::emit(const dvec3& centre, double radius
         share = power / all;
         out = emit_near(near_[light], rng);
     } else {
-        const double disc = kPi * radius * radius;
+        const double disc = pi * radius * radius;
         const auto [light, irradiance] = pick(far_irradiance_, (u - near) / disc);
         share = irradiance * disc / all;
         out = emit_far(far_[light], centre, radius, rng);
@@ -312,11 +313,11 @@ std::optional<EmittedParticle> Emitters::emit(const dvec3& centre, double radius
 EmittedParticle Emitters::emit_near(const Near& near, Rng& rng) const {
     const double u = rng.next_double(), v = rng.next_double();
     if (near.light && near.light->kind == LightKind::Point)
-        return {{near.position, around({0, 0, 1}, 1.0 - 2.0 * u, 2.0 * kPi * v)}, near.light->power * float(4.0 * kPi)};
+        return {{near.position, around({0, 0, 1}, 1.0 - 2.0 * u, 2.0 * pi * v)}, near.light->power * float(4.0 * pi)};
     if (near.light) {
         const double outer = cosine_of_degrees(near.light->outer_degrees);
-        const dvec3 d = around(glm::normalize(near.light->direction), 1.0 - u * (1.0 - outer), 2.0 * kPi * v);
-        return {{near.position, d}, intensity(near, d) * float(2.0 * kPi * (1.0 - outer))};
+        const dvec3 d = around(glm::normalize(near.light->direction), 1.0 - u * (1.0 - outer), 2.0 * pi * v);
+        return {{near.position, d}, intensity(near, d) * float(2.0 * pi * (1.0 - outer))};
     }
     const vec2 b = sample_barycentric(u, v);
     const SurfaceHit hit{0.0, near.mesh, near.triangle, b};
@@ -325,19 +326,19 @@ EmittedParticle Emitters::emit_near(const Near& near, Rng& rng) const {
     const dvec3 front = glm::normalize(triangle_of(scene_, near.mesh, near.triangle).normal());
     const dvec3 normal = back ? -front : front;
     const double cosine = std::sqrt(rng.next_double());
-    const dvec3 d = around(normal, cosine, 2.0 * kPi * rng.next_double());
+    const dvec3 d = around(normal, cosine, 2.0 * pi * rng.next_double());
     const SurfacePoint there = surface_point(scene_, hit, d);
-    return {there.leaving(d), there.emission * float(kPi * near.area * (material.double_sided ? 2.0 : 1.0))};
+    return {there.leaving(d), there.emission * float(pi * near.area * (material.double_sided ? 2.0 : 1.0))};
 }
 
 EmittedParticle Emitters::emit_far(const Far& far, const dvec3& centre, double radius, Rng& rng) const {
     const std::optional<EmitterSample> s = sample_far(far, rng);
     if (!s)
         return {{centre, {0, 0, 1}}, Rgb(0.0f)};
-    const double r = radius * std::sqrt(rng.next_double()), azimuth = 2.0 * kPi * rng.next_double();
+    const double r = radius * std::sqrt(rng.next_double()), azimuth = 2.0 * pi * rng.next_double();
     const dvec3 on_disc =
         frame_around(s->direction).world_from_local({r * std::cos(azimuth), r * std::sin(azimuth), 0.0});
-    return {{centre + on_disc + radius * s->direction, -s->direction}, s->weight * float(kPi * radius * radius)};
+    return {{centre + on_disc + radius * s->direction, -s->direction}, s->weight * float(pi * radius * radius)};
 }
 
 std::uint64_t Emitters::bytes() const {

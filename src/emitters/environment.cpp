@@ -8,7 +8,8 @@ namespace brisance {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
+
 // Directions drawn evenly over the sphere, so that what interpolation adds to dark pixels is never missed.
 constexpr double kEven = 0.05;
 
@@ -16,14 +17,14 @@ constexpr double kEven = 0.05;
 dmat3 axes(const LightSettings& light) {
     const bool z_up = light.up != 'y';
     const dvec3 up = z_up ? dvec3(0, 0, 1) : dvec3(0, 1, 0), left = z_up ? dvec3(0, 1, 0) : dvec3(0, 0, -1);
-    const double turn = light.rotate_degrees * kPi / 180.0;
+    const double turn = light.rotate_degrees * pi / 180.0;
     const dvec3 x(1, 0, 0), middle = std::cos(turn) * x + std::sin(turn) * left;
     return glm::transpose(dmat3(middle, glm::cross(up, middle), up));
 }
 
 dvec3 uniform_direction(double u, double v) {
     const double z = 1.0 - 2.0 * u, r = std::sqrt(std::max(0.0, 1.0 - z * z));
-    return {r * std::cos(2.0 * kPi * v), r * std::sin(2.0 * kPi * v), z};
+    return {r * std::cos(2.0 * pi * v), r * std::sin(2.0 * pi * v), z};
 }
 
 // Where a number falls in a cumulative distribution: the step, and how far into it.
@@ -48,7 +49,7 @@ Environment::Environment(const LightSettings& light, const Texture* picture)
     columns_.resize(std::size_t(width) * height);
     double total = 0.0;
     for (int y = 0; y < height; ++y) {
-        const double sine = std::sin(kPi * (y + 0.5) / height);
+        const double sine = std::sin(pi * (y + 0.5) / height);
         double row = 0.0;
         for (int x = 0; x < width; ++x) {
             const Rgb c = factor_ * Rgb(picture->at({(x + 0.5f) / float(width), (y + 0.5f) / float(height)}));
@@ -67,12 +68,12 @@ Environment::Environment(const LightSettings& light, const Texture* picture)
 
 vec2 Environment::picture_of(const dvec3& direction) const {
     const dvec3 d = picture_from_world_ * direction;
-    const double u = 0.5 - std::atan2(d.y, d.x) / (2.0 * kPi), v = std::acos(std::clamp(d.z, -1.0, 1.0)) / kPi;
+    const double u = 0.5 - std::atan2(d.y, d.x) / (2.0 * pi), v = std::acos(std::clamp(d.z, -1.0, 1.0)) / pi;
     return {float(u), float(v)};
 }
 
 dvec3 Environment::direction_of(double u, double v) const {
-    const double azimuth = (0.5 - u) * 2.0 * kPi, polar = v * kPi;
+    const double azimuth = (0.5 - u) * 2.0 * pi, polar = v * pi;
     return glm::transpose(picture_from_world_) *
            dvec3(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth), std::cos(polar));
 }
@@ -93,7 +94,7 @@ dvec3 Environment::sample(double u, double v) const {
 }
 
 double Environment::pdf(const dvec3& direction) const {
-    const double even = 1.0 / (4.0 * kPi);
+    const double even = 1.0 / (4.0 * pi);
     if (rows_.empty())
         return even;
     const vec2 at = picture_of(direction);
@@ -102,8 +103,8 @@ double Environment::pdf(const dvec3& direction) const {
     const int y = std::clamp(static_cast<int>(at.y * float(height)), 0, height - 1);
     const double* columns = &columns_[std::size_t(y) * width];
     const double row = rows_[y] - (y > 0 ? rows_[y - 1] : 0.0), column = columns[x] - (x > 0 ? columns[x - 1] : 0.0);
-    const double sine = std::max(std::sin(kPi * double(at.y)), 1e-9);
-    return kEven * even + (1.0 - kEven) * row * column * width * height / (2.0 * kPi * kPi * sine);
+    const double sine = std::max(std::sin(pi * double(at.y)), 1e-9);
+    return kEven * even + (1.0 - kEven) * row * column * width * height / (2.0 * pi * pi * sine);
 }
 
 }  // namespace brisance

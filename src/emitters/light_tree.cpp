@@ -11,7 +11,7 @@ namespace brisance {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 double angle_between(const dvec3& a, const dvec3& b) {
     return std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0));
@@ -26,22 +26,22 @@ struct Cone {
 Cone united(const Cone& a, const Cone& b) {
     const Cone &wide = a.spread >= b.spread ? a : b, &narrow = a.spread >= b.spread ? b : a;
     const double between = angle_between(wide.axis, narrow.axis);
-    if (std::min(between + narrow.spread, kPi) <= wide.spread)
+    if (std::min(between + narrow.spread, pi) <= wide.spread)
         return wide;
     const double spread = 0.5 * (wide.spread + between + narrow.spread);
     const dvec3 across = narrow.axis - glm::dot(narrow.axis, wide.axis) * wide.axis;
     const double length = glm::length(across);
-    if (spread >= kPi || !(length > 1e-12))
-        return {wide.axis, kPi};
+    if (spread >= pi || !(length > 1e-12))
+        return {wide.axis, pi};
     const double turn = spread - wide.spread;
     return {glm::normalize(std::cos(turn) * wide.axis + std::sin(turn) / length * across), spread};
 }
 
 // Measure of the directions that a group emits into (Conty Estevez and Kulla, equation 1).
 double orientation_measure(double spread, double reach) {
-    const double far = std::min(spread + reach, kPi), cosine = std::cos(spread), sine = std::sin(spread);
-    return 2.0 * kPi * (1.0 - cosine) +
-           kPi / 2.0 * (2.0 * far * sine - std::cos(spread - 2.0 * far) - 2.0 * spread * sine + cosine);
+    const double far = std::min(spread + reach, pi), cosine = std::cos(spread), sine = std::sin(spread);
+    return 2.0 * pi * (1.0 - cosine) +
+           pi / 2.0 * (2.0 * far * sine - std::cos(spread - 2.0 * far) - 2.0 * spread * sine + cosine);
 }
 
 // What a group costs to have in one node; boxes that are long along the axis they are split by cost less.

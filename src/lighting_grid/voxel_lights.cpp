@@ -211,4 +211,8 @@ dvec3 total(const std::vector<Rgb>& values) {
     return sum;
 }
 
+double total_luminance(const std::vector<Rgb>& values) {
+    return luminance(Rgb(total(values)));
+}
+
 }  // namespace brisance

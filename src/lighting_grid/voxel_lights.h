@@ -36,5 +36,6 @@ std::vector<Rgb> project_extinction_times(const Medium& medium, const std::vecto
 
 // Sum over all nodes in node order, accumulated in double: independent of the number of threads.
 dvec3 total(const std::vector<Rgb>& values);
+double total_luminance(const std::vector<Rgb>& values);
 
 }  // namespace brisance

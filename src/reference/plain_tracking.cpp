@@ -13,10 +13,6 @@ namespace {
 // Tentative collisions per voxel where the medium emits. The smoke alone may need none.
 constexpr double kTentativePerVoxel = 1.0 / 4.0;
 
-double exponential(Rng& rng) {
-    return -std::log1p(-rng.next_double());
-}
-
 double majorant_of(const TrackingField& field, const VoxelSegment& s) {
     const double per_voxel = glm::length(s.direction) * kTentativePerVoxel;
     const bool emits = field.burns(s.brick) && field.has_emission();
@@ -31,7 +27,7 @@ std::optional<Collision> track_in_brick(const TrackingField& field, const VoxelS
     const double majorant = majorant_of(field, s);
     if (majorant <= 0.0)
         return std::nullopt;
-    for (double t = s.begin + exponential(rng) / majorant; t < s.end; t += exponential(rng) / majorant) {
+    for (double t = s.begin + rng.next_exponential() / majorant; t < s.end; t += rng.next_exponential() / majorant) {
         const vec3 p = point_in_brick(s, t);
         const float sigma = field.extinction(s.brick, p);
         Rgb emission(0.0f);

@@ -16,17 +16,13 @@ namespace brisance {
 
 namespace {
 
-constexpr std::size_t kBatches = 32;
+constexpr std::size_t kEscapeBatches = 32;
 constexpr std::size_t kCollisionRays = std::size_t{1} << 18;
 constexpr std::size_t kEscapeRays = std::size_t{1} << 16;
 constexpr double kGatherError = 0.03;  // of a gather's collisions, typically
 constexpr int kStarts = 64;            // nodes that stand for a hat
 // Sets the random numbers of measurements apart from those of the table, whose keys do without this bit.
 constexpr std::uint64_t kMeasurement = std::uint64_t{1} << 63;
-
-double power(const std::vector<Rgb>& lights) {
-    return luminance(Rgb(total(lights)));
-}
 
 // Inverse-variance weight of the rays' estimate against the gather's, where the two differ by `difference`, relative: a
 // gather errs by some percent, or by what the rays' noise does not explain.
@@ -93,21 +89,21 @@ EscapeMeasurement measure_escape(const ExtinctionPyramid& pyramid, int level, co
     double sum = 0.0;
     for (std::size_t i = 0; i < cumulative.size(); ++i)
         cumulative[i] = sum += std::max(0.0f, luminance(lights.intensity[i]));
-    const std::size_t per_batch = rays / kBatches;
+    const std::size_t per_batch = rays / kEscapeBatches;
     if (!(sum > 0.0) || per_batch == 0)
         return {};
-    std::array<double, kBatches> batches{};
-    parallel_for(kBatches, [&](std::size_t b) {
+    std::array<double, kEscapeBatches> batches{};
+    parallel_for(kEscapeBatches, [&](std::size_t b) {
         Rng rng(Stream::EscapeRay, kMeasurement | key, b);
         batches[b] = escaping_part(pyramid, level, lights, draw_batch(cumulative, per_batch, rng), rng);
     });
     EscapeMeasurement measured;
-    measured.rays = per_batch * kBatches;
-    measured.fraction = std::accumulate(batches.begin(), batches.end(), 0.0) / kBatches;
+    measured.rays = per_batch * kEscapeBatches;
+    measured.fraction = std::accumulate(batches.begin(), batches.end(), 0.0) / kEscapeBatches;
     double square = 0.0;
     for (const double b : batches)
         square += (b - measured.fraction) * (b - measured.fraction);
-    measured.standard_error = std::sqrt(square / (kBatches - 1.0) / kBatches);
+    measured.standard_error = std::sqrt(square / (kEscapeBatches - 1.0) / kEscapeBatches);
     return measured;
 }
 
@@ -140,19 +136,19 @@ Rgb energy_balance_factor(const ExtinctionPyramid& pyramid, const ScatteredLight
 void SeriesBalance::add(const ScatteredLight& lights, const FlightPower& flight, const ScatteredLight& scattered) {
     if (flights_++ == 0) {
         emitted_ = lights;
-        first_ = power(lights.intensity);
+        first_ = total_luminance(lights.intensity);
     } else {
         emitted_.add(lights, Rgb(1.0f));
     }
     gathered_ += luminance(Rgb(flight.gathered));
-    collided_ += power(scattered.intensity) + luminance(Rgb(flight.absorbed));
+    collided_ += total_luminance(scattered.intensity) + luminance(Rgb(flight.absorbed));
 }
 
 BounceBalance SeriesBalance::measure(const ExtinctionPyramid& pyramid, int level, std::size_t rays) const {
     BounceBalance balance;
     balance.first_order = 1;
     balance.last_order = flights_;
-    const double y = power(emitted_.intensity);
+    const double y = total_luminance(emitted_.intensity);
     if (!(y > 0.0))
         return balance;
     const EscapeMeasurement escape = measure_escape(pyramid, level, emitted_, rays, 1);

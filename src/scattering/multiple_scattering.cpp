@@ -19,10 +19,6 @@ constexpr std::size_t kSeriesEscapeRays = std::size_t{1} << 16;
 constexpr int kMostBounces = 96;
 constexpr double kDark = 1e-6;  // of the power scattered once: bounces below it are left to the tail
 
-double power(const std::vector<Rgb>& lights) {
-    return luminance(Rgb(total(lights)));
-}
-
 // Level on which the series is solved: the finest with at most this many nodes that scatter. Where haze around dense
 // smoke makes up a good part of them it does not count, as the smoke would be solved the worse for it; but no level is
 // finer than memory and time allow.
@@ -108,7 +104,7 @@ void run_series(CoarseOperator& op, const ScatteredLight& first, const Scatterin
                 SeriesBalance& balance, ScatteringCosts& costs, Progress& progress, const Take& take) {
     const bool endless = settings.bounces < 0;
     const int wanted = endless ? kMostBounces : settings.bounces - 2;
-    const double start = power(first.intensity);
+    const double start = total_luminance(first.intensity);
     ScatteredLight lights = first;
     SeriesTail tail(first);
     for (double left = start; costs.bounces < wanted && left > (endless ? kDark * start : 0.0);) {
@@ -116,7 +112,7 @@ void run_series(CoarseOperator& op, const ScatteredLight& first, const Scatterin
         ScatteredLight scattered = op.bounce(lights, flight, costs.levels, progress);
         balance.add(lights, flight, scattered);
         lights = std::move(scattered);
-        left = power(lights.intensity);
+        left = total_luminance(lights.intensity);
         tail.add(lights);
         take(lights, Rgb(1.0f));
         ++costs.bounces;
@@ -164,7 +160,7 @@ std::vector<ScatteredLight> solve_scattering(const ScatteringInput& input, Scatt
     const Medium& medium = pyramid.medium();
     std::vector<ScatteredLight> orders;
     orders.push_back(scattered_light(medium, *input.first, *input.needed));
-    if (input.settings.bounces == 2 || !(power(orders[0].intensity) > 0.0))
+    if (input.settings.bounces == 2 || !(total_luminance(orders[0].intensity) > 0.0))
         return orders;
 
     Stopwatch watch;

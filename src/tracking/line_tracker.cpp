@@ -14,10 +14,6 @@ constexpr double kCameraRouletteDepth = 16.0;
 // Cells of less optical depth are sampled uniformly along the ray, others in proportion to transmittance.
 constexpr double kThinVoxel = 0.1;
 
-double exponential(Rng& rng) {
-    return -std::log1p(-rng.next_double());
-}
-
 // One sample of the integral of T (sigma S + j) along a cell, as seen from where the ray enters it. Draws uniformly
 // along the ray, in proportion to T sigma, or by both with the balance heuristic where neither alone is bounded.
 class VoxelEmission {
@@ -92,7 +88,7 @@ public:
     void pass(double depth, Rng& rng) {
         if (constant_ == 0.0 && depth > from_) {
             constant_ = std::exp(-depth);
-            stop_ = depth + exponential(rng);
+            stop_ = depth + rng.next_exponential();
         }
     }
     bool ended(double depth) const { return depth >= stop_ || (stop_ < 1e300 && constant_ == 0.0); }
@@ -118,7 +114,8 @@ bool crowded(const TrackingField& field, const VoxelSegment& brick) {
 // A free flight through a brick that collects emission at its tentative collisions. False: it collided.
 bool meet_in_brick(const TrackingField& field, const VoxelSegment& brick, LineResult& out, Rng& rng) {
     const double majorant = field.majorant(brick.brick);
-    for (double t = brick.begin + exponential(rng) / majorant; t < brick.end; t += exponential(rng) / majorant) {
+    for (double t = brick.begin + rng.next_exponential() / majorant; t < brick.end;
+         t += rng.next_exponential() / majorant) {
         const vec3 p = point_in_brick(brick, t);
         const float real = field.extinction(brick.brick, p) / float(majorant);
         out.radiance += real * field.source(brick.brick, p);
@@ -172,7 +169,7 @@ LineResult LineTracker::follow_path(const Ray& ray, Rng& rng, double end) const 
         if (!exact && crowded(field_, brick))
             return meet_in_brick(field_, brick, out, rng);
         // The exponential distribution has no memory: every brick samples it anew.
-        double left = exponential(rng);
+        double left = rng.next_exponential();
         return walk_cubics(field_, brick, [&](const VoxelSegment& cell) {
             const Cubic sigma = field_.extinction_along(cell);
             const double tau = std::max(0.0, sigma.integral(1.0) * (cell.end - cell.begin));

@@ -11,10 +11,6 @@ namespace {
 // collisions. Next to a voxel 1e8 times denser than its neighbours nothing else ends.
 constexpr double kTentativePerVoxel = 8.0;
 
-double exponential(Rng& rng) {
-    return -std::log1p(-rng.next_double());
-}
-
 bool stiff(const TrackingField& field, const VoxelSegment& in_brick) {
     const double metres_per_voxel = 1.0 / glm::length(in_brick.direction);
     return field.majorant(in_brick.brick) * metres_per_voxel > kTentativePerVoxel;
@@ -42,7 +38,7 @@ std::optional<Collision> woodcock_in_brick(const TrackingField& field, const Vox
     const double majorant = field.majorant(s.brick);
     if (majorant <= 0.0)
         return std::nullopt;
-    for (double t = s.begin + exponential(rng) / majorant; t < s.end; t += exponential(rng) / majorant) {
+    for (double t = s.begin + rng.next_exponential() / majorant; t < s.end; t += rng.next_exponential() / majorant) {
         const vec3 p = point_in_brick(s, t);
         if (rng.next_double() * majorant < field.extinction(s.brick, p))
             return Collision{t, s.brick, p};
@@ -163,7 +159,7 @@ double optical_depth(const TrackingField& field, const Ray& ray, double end) {
 std::optional<Collision> null_collision_in_brick(const TrackingField& field, const VoxelSegment& brick, Rng& rng) {
     if (!stiff(field, brick))
         return woodcock_in_brick(field, brick, rng);
-    double depth = exponential(rng);
+    double depth = rng.next_exponential();
     return flight_in_brick(field, brick, depth);
 }
 
@@ -186,7 +182,7 @@ double ratio_tracking(const TrackingField& field, const LatticeRay& ray, Rng& rn
             transmittance *= std::exp(-depth_of_brick(field, s));
             return transmittance > 0.0;
         }
-        for (double t = s.begin + exponential(rng) / majorant; t < s.end; t += exponential(rng) / majorant)
+        for (double t = s.begin + rng.next_exponential() / majorant; t < s.end; t += rng.next_exponential() / majorant)
             transmittance *= 1.0 - field.extinction(s.brick, point_in_brick(s, t)) / majorant;
         return transmittance > 0.0;
     });

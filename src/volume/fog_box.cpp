@@ -10,13 +10,13 @@ namespace brisance {
 
 namespace {
 
-constexpr int kBlock = BlockGrid::kBlock;
+constexpr int kBlockVoxels = BlockGrid::kBlock * BlockGrid::kBlock * BlockGrid::kBlock;
 constexpr double kVoxelsAlong = 32.0;  // the longest side, where no voxel is given
 
 void fill_block(const ivec3& block, const ivec3& last, BlockGrid& grid) {
-    grid.block_origin.push_back(block * kBlock);
-    for (int n = 0; n < kBlock * kBlock * kBlock; ++n) {
-        const ivec3 node = block * kBlock + ivec3(n >> 6, n >> 3 & 7, n & 7);
+    grid.block_origin.push_back(block * BlockGrid::kBlock);
+    for (int n = 0; n < kBlockVoxels; ++n) {
+        const ivec3 node = block * BlockGrid::kBlock + ivec3(n >> 6, n >> 3 & 7, n & 7);
         grid.values.push_back(glm::all(glm::lessThanEqual(node, last)) ? 1.0f : 0.0f);
     }
 }
@@ -27,8 +27,8 @@ BlockGrid fog_grid(const FogBox& box, std::uint64_t memory_limit_bytes, const st
     const dvec3 size = box.high - box.low;
     const double wish = box.voxel_metres > 0.0 ? box.voxel_metres : std::max({size.x, size.y, size.z}) / kVoxelsAlong;
     const dvec3 nodes = glm::max(glm::round(size / wish), dvec3(1.0));  // spacings along each side
-    const dvec3 blocks = glm::floor(nodes / double(kBlock)) + 1.0;
-    const double bytes = blocks.x * blocks.y * blocks.z * kBlock * kBlock * kBlock * sizeof(float);
+    const dvec3 blocks = glm::floor(nodes / double(BlockGrid::kBlock)) + 1.0;
+    const double bytes = blocks.x * blocks.y * blocks.z * kBlockVoxels * sizeof(float);
     if (!(bytes <= double(memory_limit_bytes)))
         throw Error(ExitCode::Temporary, fmt::format("{}: a box of {:.3g} GiB of voxels: raise voxel_metres", where,
                                                      bytes / double(1 << 30)));

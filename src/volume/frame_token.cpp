@@ -8,7 +8,7 @@
 namespace brisance {
 namespace {
 
-constexpr int kWidest = 16;
+constexpr int kMostDigits = 16;
 
 std::optional<FrameToken> token_at(const std::string& part, std::size_t at, bool file_name) {
     const auto digit = [&](std::size_t i) {
@@ -16,7 +16,7 @@ std::optional<FrameToken> token_at(const std::string& part, std::size_t at, bool
     };
     const auto number = [&](std::size_t& i) {
         int value = 0;
-        for (; digit(i) && value <= kWidest; ++i)
+        for (; digit(i) && value <= kMostDigits; ++i)
             value = value * 10 + (part[i] - '0');
         return value;
     };
@@ -31,7 +31,7 @@ std::optional<FrameToken> token_at(const std::string& part, std::size_t at, bool
         const bool zero = i < part.size() && part[i] == '0';
         const std::size_t first = i;
         const int width = number(i);
-        if (i < part.size() && part[i] == 'd' && width <= kWidest && (zero || i == first))
+        if (i < part.size() && part[i] == 'd' && width <= kMostDigits && (zero || i == first))
             return FrameToken{at, i + 1, width};
         return std::nullopt;
     }
@@ -44,7 +44,7 @@ std::optional<FrameToken> token_at(const std::string& part, std::size_t at, bool
     if (part.compare(at, 6, "<frame") == 0) {
         i = at + 6;
         const int width = number(i);
-        if (i < part.size() && part[i] == '>' && width <= kWidest)
+        if (i < part.size() && part[i] == '>' && width <= kMostDigits)
             return FrameToken{at, i + 1, width};
     }
     return std::nullopt;

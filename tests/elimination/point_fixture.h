@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "elimination/eliminate.h"
@@ -17,6 +18,9 @@ std::vector<vec3> sphere(std::size_t n, std::uint64_t seed);
 std::vector<vec3> torus(std::size_t n, std::uint64_t seed);
 
 inline constexpr double kSphereArea = 12.566370614359172;
+// stage_ratio of an elimination that has one stage.
+inline constexpr double kOneStage = std::numeric_limits<double>::infinity();
+
 inline constexpr double kTorusArea = 15.791367041742974;  // 4 pi^2 1 0.4
 
 EliminationSettings uniform(double measure, int dimension = 2);

@@ -16,8 +16,6 @@ namespace {
 using testing::adaptive;
 using testing::uniform;
 
-constexpr double kOneStage = std::numeric_limits<double>::infinity();
-
 struct Case {
     const char* name;
     std::vector<vec3> points;
@@ -57,7 +55,7 @@ std::vector<Case> cases() {
 
 TEST(Exactness, ParallelEliminationKeepsWhoIsKeptOneByOne) {
     for (Case& c : cases()) {
-        c.settings.stage_ratio = kOneStage;
+        c.settings.stage_ratio = testing::kOneStage;
         const Survivors parallel = eliminate(c.points, c.target, c.settings);
         c.settings.one_by_one = true;
         EXPECT_EQ(parallel.index, eliminate(c.points, c.target, c.settings).index) << c.name;

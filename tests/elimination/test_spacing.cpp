@@ -15,8 +15,6 @@ using testing::chosen;
 using testing::Spread;
 using testing::uniform;
 
-constexpr double kOneStage = std::numeric_limits<double>::infinity();
-
 void print(const char* name, const Spread& s) {
     std::printf("%s: nearest neighbour at %.3f d_max at least, %.3f on average\n", name, s.least, s.mean);
 }
@@ -52,7 +50,7 @@ TEST(Spacing, OfStagesIsNearlyThatOfOneStage) {
     const std::vector<vec3> points = testing::square(100'000, 24);
     EliminationSettings settings = uniform(1.0);
     const Spread stages = testing::spread(chosen(points, eliminate(points, 1'000, settings)), 1.0, 2, 0.1);
-    settings.stage_ratio = kOneStage;
+    settings.stage_ratio = testing::kOneStage;
     const Spread one = testing::spread(chosen(points, eliminate(points, 1'000, settings)), 1.0, 2, 0.1);
     print("stages", stages);
     print("one stage", one);

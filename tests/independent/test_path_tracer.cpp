@@ -19,7 +19,7 @@ using testing::Recipe;
 // Means must agree within four standard errors of their difference, in each of three colours of eleven views in all:
 // were both right, one choice of seeds in five hundred would fail by chance, and seeds are fixed. Four standard errors
 // must be less than 2 % of the mean, so that an error of 2 % shows.
-constexpr double kSigmas = 4.0;
+constexpr double kMostSigmas = 4.0;
 constexpr double kMostError = 0.0045;
 
 // A world as the path tracer takes it.
@@ -98,7 +98,7 @@ void expect_same(const Medium& medium, World world, const std::vector<NamedView>
             const double off = paths.mean[c] - plain.value[c];
             std::printf("%s, colour %d: %.6f, traced %+.2f %%, %+.2f standard errors of %.2f %%\n", v.name, c,
                         plain.value[c], 100.0 * off / plain.value[c], off / error, 100.0 * error / plain.value[c]);
-            EXPECT_LE(std::abs(off), kSigmas * error) << v.name << ", colour " << c;
+            EXPECT_LE(std::abs(off), kMostSigmas * error) << v.name << ", colour " << c;
             EXPECT_LE(error, kMostError * plain.value[c]) << v.name << ", colour " << c << ": not sampled enough";
         }
     }

@@ -17,7 +17,7 @@ bool finite(const Rgb& c) {
     return std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z);
 }
 
-RayLightSettings few(int paths = 600) {
+RayLightSettings of_paths(int paths = 600) {
     RayLightSettings s;
     s.paths = paths;
     s.count = 100'000;
@@ -84,7 +84,7 @@ TEST(Extremes, RaysWithoutALength) {
 // A ray that ends where it begins, one that just touches the smoke, one that passes it by, and one that begins in it.
 TEST(Extremes, RaysThatHardlySeeTheSmoke) {
     const Stage stage(coloured_ball(8, 2.0f, 0.5f), floor_below(0.7f));
-    const RayLights lights = stage.lights(few(60), 8, 3);
+    const RayLights lights = stage.lights(of_paths(60), 8, 3);
     RayMedium seen;
     Rng rng(Stream::Points, 44);
     for (const double end : {0.0, 1e-300, 1e-12, 1.0}) {
@@ -96,7 +96,7 @@ TEST(Extremes, RaysThatHardlySeeTheSmoke) {
                              {{-3.0, 1.1249999, 0.0}, {1.0, 0.0, 0.0}},
                              {{-3.0, 9.0, 0.0}, {1.0, 0.0, 0.0}},
                              {{0.0, 0.0, 0.0}, glm::normalize(dvec3(1.0, 2.0, -3.0))}};
-    expect_finite(stage, few(60), rays, "rays at the edge");
+    expect_finite(stage, of_paths(60), rays, "rays at the edge");
 }
 
 // The double integral of kernel and both phase functions over two parallel segments with the same direction, or with
@@ -175,7 +175,7 @@ TEST(Extremes, TheCameraLooksAlongALight) {
     }
     const Stage stage(coloured_ball(8, 2.0f, 0.6f), {});
     for (const double radius : {0.0, 0.1}) {
-        RayLightSettings settings = few(40);
+        RayLightSettings settings = of_paths(40);
         settings.radius = radius;
         const RayLights lights = stage.lights(settings, 8, 3);
         Rng rng(Stream::Points, 46);
@@ -214,10 +214,10 @@ TEST(Extremes, CrossingRays) {
 TEST(Extremes, AMillionOpticalDepths) {
     for (const float depth : {1e3f, 1e6f}) {
         const Stage stage(coloured_ball(4, depth, 0.5f), floor_below(0.7f), {lamp({1.5, 0.7, 1.1}, 30.0f)});
-        expect_finite(stage, few(40), some_rays(stage, 6), "dense smoke");
+        expect_finite(stage, of_paths(40), some_rays(stage, 6), "dense smoke");
     }
     const Stage dense(coloured_ball(4, 20.0f, 0.0f), {}, {lamp({1.5, 0.7, 1.1}, 30.0f)});
-    RayLightSettings many = few();
+    RayLightSettings many = of_paths();
     many.samples = 8;
     expect_same_light(dense, many, "optical depth 40", 50, 2);
 }
@@ -225,7 +225,7 @@ TEST(Extremes, AMillionOpticalDepths) {
 TEST(Extremes, AlmostStraightScattering) {
     for (const float g : {0.999f, -0.999f}) {
         const Stage stage(coloured_ball(8, 2.0f, g), floor_below(0.7f), {lamp({1.5, 0.7, 1.1}, 30.0f)});
-        expect_finite(stage, few(20), some_rays(stage, 30), "sharp");
+        expect_finite(stage, of_paths(20), some_rays(stage, 30), "sharp");
     }
 }
 
@@ -236,7 +236,7 @@ Recipe no_fire(Recipe recipe) {
 
 TEST(Extremes, ALampOutsideTheSmoke) {
     const Stage stage(no_fire(lumpy_ball(8, 3.0f, 0.0f)), floor_below(0.7f), {lamp({3.0, 2.0, 4.0}, 300.0f)});
-    expect_same_light(stage, few(2000), "lamp outside", 150);
+    expect_same_light(stage, of_paths(2000), "lamp outside", 150);
 }
 
 // Haze in which camera, lamp and walls stand.
@@ -255,19 +255,19 @@ TEST(Extremes, SmokeAroundCameraLampAndWalls) {
     Scene room;
     add_box(room, {-4, -4, -1.2f}, {4, 4, 3.5f}, lambert(0.5f), true);
     const Stage stage(haze(0.15f, 0.3f), std::move(room), {lamp({1.5, 0.7, 1.1}, 30.0f)});
-    expect_same_light(stage, few(300), "room of haze", 100);
+    expect_same_light(stage, of_paths(300), "room of haze", 100);
 }
 
 TEST(Extremes, NoSmokeHasNoLights) {
     const Stage stage(no_fire(coloured_ball(4, 0.0f, 0.0f)), floor_below(0.7f), {lamp({1.5, 0.7, 1.1}, 30.0f)});
     for (const double radius : {0.0, kAutomaticRadius}) {
-        RayLightSettings settings = few(100);
+        RayLightSettings settings = of_paths(100);
         settings.radius = radius;
         const RayLights lights = stage.lights(settings, 8, 3);
         EXPECT_TRUE(lights.lights().empty());
         EXPECT_EQ(lights.radius(), 0.0);
     }
-    expect_finite(stage, few(100), some_rays(stage, 10), "no smoke");
+    expect_finite(stage, of_paths(100), some_rays(stage, 10), "no smoke");
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ std::string refusal(const Strings& methods, const Strings& budgets = {}, const S
     return refusal([&] { parse(methods, budgets, ladders); });
 }
 
-Shot shot() {
+Shot fire_shot() {
     Shot shot;
     shot.volume.file = "fire.vdb";
     return shot;
@@ -152,7 +152,7 @@ TEST(Ladders, ThatCannotBeAreRefusedByName) {
 }
 
 TEST(Runs, OfEveryBuiltInMethodAreShots) {
-    Shot base = shot();
+    Shot base = fire_shot();
     base.tracing.seconds = 3.0;
     const std::vector<PlannedMethod> planned = plan_runs(base, parse({"lighting_grid", "path", "path_plain"}));
     ASSERT_EQ(planned.size(), 3u);
@@ -171,7 +171,7 @@ TEST(Runs, OfEveryBuiltInMethodAreShots) {
 }
 
 TEST(Runs, OfVirtualLightsChangeTheirChoicesAndTheSamples) {
-    Shot base = shot();
+    Shot base = fire_shot();
     base.camera.eye = dvec3(0.0, -6.0, 0.0);
     base.camera_given = true;
     const std::vector<std::string> names = {"vbnl",
@@ -205,7 +205,7 @@ TEST(Runs, OfVirtualLightsChangeTheirChoicesAndTheSamples) {
 }
 
 TEST(Runs, OfAShotOfSurfacesAloneAreShots) {
-    Shot base = shot();
+    Shot base = fire_shot();
     base.volume.file.clear();
     base.scene.quads.emplace_back();
     EXPECT_EQ(plan_runs(base, parse({"path", "vbnl"})).size(), 2u);
@@ -213,7 +213,7 @@ TEST(Runs, OfAShotOfSurfacesAloneAreShots) {
 
 TEST(Runs, ShareNoSeedWithTheReference) {
     const auto settings = [](const std::set<int>& taken, const std::string& method) {
-        return plan_runs(shot(), parse({method}, {}), taken)[0].runs[0];
+        return plan_runs(fire_shot(), parse({method}, {}), taken)[0].runs[0];
     };
     EXPECT_EQ(settings({}, "path").shot.tracing.seed, 0);
     EXPECT_EQ(settings({0, 1}, "path").shot.tracing.seed, 2);
@@ -224,12 +224,12 @@ TEST(Runs, ShareNoSeedWithTheReference) {
 }
 
 TEST(Runs, ThatWouldShowSomethingElseAreRefused) {
-    const std::string thin = refusal([] { plan_runs(shot(), parse({"thin=path,smoke.albedo=0.1"})); });
+    const std::string thin = refusal([] { plan_runs(fire_shot(), parse({"thin=path,smoke.albedo=0.1"})); });
     EXPECT_HAS(thin, "thin, 4 spp");
     EXPECT_HAS(thin, "smoke.albedo");
-    EXPECT_HAS(refusal([] { plan_runs(shot(), parse({"p=path,scattering.bounces=1"})); }), "scattering.bounces");
-    EXPECT_HAS(refusal([] { plan_runs(shot(), parse({"path"}, {"1"})); }), "tracing.samples");
-    EXPECT_HAS(refusal([] { plan_runs(shot(), parse({"path,tracing.fast=true"})); }), "tracing.fast");
+    EXPECT_HAS(refusal([] { plan_runs(fire_shot(), parse({"p=path,scattering.bounces=1"})); }), "scattering.bounces");
+    EXPECT_HAS(refusal([] { plan_runs(fire_shot(), parse({"path"}, {"1"})); }), "tracing.samples");
+    EXPECT_HAS(refusal([] { plan_runs(fire_shot(), parse({"path,tracing.fast=true"})); }), "tracing.fast");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstring>
@@ -176,6 +177,10 @@ void write_float_picture(const std::filesystem::path& file, int width, int heigh
     const auto output = OIIO::ImageOutput::create(file.string());
     EXPECT_TRUE(output && output->open(file.string(), OIIO::ImageSpec(width, height, 3, OIIO::TypeDesc::FLOAT)) &&
                 output->write_image(OIIO::TypeDesc::FLOAT, rgb.data()) && output->close());
+}
+
+void expect_near(const dvec3& a, const dvec3& b, double tolerance) {
+    EXPECT_NEAR(glm::length(a - b), 0.0, tolerance) << a.x << " " << a.y << " " << a.z;
 }
 
 dvec3 cross_of(const SceneMesh& mesh, std::size_t triangle) {

@@ -69,6 +69,8 @@ std::string encoded(const std::string& extension, int width, int height, int cha
 void write_float_picture(const std::filesystem::path& file, int width, int height, const std::vector<float>& rgb);
 std::string encoded_png16(int width, int height, int channels, const std::vector<std::uint16_t>& pixels);
 
+void expect_near(const dvec3& a, const dvec3& b, double tolerance = 1e-6);
+
 dvec3 cross_of(const SceneMesh& mesh, std::size_t triangle);  // twice the area, along the normal
 double area_of(const SceneMesh& mesh);
 

@@ -19,10 +19,6 @@ std::vector<dvec3> corners_of(const SceneMesh& mesh) {
     return corners;
 }
 
-void expect_near(const dvec3& a, const dvec3& b, double tolerance = 1e-6) {
-    EXPECT_NEAR(glm::length(a - b), 0.0, tolerance) << a.x << " " << a.y << " " << a.z;
-}
-
 Loaded load_placed(const TestGltf& gltf, SceneFile file, const dvec3& origin = dvec3(0.0)) {
     const TempFolder folder;
     gltf.write_glb(folder / "scene.glb");

@@ -15,10 +15,6 @@ dvec3 corner_at(const TestGltf& gltf, double seconds = 0.0) {
     return load(gltf, seconds).scene.meshes.at(0).positions.at(1);
 }
 
-void expect_near(const dvec3& a, const dvec3& b) {
-    EXPECT_NEAR(glm::length(a - b), 0.0, 2e-6) << a.x << " " << a.y << " " << a.z;
-}
-
 // An animation of one channel of node 0.
 void animate(TestGltf& gltf, const std::string& path, const std::string& interpolation, const std::vector<float>& times,
              const std::vector<float>& values, int node = 0) {

@@ -73,6 +73,12 @@ SceneSettings coloured_room() {
     return scene;
 }
 
+SceneSettings glossy_room() {
+    SceneSettings scene = coloured_room();
+    scene.quads[2].material = rough_metal(Rgb(0.9f, 0.7f, 0.4f), 0.4f);  // floor
+    return scene;
+}
+
 Room::Room(const SceneSettings& settings, Medium m)
     : medium(std::move(m)),
       origin(medium.world_of_local(vec3(0.0f))),

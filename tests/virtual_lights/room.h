@@ -20,6 +20,7 @@ void add_lamp(SceneSettings& scene, const dvec3& low, const dvec3& high, double 
 
 // A cube of 2 m with a red and a green wall, a lamp under its ceiling and a block on its floor.
 SceneSettings coloured_room();
+SceneSettings glossy_room();  // the same with a floor of rough metal
 
 struct Room {
     explicit Room(const SceneSettings& settings, Medium m = {});

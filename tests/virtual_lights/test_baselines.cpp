@@ -35,12 +35,6 @@ SceneSettings two_plates() {
     return scene;
 }
 
-SceneSettings glossy_room() {
-    SceneSettings scene = coloured_room();
-    scene.quads[2].material = rough_metal(Rgb(0.9f, 0.7f, 0.4f), 0.4f);  // floor
-    return scene;
-}
-
 VirtualLightSettings sampled_by(const std::string& sampling, const std::string& kind) {
     VirtualLightSettings settings = few_lights();
     settings.sampling = sampling;

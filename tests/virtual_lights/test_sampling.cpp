@@ -19,12 +19,6 @@ std::vector<std::string> others() {
     return names;
 }
 
-SceneSettings glossy_room() {
-    SceneSettings scene = coloured_room();
-    scene.quads[2].material = rough_metal(Rgb(0.9f, 0.7f, 0.4f), 0.4f);  // floor
-    return scene;
-}
-
 Estimate mean_of(const Room& room, const VirtualLights& lights, std::uint64_t per_batch) {
     return estimate(3, per_batch, [&](const dvec3& u, Rng& rng, double* out) {
         const Rgb seen = room.by_lights(lights, u.x, u.y, rng);

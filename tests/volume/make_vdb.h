@@ -1,6 +1,7 @@
 // Small VDB files for tests, described with plain types.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -8,6 +9,9 @@
 #include "core/vec.h"
 
 namespace brisance {
+
+// More memory than any file of a test takes.
+constexpr std::uint64_t kPlentyOfMemory = std::uint64_t{1} << 30;
 
 struct TestVoxel {
     ivec3 index{0};

@@ -15,9 +15,9 @@ namespace brisance {
 class TempFolder {
 public:
     TempFolder() {
-        const auto* const test = testing::UnitTest::GetInstance()->current_test_info();
-        path_ = std::filesystem::path(testing::TempDir()) / ("brisance_" + std::string(test->test_suite_name()) + "_" +
-                                                             test->name() + "_" + std::to_string(::getpid()));
+        const auto* const test = ::testing::UnitTest::GetInstance()->current_test_info();
+        path_ = std::filesystem::path(::testing::TempDir()) / ("brisance_" + std::string(test->test_suite_name()) +
+                                                               "_" + test->name() + "_" + std::to_string(::getpid()));
         std::filesystem::create_directories(path_);
     }
     ~TempFolder() {

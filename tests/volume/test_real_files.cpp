@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "make_vdb.h"
 #include "temp_folder.h"
 #include "volume/frame_path.h"
 #include "volume/mapping.h"
@@ -11,8 +12,6 @@
 
 namespace brisance {
 namespace {
-
-constexpr std::uint64_t kPlenty = std::uint64_t{1} << 30;
 
 class RealFiles : public testing::Test {
 protected:
@@ -27,7 +26,7 @@ protected:
 
 BlockGrid read_density(const std::filesystem::path& file) {
     const GridMapping mapping = map_grids(list_grids(file), {}, file.string());
-    return read_grid(file, mapping.density->name, mapping.density->index, kPlenty);
+    return read_grid(file, mapping.density->name, mapping.density->index, kPlentyOfMemory);
 }
 
 TEST_F(RealFiles, OddOnesAreReadOrRefusedInOneLine) {
@@ -38,7 +37,7 @@ TEST_F(RealFiles, OddOnesAreReadOrRefusedInOneLine) {
                 census_of_grid(entry.path(), grid.name, grid.index, 8);
                 if (!grid.usable)
                     continue;
-                const BlockGrid read = read_grid(entry.path(), grid.name, grid.index, kPlenty);
+                const BlockGrid read = read_grid(entry.path(), grid.name, grid.index, kPlentyOfMemory);
                 for (const float value : read.values)
                     ASSERT_TRUE(std::isfinite(value));
             }
@@ -52,7 +51,8 @@ TEST_F(RealFiles, OddOnesAreReadOrRefusedInOneLine) {
 TEST_F(RealFiles, CountsAreThoseOfTheirMakers) {
     EXPECT_EQ(read_density(volumes / "smoke/smoke1_openvdb_sample.vdb").census.active_voxels, 1049275u);
     EXPECT_EQ(read_density(volumes / "explosion/ground_explosion_0015.vdb").census.active_voxels, 383152u);
-    const BlockGrid tiles = read_grid(volumes / "odd/constant_temperature_tiles.vdb", "temperature", 0, kPlenty);
+    const BlockGrid tiles =
+        read_grid(volumes / "odd/constant_temperature_tiles.vdb", "temperature", 0, kPlentyOfMemory);
     EXPECT_EQ(tiles.census.active_voxels, 1000000u);
     EXPECT_GT(tiles.census.active_tiles, 0u);
 }

@@ -12,8 +12,6 @@
 namespace brisance {
 namespace {
 
-constexpr std::uint64_t kPlenty = std::uint64_t{1} << 30;
-
 std::string bytes_of(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
@@ -26,7 +24,7 @@ void expect_unusable(const TestGrid& grid, const std::string& reason) {
     const GridInfo info = list_grids(folder / "grid.vdb").front();
     EXPECT_FALSE(info.usable);
     EXPECT_TRUE(contains(info.why_unusable, reason)) << info.why_unusable;
-    const Failure failure = failure_of([&] { read_grid(folder / "grid.vdb", grid.name, 0, kPlenty); });
+    const Failure failure = failure_of([&] { read_grid(folder / "grid.vdb", grid.name, 0, kPlentyOfMemory); });
     EXPECT_EQ(failure.code, ExitCode::BadData);
     EXPECT_TRUE(contains(failure.message, reason)) << failure.message;
     EXPECT_TRUE(contains(failure.message, "grid.vdb")) << failure.message;
@@ -82,7 +80,8 @@ TEST(Unreadable, ATruncatedFileIsNeverReadAtAnyLength) {
         write_bytes(folder / "cut.vdb", bytes.substr(0, length));
         const Failure listed = failure_of([&] { list_grids(folder / "cut.vdb"); });
         EXPECT_EQ(listed.code, ExitCode::BadData) << length;
-        EXPECT_EQ(failure_of([&] { read_grid(folder / "cut.vdb", "density", 0, kPlenty); }).code, ExitCode::BadData);
+        EXPECT_EQ(failure_of([&] { read_grid(folder / "cut.vdb", "density", 0, kPlentyOfMemory); }).code,
+                  ExitCode::BadData);
     }
     write_bytes(folder / "cut.vdb", bytes.substr(0, bytes.size() - 1));
     EXPECT_TRUE(contains(failure_of([&] { list_grids(folder / "cut.vdb"); }).message, "truncated"));
@@ -149,7 +148,7 @@ TEST(Unreadable, SingularAndNonFiniteTransformsAreRefused) {
             const GridInfo info = list_grids(folder / "grid.vdb").front();
             EXPECT_FALSE(info.usable) << bad;
             EXPECT_FALSE(info.why_unusable.empty());
-            const Failure failure = failure_of([&] { read_grid(folder / "grid.vdb", "density", 0, kPlenty); });
+            const Failure failure = failure_of([&] { read_grid(folder / "grid.vdb", "density", 0, kPlentyOfMemory); });
             EXPECT_EQ(failure.code, ExitCode::BadData) << bad;
         }
     }
@@ -166,7 +165,7 @@ TEST(Unreadable, OneBadGridDoesNotHideTheGoodOnes) {
     ASSERT_EQ(infos.size(), 2u);
     EXPECT_FALSE(infos[0].usable);
     EXPECT_TRUE(infos[1].usable);
-    EXPECT_FALSE(read_grid(folder / "grid.vdb", "density", 0, kPlenty).empty());
+    EXPECT_FALSE(read_grid(folder / "grid.vdb", "density", 0, kPlentyOfMemory).empty());
 }
 
 TEST(Unreadable, StrayVoxelsFarAwayAreRefusedWithTheirNumbers) {
@@ -174,7 +173,7 @@ TEST(Unreadable, StrayVoxelsFarAwayAreRefusedWithTheirNumbers) {
     TestGrid grid;
     grid.voxels = {{{0, 0, 0}, dvec3(1.0)}, {{0, 2000000000, 0}, dvec3(1.0)}};
     write_vdb(folder / "far.vdb", {grid});
-    const Failure failure = failure_of([&] { read_grid(folder / "far.vdb", "density", 0, kPlenty); });
+    const Failure failure = failure_of([&] { read_grid(folder / "far.vdb", "density", 0, kPlentyOfMemory); });
     EXPECT_EQ(failure.code, ExitCode::BadData);
     EXPECT_TRUE(contains(failure.message, "2000000001 voxels")) << failure.message;
 }
@@ -184,7 +183,7 @@ TEST(Unreadable, NothingIsExpandedBeyondTheMemoryLimit) {
     TestGrid grid;
     grid.tiles = {{{0, 0, 0}, 3, dvec3(1.0)}};  // 4096^3 voxels in a file of a few hundred bytes
     write_vdb(folder / "huge.vdb", {grid});
-    const Failure failure = failure_of([&] { read_grid(folder / "huge.vdb", "density", 0, kPlenty); });
+    const Failure failure = failure_of([&] { read_grid(folder / "huge.vdb", "density", 0, kPlentyOfMemory); });
     EXPECT_EQ(failure.code, ExitCode::BadData);
     EXPECT_TRUE(contains(failure.message, "1024.0 MiB")) << failure.message;
     EXPECT_TRUE(contains(failure.message, "134217728")) << failure.message;

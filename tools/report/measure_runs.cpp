@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "methods.h"
 #include "metrics/layers.h"
 #include "named_progress.h"
 #include "render/render_frame.h"
@@ -15,11 +16,6 @@
 
 namespace brisance {
 namespace {
-
-bool sets(const std::vector<std::string>& settings, const std::string& key) {
-    return std::any_of(settings.begin(), settings.end(),
-                       [&](const std::string& setting) { return setting.starts_with(key + "="); });
-}
 
 // The step alone says when a run stops, cells are what is compared, and pictures of lights would cost time.
 void complete(const Shot& shot, std::vector<std::string>& settings) {

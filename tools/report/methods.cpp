@@ -108,9 +108,13 @@ std::string value_of(const std::string& setting) {
     return setting.substr(setting.find('=') + 1);
 }
 
-bool sets(const Settings& settings, const std::string& key) {
+}  // namespace
+
+bool sets(const std::vector<std::string>& settings, const std::string& key) {
     return std::any_of(settings.begin(), settings.end(), [&](const std::string& s) { return key_of(s) == key; });
 }
+
+namespace {
 
 // "LABEL:REST"; without a colon the label is empty.
 std::pair<std::string, std::string> split_label(const std::string& text) {

@@ -40,6 +40,9 @@ struct MethodOptions {
 // Throws Error Usage; the values of settings are checked later, when a shot is made of them.
 std::vector<Method> parse_methods(const MethodOptions& options);
 
+// Whether one of the settings "KEY=VALUE" is of this key.
+bool sets(const std::vector<std::string>& settings, const std::string& key);
+
 // Names of the built-in methods.
 const std::vector<std::string>& built_in_methods();
 

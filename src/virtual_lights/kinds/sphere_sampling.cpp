@@ -8,7 +8,7 @@ namespace brisance {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 dvec3 around(const dvec3& axis, double cosine, double azimuth) {
     const double sine = std::sqrt(std::max(0.0, (1.0 - cosine) * (1.0 + cosine)));
@@ -24,7 +24,7 @@ double cap_height(double radius, double square_distance) {
 }  // namespace
 
 dvec3 sample_toward(const VirtualLight& light, const LitPoint& point, Rng& rng) {
-    const double u = rng.next_double(), azimuth = 2.0 * kPi * rng.next_double();
+    const double u = rng.next_double(), azimuth = 2.0 * pi * rng.next_double();
     const dvec3 offset = light.position - point.position;
     const double square_distance = glm::dot(offset, offset);
     if (square_distance > light.radius * light.radius)
@@ -47,10 +47,10 @@ double pdf_toward(const VirtualLight& light, const LitPoint& point, const dvec3&
     const dvec3 offset = light.position - point.position;
     const double square_distance = glm::dot(offset, offset);
     if (square_distance > light.radius * light.radius)
-        return 1.0 / (2.0 * kPi * cap_height(light.radius, square_distance));
+        return 1.0 / (2.0 * pi * cap_height(light.radius, square_distance));
     if (point.kind == LitPoint::Kind::Surface)
-        return std::max(0.0, glm::dot(point.normal, direction)) / kPi;
-    return 1.0 / (4.0 * kPi);
+        return std::max(0.0, glm::dot(point.normal, direction)) / pi;
+    return 1.0 / (4.0 * pi);
 }
 
 }  // namespace brisance
