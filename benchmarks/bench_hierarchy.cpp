@@ -36,6 +36,7 @@ void gather_points(benchmark::State& state) {
         const float x = rng.next(), y = rng.next(), z = rng.next();
         const vec3 corner = vec3(x, y, z) * float(side - 4);
         std::vector<vec3> points;
+        points.reserve(64);
         for (int i = 0; i < 64; ++i)
             points.push_back(fire.medium.local_from_index *
                              (corner + vec3(i >> 4, i >> 2 & 3, i & 3) - vec3(fire.medium.reference_node)));

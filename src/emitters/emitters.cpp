@@ -133,7 +133,8 @@ void Emitters::add_light(const LightSettings& light, const Texture* picture) {
         irradiance = 0.0;
         constexpr int kSide = 32;
         for (int i = 0; i < kSide * kSide; ++i) {
-            const dvec3 d = far.environment->sample((i % kSide + 0.5) / kSide, (i / kSide + 0.5) / kSide);
+            const int row = i / kSide, column = i % kSide;
+            const dvec3 d = far.environment->sample((column + 0.5) / kSide, (row + 0.5) / kSide);
             irradiance += luminance(far.environment->radiance(d)) / far.environment->pdf(d) / (kSide * kSide);
         }
     }
@@ -295,7 +296,7 @@ std::optional<EmittedParticle> Emitters::emit(const dvec3& centre, double radius
         return std::pair(static_cast<std::size_t>(found - cumulative.begin()), *found - before);
     };
     EmittedParticle out;
-    double share;
+    double share = 0.0;
     if (u < near) {
         const auto [light, power] = pick(near_power_, u);
         share = power / all;

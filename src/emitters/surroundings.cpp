@@ -8,6 +8,7 @@ namespace {
 
 std::vector<const Texture*> pointers_to(const std::vector<Texture>& pictures) {
     std::vector<const Texture*> out;
+    out.reserve(pictures.size());
     for (const Texture& picture : pictures)
         out.push_back(picture.width > 0 ? &picture : nullptr);
     return out;

@@ -137,7 +137,7 @@ void PathTracer::trace_from_surface(const SurfacePoint& point, const dvec3& arri
 void PathTracer::trace_from(PathState first, Rng& rng, PathSum& sum, PathStatistics& statistics) const {
     ++statistics.paths;
     Filing filing(*this, first.vertex.on_surface(), sum, statistics);
-    walk_path(direct_, std::move(first), filing, rng);
+    walk_path(direct_, first, filing, rng);
 }
 
 }  // namespace brisance

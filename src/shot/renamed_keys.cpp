@@ -1,5 +1,7 @@
 #include "shot/renamed_keys.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 #include <vector>
 
@@ -29,10 +31,10 @@ const Names& removed_keys() {
 std::optional<std::string> renamed_key(const std::string& path) {
     for (const auto& [old, why] : removed_keys())
         if (path == old)
-            return path + " is no longer there: " + why;
+            return fmt::format("{} is no longer there: {}", path, why);
     for (const auto& [old, now] : renamed_paths())
         if (path == old || path.starts_with(old + "."))
-            return path + " is now called " + now + path.substr(old.size());
+            return fmt::format("{} is now called {}{}", path, now, path.substr(old.size()));
     return std::nullopt;
 }
 
@@ -41,7 +43,7 @@ std::optional<std::string> renamed_value(const std::string& path, const std::str
         return std::nullopt;
     for (const auto& [old, now] : renamed_paths())
         if (text == "\"" + old + "\"")
-            return "the method " + text + " is now called \"" + now + "\"";
+            return fmt::format("the method {} is now called \"{}\"", text, now);
     return std::nullopt;
 }
 

@@ -196,7 +196,7 @@ std::vector<int> frames_on_disk(const std::string& pattern) {
 }
 
 std::filesystem::path resolve_frame(const std::string& pattern, int frame) {
-    const fs::path path = expand(pattern, frame);
+    fs::path path = expand(pattern, frame);
     std::error_code error;
     if (!fs::exists(path, error))
         throw_missing(pattern, path, frame);

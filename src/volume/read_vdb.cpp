@@ -56,7 +56,7 @@ auto guarded(const std::string& where, const Body& body) {
 }
 
 std::string type_label(const GridBase& grid) {
-    const std::string type = grid.valueType();
+    std::string type = grid.valueType();
     if (type.starts_with("ptdata") || type.starts_with("ptidx"))
         return "points";
     if (grid.saveFloatAsHalf() && (type == "float" || type == "double"))

@@ -48,6 +48,7 @@ public:
     }
     std::size_t size() const { return found_.size(); }
     bool full() const { return found_.size() == most_; }
+    // NOLINTBEGIN(readability-identifier-naming): names that nanoflann calls
     float worstDist() const { return full() ? found_.front().distance2 : std::numeric_limits<float>::max(); }
     bool addPoint(float distance2, std::uint32_t index) {
         const Near next{distance2, index};
@@ -61,6 +62,7 @@ public:
         std::push_heap(found_.begin(), found_.end());
         return true;
     }
+    // NOLINTEND(readability-identifier-naming)
 
 private:
     bool counts(const SurfacePhoton& l, float distance2) const {

@@ -114,7 +114,7 @@ Rgb Compensation::lost_exactly(const PathVertex& vertex, Rng& rng) const {
     const double part = near.opacity() * lights_.bound().part_left_out(c->distance);
     PathState first = state_in_medium(scene_, ray, *c, sample->weight, 2);
     first.throughput *= float(part);
-    return follow(std::move(first), rng);
+    return follow(first, rng);
 }
 
 Rgb Compensation::lost_locally(const PathVertex& vertex, const Collision& smoke, Rng& rng) const {
@@ -138,7 +138,7 @@ Rgb Compensation::lost_locally(const PathVertex& vertex, const Collision& smoke,
 Rgb Compensation::follow(PathState first, Rng& rng) const {
     LostPath path(*this);
     if (largest(first.throughput) > 0.0f)
-        walk_path(scene_, std::move(first), path, rng);
+        walk_path(scene_, first, path, rng);
     return path.sum();
 }
 

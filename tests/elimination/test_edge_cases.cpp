@@ -101,6 +101,7 @@ TEST(EdgeCases, ScaleDoesNotMatter) {
     const std::vector<vec3> points = testing::torus(20'000, 43);
     for (const double scale : {0x1p-60, 0x1p-20, 0x1p20, 0x1p60, 1e-6, 1e6}) {
         std::vector<vec3> scaled;
+        scaled.reserve(points.size());
         for (const vec3& p : points)
             scaled.emplace_back(dvec3(p) * scale);
         const double area = testing::kTorusArea * scale * scale;

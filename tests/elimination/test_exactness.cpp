@@ -94,6 +94,7 @@ TEST(Exactness, WithIdsTheOrderOfThePointsDoesNotMatter) {
         for (std::size_t i = ids.size() - 1; i > 0; --i)
             std::swap(ids[i], ids[std::size_t(rng.next_double() * double(i + 1))]);
         std::vector<vec3> shuffled;
+        shuffled.reserve(ids.size());
         for (const std::uint64_t id : ids)
             shuffled.push_back(c.points[id - 1000]);
         std::vector<std::uint32_t> found;

@@ -130,7 +130,7 @@ TEST(ExrHeader, WhatIsNotThereIsNotReadBack) {
     const TemporaryFolder folder;
     Imf::Header header(4, 4);  // as another program writes it
     header.channels().insert("Y", Imf::Channel());
-    Imf::OutputFile((folder / "a.exr").c_str(), header);
+    { const Imf::OutputFile written((folder / "a.exr").c_str(), header); }
     const ExrMetadata read = read_exr_metadata(folder / "a.exr");
     EXPECT_FALSE(read.frame.has_value());
     EXPECT_FALSE(read.render_seconds.has_value());

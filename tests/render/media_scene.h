@@ -25,6 +25,7 @@ struct MediaScene {
     std::vector<std::string> more = {};
     int survey_paths = 0;                        // of one survey
     std::map<std::string, Target> targets = {};  // of all cells that the plan owns, and of the picture: ""
+    // NOLINTNEXTLINE(readability-identifier-naming): the name that gtest calls
     friend void PrintTo(const MediaScene& scene, std::ostream* out) { *out << scene.name; }
 };
 

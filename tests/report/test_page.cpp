@@ -125,7 +125,7 @@ TEST(Page, CannotBeEndedByAName) {
     const nlohmann::ordered_json json = {{"name", "</script><script>alert(1)</script><!--"}, {"bad", "\xff"}};
     const std::string text = script_json(json);
     EXPECT_LACKS(text, "<");
-    EXPECT_EQ(nlohmann::json::parse(text)["name"], json["name"]);
+    EXPECT_EQ(nlohmann::ordered_json::parse(text)["name"], json["name"]);
     const std::string page = report_page(json, {{"pictures", 1}});
     EXPECT_LACKS(page, "alert(1)</script>");
     EXPECT_HAS(page, "id=\"report-data\"");

@@ -29,8 +29,8 @@ int components_of(const std::string& type) {
     return type == "SCALAR" ? 1 : type.back() - '0';
 }
 
-std::string encoded_by_oiio(const std::string& extension, int width, int height, int channels, OIIO::TypeDesc type,
-                            const void* pixels) {
+std::string encoded_by_oiio(const std::string& extension, int width, int height, int channels,
+                            const OIIO::TypeDesc& type, const void* pixels) {
     std::vector<unsigned char> bytes;
     OIIO::Filesystem::IOVecOutput memory(bytes);
     OIIO::ImageSpec spec(width, height, channels, type);
@@ -152,7 +152,7 @@ Loaded load(const TestGltf& gltf, double seconds) {
 }
 
 Failure failure_of_loading(const std::filesystem::path& file) {
-    const Failure failure = failure_of([&] { load_file(file); });
+    Failure failure = failure_of([&] { load_file(file); });
     EXPECT_TRUE(failure.message.empty() || contains(failure.message, file.parent_path().string())) << failure.message;
     EXPECT_FALSE(contains(failure.message, "\n")) << failure.message;
     return failure;

@@ -85,7 +85,7 @@ TEST(Combustion, GasIsNeverColderThanTheAirNorHotterThanTheMaximum) {
             const float kelvin = simulation.temperature(cell);
             ASSERT_GE(kelvin, settings.ambient_temperature);
             ASSERT_LE(kelvin, settings.maximum_temperature);
-            ASSERT_GE(cell[kSoot], 0.0f);
+            ASSERT_GE(cell[Soot], 0.0f);
             ASSERT_TRUE(simulation.flame(cell) >= 0.0f && simulation.flame(cell) <= 1.0f);
             hottest = std::max(hottest, kelvin);
         }
@@ -115,7 +115,7 @@ TEST(Combustion, HotGasRises) {
         for (int k = 0; k < n.z; ++k)
             for (int j = 0; j < n.y; ++j)
                 for (int i = 0; i < n.x; ++i) {
-                    const double soot = simulation.mixture()(i, j, k)[kSoot];
+                    const double soot = simulation.mixture()(i, j, k)[Soot];
                     moment += soot * double(simulation.world_of_centre(i, j, k).z);
                     mass += soot;
                 }

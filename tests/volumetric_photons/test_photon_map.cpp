@@ -24,7 +24,7 @@ SurfacePoint on_floor(const dvec3& position) {
     SurfacePoint p;
     p.position = position;
     p.geometric_normal = {0, 0, 1};
-    p.frame = ShadingFrame({0, 0, 1});
+    p.frame = frame_around({0, 0, 1});
     p.material = plain();
     return p;
 }

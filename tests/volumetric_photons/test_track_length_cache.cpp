@@ -48,8 +48,9 @@ std::vector<Track> sunlight(const dvec3& direction, double irradiance, int side_
     const double step = 2.0 * kHalf / side_count;
     const Rgb power(float(irradiance * step * step));
     for (int i = 0; i < side_count * side_count; ++i) {
-        const double x = (i / side_count + rng.next_double()) * step - kHalf;
-        const double y = (i % side_count + rng.next_double()) * step - kHalf;
+        const int row = i / side_count, column = i % side_count;
+        const double x = (row + rng.next_double()) * step - kHalf;
+        const double y = (column + rng.next_double()) * step - kHalf;
         tracks.push_back({{x * side + y * up - 4.0 * direction, direction}, power});
     }
     return tracks;

@@ -15,7 +15,7 @@ constexpr auto kNone = BiasCompensation::None, kExact = BiasCompensation::Exact,
 
 // Unbounded, a few points almost touch a few rays: their standard error falls slowly, and is only just one.
 Estimate expect_as_paths(const Stage& stage, const char* what, double radius = 0.4, double sharp = 0.05) {
-    const Estimate paths = mean_by_paths(stage, 300);
+    Estimate paths = mean_by_paths(stage, 300);
     const std::string name(what);
     expect_same_means(mean_by_points(stage, points(0.0, kNone)), paths, (name + ", unbounded").c_str(), sharp);
     expect_same_means(mean_by_points(stage, points(radius, kExact)), paths, (name + ", exact").c_str(), sharp);

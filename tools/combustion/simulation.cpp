@@ -72,17 +72,17 @@ float Simulation::maximum_speed() const {
 }
 
 bool Simulation::is_ambient(const vec4& cell) {
-    return cell[kGas] < kLeastGas && cell[kHeat] < 1.0f && cell[kSoot] < 1e-4f;
+    return cell[Gas] < kLeastGas && cell[Heat] < 1.0f && cell[Soot] < 1e-4f;
 }
 
 float Simulation::temperature(const vec4& cell) const {
-    const float heat = std::max(cell[kHeat], 0.0f) / std::max(cell[kGas], kLeastGas);
+    const float heat = std::max(cell[Heat], 0.0f) / std::max(cell[Gas], kLeastGas);
     return std::min(settings_.ambient_temperature + heat, settings_.maximum_temperature);
 }
 
 float Simulation::flame(const vec4& cell) const {
     const float glow = (temperature(cell) - kGlowStart) / (settings_.maximum_temperature - kGlowStart);
-    return std::min(cell[kGas], 1.0f) * std::clamp(glow, 0.0f, 1.0f);
+    return std::min(cell[Gas], 1.0f) * std::clamp(glow, 0.0f, 1.0f);
 }
 
 double Simulation::soot_mass() const {
@@ -90,7 +90,7 @@ double Simulation::soot_mass() const {
     return volume * sum_slabs(cells_.z, [&](int k) {
                double sum = 0.0;
                for (std::size_t c = mixture_.index(0, 0, k); c < mixture_.index(0, 0, k + 1); ++c)
-                   sum += mixture_.values[c][kSoot];
+                   sum += mixture_.values[c][Soot];
                return sum;
            });
 }
@@ -155,7 +155,7 @@ void Simulation::add_burst(float dt) {
 void Simulation::react(float dt) {
     Field<float> soot(cells_);
     for (std::size_t c = 0; c < soot.values.size(); ++c)
-        soot.values[c] = mixture_.values[c][kSoot];
+        soot.values[c] = mixture_.values[c][Soot];
     const Field<float> escape = escape_fraction(soot, h_, settings_.soot_absorption);
     for_slabs(cells_.z, [&](int k) {
         for (int j = 0; j < cells_.y; ++j)
@@ -175,11 +175,11 @@ void Simulation::react(float dt) {
 // One cell's burning, cooling, mixing and soot over dt. `escape` is the share of radiated heat that leaves the cloud.
 vec4 Simulation::reacted(const vec4& cell, float escape, float dt, float& expansion) const {
     const Settings& s = settings_;
-    const float gas = std::clamp(cell[kGas], kLeastGas, 1.0f);
+    const float gas = std::clamp(cell[Gas], kLeastGas, 1.0f);
     const float cold = temperature(cell);
     // A constant share of the fuel per second, once alight.
     const float alight = glm::smoothstep(600.0f, 900.0f, cold);
-    const float burnt = std::max(cell[kFuel], 0.0f) * (1.0f - std::exp(-alight * dt / s.burn_time));
+    const float burnt = std::max(cell[Fuel], 0.0f) * (1.0f - std::exp(-alight * dt / s.burn_time));
     const float heated = std::min(cold + s.heat_per_fuel * burnt / gas, s.maximum_temperature);
 
     // [1] eq. 13, d theta/dt = -c (theta / range)^4, solved exactly over the step.
@@ -199,11 +199,11 @@ vec4 Simulation::reacted(const vec4& cell, float escape, float dt, float& expans
     // [5] The gas relaxes to the mean; as heat is kept, its share of the cell grows by as much as it cools.
     const float kept = gas + (1.0f - gas) * std::exp(-dt / s.mixing_time);
     vec4 next;
-    next[kHeat] = gas * radiated;
-    next[kGas] = std::min(1.0f, gas / kept);
-    next[kFuel] = std::max(cell[kFuel], 0.0f) - burnt;
+    next[Heat] = gas * radiated;
+    next[Gas] = std::min(1.0f, gas / kept);
+    next[Fuel] = std::max(cell[Fuel], 0.0f) - burnt;
     // Soot is a mass per volume: it thins as the gas that carries it expands.
-    next[kSoot] = (cell[kSoot] + s.soot_per_fuel * burnt) * std::exp(-(expansion + s.soot_dissipation) * dt);
+    next[Soot] = (cell[Soot] + s.soot_per_fuel * burnt) * std::exp(-(expansion + s.soot_dissipation) * dt);
     return next;
 }
 
@@ -235,7 +235,7 @@ Field<vec4> Simulation::accelerations() const {
                 const vec4& cell = mixture_(i, j, k);
                 if (is_ambient(cell))
                     continue;
-                const float lightness = 1.0f - s.ambient_temperature / (s.ambient_temperature + cell[kHeat]);
+                const float lightness = 1.0f - s.ambient_temperature / (s.ambient_temperature + cell[Heat]);
                 vec3 a(0.0f, 0.0f, s.buoyancy * s.gravity * lightness);
                 const vec3 slope(at(vorticity, i + 1, j, k).w - at(vorticity, i - 1, j, k).w,
                                  at(vorticity, i, j + 1, k).w - at(vorticity, i, j - 1, k).w,

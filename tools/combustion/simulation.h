@@ -28,7 +28,7 @@ namespace brisance::combustion {
 // What a cell holds: fuel [mass fraction], heat [K: the cell's mean temperature above ambient], soot [density units]
 // and gas [mass fraction of what came out of the burst; the rest is air]. Heat belongs to the gas until the two have
 // mixed.
-enum Component { kFuel, kHeat, kSoot, kGas };
+enum Component { Fuel, Heat, Soot, Gas };
 using Mixture = Field<vec4>;
 
 struct StepReport {

@@ -12,7 +12,7 @@ namespace {
 
 // Whether there is smoke or a notable share of hot gas.
 bool is_stored(const vec4& cell, const WriteSettings& settings) {
-    return cell[kSoot] >= settings.density_threshold || cell[kGas] >= settings.gas_threshold;
+    return cell[Soot] >= settings.density_threshold || cell[Gas] >= settings.gas_threshold;
 }
 
 // Index (0, 0, 0) is the cell whose low corner is the world's origin, and an index's world position is its cell's
@@ -81,7 +81,7 @@ void write_vdb(const Simulation& simulation, const WriteSettings& settings, cons
     openvdb::initialize();
     openvdb::GridPtrVec grids;
     grids.push_back(scalar_grid(simulation, settings, "density", settings.density_threshold,
-                                [](const vec4& cell) { return cell[kSoot]; }));
+                                [](const vec4& cell) { return cell[Soot]; }));
     grids.push_back(scalar_grid(simulation, settings, "temperature", settings.temperature_threshold,
                                 [&](const vec4& cell) { return simulation.temperature(cell); }));
     grids.push_back(scalar_grid(simulation, settings, "flame", settings.flame_threshold,

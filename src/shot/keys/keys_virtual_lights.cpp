@@ -8,6 +8,7 @@ namespace {
 // One of the names in the table of techniques.
 Codec<std::string> name_in(const std::vector<TechniqueChoice>& choices) {
     std::vector<std::pair<std::string, std::string>> words;
+    words.reserve(choices.size());
     for (const TechniqueChoice& c : choices)
         words.emplace_back(c.name, c.name);
     return choice(words);
