@@ -15,8 +15,8 @@ struct LightingSettings {
     // Relative error that shadow maps may add to the picture. Their resolution follows from it where it is not given.
     float error = 0.02f;
     // Relative error of the light that the picture shows up to which nodes are interpolated from coarser ones. 0: none
-    // are, every node is lit by itself.
-    float interpolation = 0.0f;
+    // are, every node is lit by itself. Below 0: an eighth of `error`.
+    float interpolation = -1.0f;
     float alpha = 2.0f;  // blending radius of level l is alpha * spacing of level l; at least 1
     int levels = 0;      // hierarchy levels above the voxels; 0: from the volume's extent
     ShadowMethod shadows = ShadowMethod::Maps;
@@ -25,5 +25,9 @@ struct LightingSettings {
     std::uint64_t memory_limit_bytes = std::uint64_t{2} << 30;  // for shadow maps; resolution is lowered to respect it
     bool energy_balance = true;  // scale each bounce so that emitted = collided + escaped
 };
+
+inline float interpolation_error(const LightingSettings& settings) {
+    return settings.interpolation < 0.0f ? 0.125f * settings.error : settings.interpolation;
+}
 
 }  // namespace brisance

@@ -40,7 +40,7 @@ public:
     Refinement(const LitLattice& lattice, bool moments, const GatherAt& gather)
         : lattice_(lattice), moments_(moments), gather_(gather) {}
 
-    Gathered run(nlohmann::ordered_json& detail) {
+    AdaptiveLight run(nlohmann::ordered_json& detail) {
         int level = static_cast<int>(lattice_.levels().size());
         Gathered light = gather_at(level, needed(level), false);
         auto counts = nlohmann::ordered_json::array({{{"level", level}, {"nodes", count(needed(level))}}});
@@ -52,7 +52,7 @@ public:
             light = refine(level - 1, light, weight, change, counts);
         }
         detail["lit_nodes"] = counts;
-        return light;
+        return {std::move(light), std::move(gathered_), std::move(conserving_)};
     }
 
 private:
@@ -101,8 +101,8 @@ private:
     // Per node of the level, how much of the light gathered at the next finer level counts there, in [0, 1].
     std::vector<float> refinement_weights(int level, const Gathered& light, const std::vector<float>& change) const {
         const LitLevel& l = at(level);
-        const float allowed = kShare * lattice_.input().lighting.interpolation * brightness(level, light);
-        std::vector<float> error = interpolation_error(l, light);
+        const float allowed = kShare * interpolation_error(lattice_.input().lighting) * brightness(level, light);
+        std::vector<float> error = estimated_errors(l, light);
         for (std::size_t i = 0; i < error.size(); ++i)
             error[i] = std::max(error[i], kNextChange * change[i]);
         std::vector<float> weight(error.size(), 0.0f);
@@ -112,14 +112,21 @@ private:
                 if (!l.needed[i] || !(allowed > 0.0f))
                     return;
                 const float part = l.importance[i] * largest_around(l, error, i) / allowed;
-                weight[i] = glm::smoothstep(0.5f, 1.0f, part);
+                weight[i] = beside_surface(l, i) ? 1.0f : glm::smoothstep(0.5f, 1.0f, part);
             },
             4096);
         return weight;
     }
 
+    // Whether a surface may part the node from some node interpolated from it.
+    static bool beside_surface(const LitLevel& l, std::size_t i) {
+        const Occluders* const surfaces = l.pyramid->occluders();
+        return surfaces && surfaces->any_within(l.medium.local_of_node(l.medium.lattice.node(i)),
+                                                std::sqrt(3.0f) * l.medium.spacing);
+    }
+
     // A quarter of the difference between a node and the interpolant through the even nodes around it.
-    static std::vector<float> interpolation_error(const LitLevel& l, const Gathered& light) {
+    static std::vector<float> estimated_errors(const LitLevel& l, const Gathered& light) {
         const BrickLattice& nodes = l.medium.lattice;
         std::vector<float> error(l.needed.size(), 0.0f);
         parallel_for(
@@ -165,13 +172,14 @@ private:
     // Light of the next coarser level at the nodes of this one, mixed with light gathered here where it has weight.
     // `change`: replaced by that of this level's source functions.
     Gathered refine(int level, Gathered& coarse, const std::vector<float>& coarse_weight, std::vector<float>& change,
-                    nlohmann::ordered_json& counts) const {
+                    nlohmann::ordered_json& counts) {
         const std::size_t n = nodes(level).node_count();
+        const std::vector<float> collisions = collisions_around(level + 1, coarse);
         Gathered out;
         out.resize(n, !coarse.scattered.empty(), !coarse.moments.empty());
         std::vector<float> weight(n, 0.0f);
-        interpolate(level, planes(coarse, coarse_weight.size()), coarse_weight, planes(out, n), weight);
-        keep_collisions(level, coarse, out);
+        interpolate(level, coarse, coarse_weight, out, weight);
+        keep_collisions(level, collisions, out);
         std::vector<std::uint8_t> mask(n);
         for (std::size_t i = 0; i < n; ++i)
             mask[i] = weight[i] > 0.0f;
@@ -184,69 +192,100 @@ private:
         }
         for (std::size_t i = 0; i < change.size(); ++i)
             change[i] = needed(level)[i] ? std::abs(change[i] - source(at(level), out, i)) : 0.0f;
+        gathered_ = std::move(weight);
         return out;
     }
 
-    void interpolate(int level, const std::vector<std::span<float>>& from, const std::vector<float>& coarse_weight,
-                     const std::vector<std::span<float>>& to, std::vector<float>& weight) const {
-        const BrickLattice &fine = nodes(level), &coarse = nodes(level + 1);
-        const std::vector<std::uint8_t>& wanted = needed(level);
-        const CoarseSampler sampler{coarse, 1};
+    // Calls `take` with each needed node of the level and the coarser nodes and weights that interpolate there.
+    template <class Take>
+    void for_each_interpolated(int level, const Take& take) const {
+        const BrickLattice& fine = nodes(level);
+        const CoarseSampler sampler{nodes(level + 1), 1};
         parallel_for(
             fine.brick_count(),
             [&](std::size_t b) {
-                for (int k = 0; k < BrickLattice::kNodes; ++k) {
-                    const std::size_t i = b * BrickLattice::kNodes + k;
-                    if (!wanted[i])
-                        continue;
-                    sampler.at(fine.first_node(b) + BrickLattice::node_in_brick(k), [&](std::size_t j, float w) {
-                        for (std::size_t c = 0; c < from.size(); ++c)
-                            to[c][i] += w * from[c][j];
-                        weight[i] += w * coarse_weight[j];
-                    });
-                }
+                for (int k = 0; k < BrickLattice::kNodes; ++k)
+                    if (const std::size_t i = b * BrickLattice::kNodes + k; needed(level)[i])
+                        take(i, [&](const auto& add) {
+                            sampler.at(fine.first_node(b) + BrickLattice::node_in_brick(k), add);
+                        });
             },
             4);
+    }
+
+    // Turns `coarse` into what is interpolated: eighth roots, and of moments their ratios to the fluence.
+    void interpolate(int level, Gathered& coarse, const std::vector<float>& coarse_weight, Gathered& out,
+                     std::vector<float>& weight) const {
+        const std::size_t n = needed(level).size(), below = coarse_weight.size();
+        const auto from = planes(coarse, below), to = planes(out, n);
+        const std::size_t rooted = (coarse.fluence.size() + coarse.scattered.size()) / below;
+        parallel_for(
+            below,
+            [&](std::size_t j) {
+                for (std::size_t c = rooted; c < from.size(); ++c)
+                    from[c][j] = from[c % 3][j] > 0.0f ? from[c][j] / from[c % 3][j] : 0.0f;
+                for (std::size_t c = 0; c < rooted; ++c)
+                    from[c][j] = std::sqrt(std::sqrt(std::sqrt(from[c][j])));
+            },
+            4096);
+        for_each_interpolated(level, [&](std::size_t i, const auto& each) {
+            each([&](std::size_t j, float w) {
+                for (std::size_t c = 0; c < from.size(); ++c)
+                    to[c][i] += w * from[c][j];
+                weight[i] += w * coarse_weight[j];
+            });
+            for (std::size_t c = 0; c < rooted; ++c) {
+                const float square = to[c][i] * to[c][i], fourth = square * square;
+                to[c][i] = fourth * fourth;
+            }
+            for (std::size_t c = rooted; c < from.size(); ++c)
+                to[c][i] *= to[c % 3][i];
+        });
     }
 
     const Medium& medium(int level) const { return level == 0 ? lattice_.medium() : at(level).medium; }
 
-    // Light is dim where smoke is dense, which an interpolant through coarse nodes does not know: it would collide too
-    // often. It is scaled so that as much collides around every coarse node as in the coarse medium.
-    void keep_collisions(int level, const Gathered& coarse, Gathered& out) const {
-        const BrickLattice &fine = nodes(level), &below = nodes(level + 1);
-        const std::vector<Rgb> wanted =
-            project_extinction_times(medium(level + 1), fluence_at_nodes(coarse, needed(level + 1)));
-        const std::vector<Rgb> found = project_extinction_times(medium(level), fluence_at_nodes(out, needed(level)));
-        const std::vector<float> sums = splat_down(fine, flattened(found), 3, 1);
-        std::vector<Rgb> factor(wanted.size(), Rgb(1.0f));
+    // Luminance that collides around each node, of light that conserves energy with the factors found so far.
+    std::vector<float> collisions_around(int level, const Gathered& light) const {
+        std::vector<Rgb> fluence = fluence_at_nodes(light, needed(level));
+        for (std::size_t i = 0; i < conserving_.size(); ++i)
+            fluence[i] *= conserving_[i];
+        fluence = project_extinction_times(medium(level), fluence);
+        std::vector<float> collisions(fluence.size());
+        std::transform(fluence.begin(), fluence.end(), collisions.begin(), luminance);
+        return collisions;
+    }
+
+    // Carries the factors on to the nodes of this level, such that as much collides around every coarser node as there:
+    // `wanted`.
+    void keep_collisions(int level, const std::vector<float>& wanted, const Gathered& out) {
+        std::vector<float> factor = std::move(conserving_);
+        if (factor.empty())
+            factor.assign(wanted.size(), 1.0f);
+        interpolate_factors(level, factor);
+        const std::vector<float> found = splat_down(nodes(level), collisions_around(level, out), 1, 1);
         for (std::size_t i = 0; i < wanted.size(); ++i)
-            for (int c = 0; c < 3; ++c)
-                if (sums[3 * i + c] > 0.0f && wanted[i][c] > 0.0f)
-                    factor[i][c] = std::clamp(wanted[i][c] / sums[3 * i + c], 0.2f, 5.0f);
-        const CoarseSampler sampler{below, 1};
-        const std::size_t n = fine.node_count();
-        const auto fields = planes(out, n);
-        parallel_for(
-            fine.brick_count(),
-            [&](std::size_t b) {
-                for (int k = 0; k < BrickLattice::kNodes; ++k) {
-                    const std::size_t i = b * BrickLattice::kNodes + k;
-                    if (!needed(level)[i])
-                        continue;
-                    Rgb scale(0.0f);
-                    sampler.at(fine.first_node(b) + BrickLattice::node_in_brick(k),
-                               [&](std::size_t j, float w) { scale += w * factor[j]; });
-                    for (std::size_t c = 0; c < fields.size(); ++c)
-                        fields[c][i] *= scale[int(c % 3)];
-                }
-            },
-            4);
+            if (found[i] > 0.0f && wanted[i] > 0.0f)
+                factor[i] *= std::clamp(wanted[i] / found[i], 0.2f, 5.0f);
+        interpolate_factors(level, factor);
+    }
+
+    void interpolate_factors(int level, const std::vector<float>& coarse) {
+        conserving_.assign(needed(level).size(), 1.0f);
+        for_each_interpolated(level, [&](std::size_t i, const auto& each) {
+            float sum = 0.0f, weights = 0.0f;
+            each([&](std::size_t j, float w) {
+                sum += w * coarse[j];
+                weights += w;
+            });
+            if (weights > 0.0f)
+                conserving_[i] = sum / weights;
+        });
     }
 
     // Sharpened among its neighbours, which have the coarser level's light where none was gathered.
     void mix(int level, const std::vector<std::uint8_t>& mask, const std::vector<float>& weight, Gathered& fine,
-             Gathered& out) const {
+             Gathered& out) {
         const std::size_t n = mask.size();
         const auto from = planes(fine, n), to = planes(out, n);
         parallel_for(from.size(), [&](std::size_t c) {
@@ -260,17 +299,21 @@ private:
                 if (mask[i])
                     to[c][i] += weight[i] * (from[c][i] - to[c][i]);
         });
+        for (std::size_t i = 0; i < n; ++i)
+            conserving_[i] += weight[i] * (1.0f - conserving_[i]);
     }
 
     const LitLattice& lattice_;
     bool moments_;
     const GatherAt& gather_;
+    std::vector<float> gathered_;  // of the level lit last, as of AdaptiveLight
+    std::vector<float> conserving_;
 };
 
 }  // namespace
 
-Gathered gather_adaptively(const LitLattice& lattice, bool moments, const GatherAt& gather,
-                           nlohmann::ordered_json& detail) {
+AdaptiveLight gather_adaptively(const LitLattice& lattice, bool moments, const GatherAt& gather,
+                                nlohmann::ordered_json& detail) {
     return Refinement(lattice, moments, gather).run(detail);
 }
 

@@ -7,12 +7,13 @@
 // on down to the medium's own lattice. Nodes that are hidden, or smaller than a pixel, stay coarse. Refinement enters
 // by a weight that fades from 0 to 1, so that a change of the camera or of the medium changes the field continuously.
 //
-// At each level the medium is that level's: mean extinction, with lights splatted to its nodes.
+// At each level the medium is that level's: mean extinction, with lights splatted to its nodes. Between nodes light is
+// interpolated as its eighth root: in smoke it falls almost exponentially. Beside surfaces all nodes are lit.
 #pragma once
 
 #include <functional>
 
-#include "medium_lighting/lit_lattice.h"
+#include "medium_lighting/adaptive_light.h"
 #include "statistics/statistics.h"
 
 namespace brisance {
@@ -27,9 +28,9 @@ struct GatherTarget {
 
 using GatherAt = std::function<Gathered(const GatherTarget&)>;
 
-// Light at the needed nodes of the lattice, prepared for interpolation. `moments`: with them. Adds the number of nodes
-// gathered at each level to `detail`.
-Gathered gather_adaptively(const LitLattice& lattice, bool moments, const GatherAt& gather,
-                           nlohmann::ordered_json& detail);
+// Light at the needed nodes of the lattice. `moments`: with them. Adds the number of nodes gathered at each level to
+// `detail`.
+AdaptiveLight gather_adaptively(const LitLattice& lattice, bool moments, const GatherAt& gather,
+                                nlohmann::ordered_json& detail);
 
 }  // namespace brisance

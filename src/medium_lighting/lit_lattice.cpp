@@ -49,7 +49,7 @@ LitLattice::LitLattice(const MediumLightingInput& input)
                                   input.directional ? std::optional<vec3>(input.eye) : std::nullopt);
     if (!thin_medium_.empty())
         pyramid_.set_homogeneous_bricks(&thin_medium_.homogeneous_bricks());
-    if (input.lighting.interpolation > 0.0f)
+    if (interpolation_error(input.lighting) > 0.0f)
         levels_ = make_lit_levels(pyramid_, needed_, {input.eye, input.pixel_angle}, kLitLevels);
 }
 

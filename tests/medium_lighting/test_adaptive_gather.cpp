@@ -15,10 +15,11 @@ namespace {
 
 using namespace testing;
 
-// Ragged smoke of 32 nodes across that burns to one side; `shift`: of the whole volume, in nodes.
-Medium burst(float extinction, const ivec3& shift = ivec3(0)) {
+// Ragged smoke of 32 nodes across that burns to one side; `shift`: of the whole volume, in nodes; `border`: of empty
+// nodes around it.
+Medium burst(float extinction, const ivec3& shift = ivec3(0), int border = 0) {
     Recipe r;
-    r.box = {ivec3(-16) + shift, ivec3(16) + shift};
+    r.box = {ivec3(-16 - border) + shift, ivec3(16 + border) + shift};
     r.world_from_index = cubic(0.075);
     r.density = [shift](const ivec3& n) {
         return ball(n - shift, dvec3(0.0), 15.0) * (0.4f + noise((n - shift) >> 2, 1));
@@ -134,6 +135,28 @@ TEST(AdaptiveGather, MovesWithTheVolume) {
     for (dvec3* p : {&moved.camera.eye, &moved.camera.target})
         *p += 0.075 * dvec3(shift);
     EXPECT_LT(difference(picture(burst(3.0f, shift), moved), picture(burst(3.0f), shot_of(0.02f))), 0.02);
+}
+
+// What surrounds the smoke without absorbing or scattering does not change how it is lit.
+TEST(AdaptiveGather, EmptyVoxelsAroundTheVolumeChangeNothing) {
+    const Shot shot = shot_of(0.02f);
+    EXPECT_LT(difference(picture(burst(3.0f, ivec3(0), 21), shot), picture(burst(3.0f), shot)), 0.02);
+}
+
+TEST(AdaptiveGather, TurnsWithTheVolume) {
+    const auto turned = [](const dvec3& p) { return dvec3(-p.y, p.x, p.z); };
+    Recipe r;
+    r.box = cube(-16, 16);
+    r.world_from_index = cubic(0.075);
+    const auto upright = [](const ivec3& n) { return ivec3(n.y, -n.x, n.z); };
+    r.density = [=](const ivec3& n) { return ball(upright(n), dvec3(0.0), 15.0) * (0.4f + noise(upright(n) >> 2, 1)); };
+    r.flame = [=](const ivec3& n) { return ball(upright(n), dvec3(3.0, -4.0, 0.0), 6.0) * noise(upright(n) >> 1, 2); };
+    r.settings.smoke.extinction_per_metre = 3.0f;
+    r.settings.smoke.albedo = Rgb(0.7f);
+    r.settings.fire.convention = EmissionConvention::Direct;
+    Shot shot = shot_of(0.02f);
+    shot.camera.eye = turned(shot.camera.eye);
+    EXPECT_LT(difference(picture(make_medium(r), shot), picture(burst(3.0f), shot_of(0.02f))), 0.02);
 }
 
 }  // namespace

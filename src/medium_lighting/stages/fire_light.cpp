@@ -25,13 +25,13 @@ HierarchyLights build_fire_lights(const LitLattice& lattice, Statistics& statist
     return lights;
 }
 
-Gathered gather_at_lattice(const LitLattice& lattice, const HierarchyLights& lights, Statistics& statistics,
-                           Progress& progress) {
+AdaptiveLight gather_at_lattice(const LitLattice& lattice, const HierarchyLights& lights, Statistics& statistics,
+                                Progress& progress) {
     const Stopwatch watch;
     const LightingSettings& settings = lattice.input().lighting;
     StageCost stage{"light from the fire (MV)", 0.0, 0, {}};
     std::vector<LevelCost> costs;
-    Gathered arriving = gather_adaptively(
+    AdaptiveLight arriving = gather_adaptively(
         lattice, lattice.request().moments,
         [&](const GatherTarget& target) {
             return gather_lights(lattice, lights, settings.alpha, target, costs, progress);
@@ -40,11 +40,10 @@ Gathered gather_at_lattice(const LitLattice& lattice, const HierarchyLights& lig
     if (settings.energy_balance) {
         BounceBalance balance;
         balance.emitted = 1.0;
-        arriving.scale(energy_balance_factor(lattice.pyramid(), lights.light,
-                                             fluence_at_nodes(arriving, lattice.needed()), balance));
+        balance_light(lattice, lights.light, arriving, balance);
         stage.detail["balance"].push_back(balance_row(balance, "0"));
     }
-    stage.bytes = most_held(costs) + arriving.bytes();
+    stage.bytes = most_held(costs) + arriving.light.bytes();
     stage.detail["levels"] = level_table(costs);
     stage.seconds = watch.seconds();
     statistics.stages.push_back(stage);
@@ -58,17 +57,21 @@ FireLight light_from_fire(const LitLattice& lattice, Statistics& statistics, Pro
     const bool at_nodes = lattice.input().single;
     HierarchyLights lights = build_fire_lights(lattice, statistics, progress);
     progress.stage("light from the fire (MV)");
+    AdaptiveLight arriving;
     if (at_nodes)
-        out.arriving = gather_at_lattice(lattice, lights, statistics, progress);
+        arriving = gather_at_lattice(lattice, lights, statistics, progress);
     if (lattice.lights_exterior())
         out.exterior =
             std::make_unique<ExteriorLights>(lattice, std::move(lights), lattice.input().lighting.alpha, statistics);
-    if (at_nodes && out.exterior)
-        out.exterior->light_thin_medium(lattice.request(), out.arriving, statistics, progress);
-    if (at_nodes)
-        out.single = lattice.source_function(out.arriving);
-    else
+    if (!at_nodes) {
         out.arriving = lattice.dark();
+        return out;
+    }
+    if (out.exterior)
+        out.exterior->light_thin_medium(lattice.request(), arriving.light, statistics, progress);
+    out.single = lattice.source_function(arriving.light);
+    arriving.conserve(lattice.thin_medium().nodes());
+    out.arriving = std::move(arriving.light);
     return out;
 }
 

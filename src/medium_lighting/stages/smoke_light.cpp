@@ -54,17 +54,16 @@ public:
     // Light at the nodes. Keeps the lights themselves, but not always their grid. `order`: its name in the balance.
     Gathered gather(HierarchyLights& lights, const std::string& order) {
         std::vector<LevelCost> costs;
-        Gathered g = gather_unbalanced(lights, costs);
+        AdaptiveLight light = gather_unbalanced(lights, costs);
         if (levels_.empty())
             levels_ = costs;
         if (!lattice_.input().lighting.energy_balance)
-            return g;
+            return std::move(light.light);
         BounceBalance balance;
         balance.emitted = 1.0;
-        g.scale(
-            energy_balance_factor(lattice_.pyramid(), lights.light, fluence_at_nodes(g, lattice_.needed()), balance));
+        balance_light(lattice_, lights.light, light, balance);
         balances_.push_back(balance_row(balance, order));
-        return g;
+        return std::move(light.light);
     }
 
     StageCost cost(const Gathered& sum) const {
@@ -79,25 +78,25 @@ public:
 
 private:
     // Lights of thin media apart from the rest.
-    Gathered gather_unbalanced(HierarchyLights& lights, std::vector<LevelCost>& costs) {
+    AdaptiveLight gather_unbalanced(HierarchyLights& lights, std::vector<LevelCost>& costs) {
         const std::vector<std::uint32_t>& thin_bricks = lattice_.thin_medium().even_bricks();
         const auto thin = take_thin_medium_lights(lattice_.medium(), thin_bricks, lights);
         const MediumLightingInput& input = lattice_.input();
-        Gathered g = gather_adaptively(
+        AdaptiveLight light = gather_adaptively(
             lattice_, false,
             [&](const GatherTarget& target) {
                 return gather_lights(lattice_, lights, input.scattering.alpha, target, costs, progress_);
             },
             detail_);
         if (!thin)
-            return g;
+            return light;
         LightField of_thin = thin->lights.field(lattice_.pyramid(), input.scattering.alpha, input.lighting, nullptr);
         of_thin.bottom = kFinestThinLights;
         Gathered more = gather_from_outside(of_thin, lattice_.last_request(), costs, progress_);
         prepare_interpolation(lattice_.medium().lattice, lattice_.needed(), more);
-        g.add(more);
+        light.light.add(more);
         give_back(*thin, thin_bricks, lights.light);
-        return g;
+        return light;
     }
 
     const LitLattice& lattice_;

@@ -1,0 +1,34 @@
+// Light that was gathered at some nodes of a lattice and interpolated at the others, and its energy balance.
+//
+// Two demands disagree where light is interpolated. The camera sees smooth changes of the light from one coarse node to
+// the next. Energy is conserved where as much light collides around a coarse node as in the coarse medium, which an
+// interpolant does not know: light is dim where smoke is dense. So the light is kept as the camera sees it, beside a
+// factor per node with which it conserves energy. Light that scatters on is taken with the factor.
+#pragma once
+
+#include <vector>
+
+#include "gathering/receivers.h"
+#include "medium_lighting/lit_lattice.h"
+#include "scattering/multiple_scattering.h"
+
+namespace brisance {
+
+struct AdaptiveLight {
+    Gathered light;  // at the needed nodes, prepared for interpolation by the camera
+
+    // Per node, both empty where all light was gathered at the nodes themselves.
+    std::vector<float> gathered;    // the part of the light that was gathered there, in [0, 1]
+    std::vector<float> conserving;  // the factor with which the light conserves energy
+
+    // Makes `light` the light that conserves energy, but at nodes with `as_it_is` (per node, or empty).
+    void conserve(const std::vector<std::uint8_t>& as_it_is);
+};
+
+// Scales the light so that the medium's own `lights` conserve energy. What interpolation has added to the balance is
+// taken from the interpolated light: with the part p of all collisions at nodes that gathered, their factor is
+// 1 + (s - 1) p where all light's is s.
+void balance_light(const LitLattice& lattice, const ScatteredLight& lights, AdaptiveLight& light,
+                   BounceBalance& balance);
+
+}  // namespace brisance
