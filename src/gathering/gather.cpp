@@ -51,6 +51,13 @@ public:
         fine_ = field.pyramid->view(0);
     }
 
+    // Gathers from the levels [first, last) of the field's grid.
+    void run_levels(std::size_t first, std::size_t last, std::vector<LevelCost>& costs) {
+        const auto& levels = field_.grid->levels;
+        for (std::size_t l = first; l < last; ++l)
+            costs.push_back(run(levels[l], l + 1 == levels.size()));
+    }
+
     LevelCost run(const GridLevel& level, bool top) {
         LevelCost cost;
         cost.level = level.level;
@@ -229,12 +236,9 @@ private:
 // Light of the levels from `first` to `last` at the nodes of a lattice.
 Gathered gather_levels(const LightField& field, const LatticeRequest& request, const NodeReceivers& at,
                        std::size_t first, std::size_t last, std::vector<LevelCost>& costs, Progress& progress) {
-    const auto& levels = field.grid->levels;
     Gathered light;
     light.resize(at.receivers.size(), request.eye.has_value(), request.moments);
-    FarGather gather(field, at.receivers, request.mean_cosine, light, progress);
-    for (std::size_t l = first; l < last; ++l)
-        costs.push_back(gather.run(levels[l], l + 1 == levels.size()));
+    FarGather(field, at.receivers, request.mean_cosine, light, progress).run_levels(first, last, costs);
     return light;
 }
 
@@ -327,9 +331,7 @@ Gathered gather_at_points(const LightField& field, const GridLevel& bottom, cons
     FarGather gather(field, receivers, mean_cosine, out, progress, kind);
     if (field.bottom == 0)
         costs.push_back(gather.run(bottom, false));
-    const auto& levels = field.grid->levels;
-    for (std::size_t l = 0; l < levels.size(); ++l)
-        costs.push_back(gather.run(levels[l], l + 1 == levels.size()));
+    gather.run_levels(0, field.grid->levels.size(), costs);
     return out;
 }
 

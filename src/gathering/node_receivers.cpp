@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "medium/coarse_medium.h"
 
 namespace brisance {
 
@@ -20,52 +21,44 @@ ivec3 node_in_sub_blocks(int k) {
     return {(sub >> 4) * 4 + (in >> 2), (sub >> 2 & 3) * 2 + (in >> 1 & 1), (sub & 3) * 2 + (in & 1)};
 }
 
+std::size_t needed_in_brick(const NodeReceivers& nodes, std::size_t brick) {
+    const auto first = nodes.needed.begin() + std::ptrdiff_t(brick * BrickLattice::kNodes);
+    return std::size_t(std::count_if(first, first + BrickLattice::kNodes, [](std::uint8_t n) { return n != 0; }));
+}
+
+// Fills in block `block` of the receivers from the needed nodes of a brick.
+void place_brick(const Medium& medium, const LatticeRequest& request, int coarsening, std::size_t brick,
+                 std::size_t block, NodeReceivers& out) {
+    std::vector<vec3> points, directions;
+    std::vector<std::uint32_t> nodes;
+    for (int k = 0; k < BrickLattice::kNodes; ++k) {
+        const ivec3 p = node_in_sub_blocks(k);
+        const std::size_t node = brick * BrickLattice::kNodes + BrickLattice::offset_in_brick(p);
+        if (!out.needed[node])
+            continue;
+        nodes.push_back(static_cast<std::uint32_t>(node));
+        points.push_back(medium.local_of_node((out.lattice.first_node(brick) + p) * (1 << coarsening)));
+        if (request.eye)
+            directions.push_back(direction_toward(*request.eye, points.back()));
+    }
+    const ReceiverBlock& all = out.receivers.blocks()[block];
+    nodes.resize(all.group_count * Receivers::kGroup, nodes.back());  // as the receivers themselves are padded
+    std::copy(nodes.begin(), nodes.end(), out.node_of.begin() + std::ptrdiff_t(all.first_group * Receivers::kGroup));
+    out.receivers.set_block(block, points, directions);
+}
+
 // Fills in the receivers from the lattice and its needed nodes.
 void place_receivers(const Medium& medium, const LatticeRequest& request, int coarsening, NodeReceivers& out) {
     std::vector<std::size_t> bricks, counts;
-    for (std::size_t b = 0; b < out.lattice.brick_count(); ++b) {
-        const auto first = out.needed.begin() + std::ptrdiff_t(b * BrickLattice::kNodes);
-        const auto count = std::count_if(first, first + BrickLattice::kNodes, [](std::uint8_t n) { return n != 0; });
-        if (count == 0)
-            continue;
-        bricks.push_back(b);
-        counts.push_back(std::size_t(count));
-    }
+    for (std::size_t b = 0; b < out.lattice.brick_count(); ++b)
+        if (const std::size_t count = needed_in_brick(out, b); count > 0) {
+            bricks.push_back(b);
+            counts.push_back(count);
+        }
     out.receivers = Receivers(counts, request.eye.has_value());
     out.node_of.resize(out.receivers.size());
-    parallel_blocks(bricks.size(), 64, [&](std::size_t begin, std::size_t end) {
-        std::vector<vec3> points, directions;
-        for (std::size_t i = begin; i < end; ++i) {
-            points.clear();
-            directions.clear();
-            const ReceiverBlock& block = out.receivers.blocks()[i];
-            const auto first = out.node_of.begin() + std::ptrdiff_t(block.first_group * Receivers::kGroup);
-            for (int k = 0; k < BrickLattice::kNodes; ++k) {
-                const ivec3 p = node_in_sub_blocks(k);
-                const std::size_t node = bricks[i] * BrickLattice::kNodes + BrickLattice::offset_in_brick(p);
-                if (!out.needed[node])
-                    continue;
-                first[std::ptrdiff_t(points.size())] = static_cast<std::uint32_t>(node);
-                points.push_back(medium.local_of_node((out.lattice.first_node(bricks[i]) + p) * (1 << coarsening)));
-                if (request.eye)
-                    directions.push_back(direction_toward(*request.eye, points.back()));
-            }
-            std::fill(first + std::ptrdiff_t(points.size()),
-                      first + std::ptrdiff_t(block.group_count * Receivers::kGroup),
-                      first[std::ptrdiff_t(points.size()) - 1]);
-            out.receivers.set_block(i, points, directions);
-        }
-    });
-}
-
-// Planes of all fields, each of `size` values.
-template <class Light>
-auto planes(Light& light, std::size_t size) {
-    std::vector<decltype(light.fluence.data())> out;
-    for (auto* field : {&light.fluence, &light.scattered, &light.moments})
-        for (std::size_t first = 0; first < field->size(); first += size)
-            out.push_back(field->data() + first);
-    return out;
+    parallel_for(
+        bricks.size(), [&](std::size_t i) { place_brick(medium, request, coarsening, bricks[i], i, out); }, 64);
 }
 
 // Coarse nodes around one brick of the fine lattice: it reaches from the first node's to beyond the last one's.
@@ -93,10 +86,7 @@ NodeReceivers node_receivers(const Medium& medium, const LatticeRequest& request
 NodeReceivers coarser_receivers(const Medium& medium, const LatticeRequest& request, const NodeReceivers& fine,
                                 int coarsening) {
     NodeReceivers out;
-    std::vector<float> children;
-    coarsen(fine.lattice, std::vector<float>(fine.needed.begin(), fine.needed.end()), 1, out.lattice, children);
-    out.needed.resize(children.size());
-    std::transform(children.begin(), children.end(), out.needed.begin(), [](float sum) { return sum > 0.0f; });
+    out.needed = parents(fine.lattice, fine.needed, out.lattice);
     place_receivers(medium, request, coarsening, out);
     return out;
 }
@@ -112,8 +102,8 @@ int coarsening_of(const LightField& field, const GridLevel& level) {
 }
 
 void add_at_nodes(const NodeReceivers& from, const Gathered& values, Gathered& out) {
-    const auto source = planes(values, from.node_of.size());
-    const auto sum = planes(out, from.needed.size());
+    const auto source = values.planes();
+    const auto sum = out.planes();
     const auto& blocks = from.receivers.blocks();
     parallel_for(
         blocks.size(),
@@ -129,9 +119,8 @@ void add_at_nodes(const NodeReceivers& from, const Gathered& values, Gathered& o
 }
 
 void add_interpolated(const NodeReceivers& from, const Gathered& values, const NodeReceivers& to, Gathered& out) {
-    const std::size_t count = from.needed.size();
-    const auto source = planes(values, count);
-    const auto sum = planes(out, to.needed.size());
+    const auto source = values.planes();
+    const auto sum = out.planes();
     parallel_for(
         to.lattice.brick_count(),
         [&](std::size_t b) {
@@ -141,8 +130,8 @@ void add_interpolated(const NodeReceivers& from, const Gathered& values, const N
             std::array<float, kParents * kParents * kParents> box;
             const ivec3 low = to.lattice.first_node(b) >> 1;
             for (std::size_t c = 0; c < source.size(); ++c) {
-                copy_box(from.lattice, {source[c], count}, 1, low, ivec3(kParents), box);
-                float* const node = sum[c] + b * BrickLattice::kNodes;
+                copy_box(from.lattice, source[c], 1, low, ivec3(kParents), box);
+                float* const node = &sum[c][b * BrickLattice::kNodes];
                 for (int k = 0; k < BrickLattice::kNodes; ++k)
                     if (needed[k])
                         node[k] += between_parents(box.data(), BrickLattice::node_in_brick(k));

@@ -74,6 +74,28 @@ void Gathered::resize(std::size_t receivers, bool camera, bool directional) {
     moments.assign(directional ? receivers * 24 : 0, 0.0f);
 }
 
+namespace {
+
+template <class Value, class Light>
+std::vector<std::span<Value>> planes_of(Light& light) {
+    const std::size_t receivers = light.fluence.size() / 3;
+    std::vector<std::span<Value>> planes;
+    for (auto* field : {&light.fluence, &light.scattered, &light.moments})
+        for (std::size_t first = 0; first < field->size(); first += receivers)
+            planes.push_back(std::span<Value>(*field).subspan(first, receivers));
+    return planes;
+}
+
+}  // namespace
+
+std::vector<std::span<float>> Gathered::planes() {
+    return planes_of<float>(*this);
+}
+
+std::vector<std::span<const float>> Gathered::planes() const {
+    return planes_of<const float>(*this);
+}
+
 void Gathered::add(const Gathered& other) {
     const auto sum = [](std::vector<float>& a, const std::vector<float>& b) {
         parallel_for(
@@ -85,11 +107,10 @@ void Gathered::add(const Gathered& other) {
 }
 
 void Gathered::scale(const Rgb& factor) {
-    for (auto* field : {&fluence, &scattered, &moments}) {
-        const std::size_t plane = field == &moments ? field->size() / 24 : field->size() / 3;
+    const auto all = planes();
+    for (std::size_t c = 0; c < all.size(); ++c)
         parallel_for(
-            field->size(), [&](std::size_t i) { (*field)[i] *= factor[int(i / plane % 3)]; }, kAtOnce);
-    }
+            all[c].size(), [&](std::size_t i) { all[c][i] *= factor[int(c % 3)]; }, kAtOnce);
 }
 
 }  // namespace brisance

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/vec.h"
@@ -74,6 +75,9 @@ struct Gathered {
     std::vector<float> moments;
 
     void resize(std::size_t receivers, bool camera, bool directional);
+    // The channels of all fields in the order above, each of one value per receiver.
+    std::vector<std::span<float>> planes();
+    std::vector<std::span<const float>> planes() const;
     void add(const Gathered& other);
     void scale(const Rgb& factor);
     std::uint64_t bytes() const { return (fluence.size() + scattered.size() + moments.size()) * sizeof(float); }

@@ -58,6 +58,15 @@ std::vector<float> splat_down(BrickLattice lattice, std::vector<float> values, i
     return values;
 }
 
+std::vector<std::uint8_t> parents(const BrickLattice& fine, const std::vector<std::uint8_t>& mask,
+                                  BrickLattice& coarse) {
+    std::vector<float> sums;
+    coarsen(fine, std::vector<float>(mask.begin(), mask.end()), 1, coarse, sums);
+    std::vector<std::uint8_t> out(sums.size());
+    std::transform(sums.begin(), sums.end(), out.begin(), [](float sum) { return sum > 0.0f; });
+    return out;
+}
+
 std::vector<float> flattened(const std::vector<Rgb>& colours) {
     const auto* p = reinterpret_cast<const float*>(colours.data());
     return {p, p + colours.size() * 3};

@@ -1,6 +1,7 @@
 // A medium on a coarser lattice, and fields between the two lattices.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "medium/lattice/extinction_pyramid.h"
@@ -13,6 +14,11 @@ Medium coarse_medium(const ExtinctionPyramid& fine, int level);
 
 // Splats node values (`channels` interleaved) to the lattice 2^levels coarser; keeps their sum.
 std::vector<float> splat_down(BrickLattice lattice, std::vector<float> values, int channels, int levels);
+
+// The nodes of the lattice twice as coarse, which becomes `coarse`, with a share in the interpolation at some node with
+// `mask`.
+std::vector<std::uint8_t> parents(const BrickLattice& fine, const std::vector<std::uint8_t>& mask,
+                                  BrickLattice& coarse);
 
 // Colours as interleaved channels, for splat_down().
 std::vector<float> flattened(const std::vector<Rgb>& colours);

@@ -19,15 +19,6 @@ constexpr float kShare = 0.5f;
 // Light changes from a level to the next finer one by about this part of what it changed by before.
 constexpr float kNextChange = 0.5f;
 
-// Planes of all fields of a Gathered, each of `nodes` values.
-std::vector<std::span<float>> planes(Gathered& g, std::size_t nodes) {
-    std::vector<std::span<float>> out;
-    for (std::vector<float>* field : {&g.fluence, &g.scattered, &g.moments})
-        for (std::size_t c = 0; c * nodes < field->size(); ++c)
-            out.push_back(std::span<float>(*field).subspan(c * nodes, nodes));
-    return out;
-}
-
 // Radiance per unit albedo that node `i` of `n` scatters toward the camera, as luminance.
 float scattered_radiance(const Gathered& g, std::size_t i, std::size_t n) {
     const std::vector<float>& field = g.scattered.empty() ? g.fluence : g.scattered;
@@ -216,8 +207,8 @@ private:
     // Turns `coarse` into what is interpolated: eighth roots, and of moments their ratios to the fluence.
     void interpolate(int level, Gathered& coarse, const std::vector<float>& coarse_weight, Gathered& out,
                      std::vector<float>& weight) const {
-        const std::size_t n = needed(level).size(), below = coarse_weight.size();
-        const auto from = planes(coarse, below), to = planes(out, n);
+        const std::size_t below = coarse_weight.size();
+        const auto from = coarse.planes(), to = out.planes();
         const std::size_t rooted = (coarse.fluence.size() + coarse.scattered.size()) / below;
         parallel_for(
             below,
@@ -287,7 +278,7 @@ private:
     void mix(int level, const std::vector<std::uint8_t>& mask, const std::vector<float>& weight, Gathered& fine,
              Gathered& out) {
         const std::size_t n = mask.size();
-        const auto from = planes(fine, n), to = planes(out, n);
+        const auto from = fine.planes(), to = out.planes();
         parallel_for(from.size(), [&](std::size_t c) {
             for (std::size_t i = 0; i < n; ++i)
                 if (!mask[i])

@@ -25,9 +25,10 @@ struct AdaptiveLight {
     void conserve(const std::vector<std::uint8_t>& as_it_is);
 };
 
-// Scales the light so that the medium's own `lights` conserve energy. What interpolation has added to the balance is
-// taken from the interpolated light: with the part p of all collisions at nodes that gathered, their factor is
-// 1 + (s - 1) p where all light's is s.
+// Scales the light so that the medium's own `lights` conserve energy. What all of it needs is s, and p is the part of
+// collisions at nodes that gathered. All light is scaled by 1 + (s - 1) p. The rest of the balance is what
+// interpolation has added to it, and goes into the conserving factors of interpolated light: with them it is scaled by
+// 1 + (s - 1) (1 + p).
 void balance_light(const LitLattice& lattice, const ScatteredLight& lights, AdaptiveLight& light,
                    BounceBalance& balance);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 #include "core/parallel.h"
@@ -13,17 +14,6 @@ namespace {
 
 // Level of the pyramid that rays to the camera march.
 constexpr int kCameraRayLevel = 2;
-
-// Coarse nodes with a share in the interpolation at some needed node of the lattice twice as fine.
-std::vector<std::uint8_t> nodes_below(const BrickLattice& fine, const std::vector<std::uint8_t>& needed,
-                                      const BrickLattice& coarse) {
-    std::vector<std::uint8_t> out(coarse.node_count(), 0);
-    const CoarseSampler sampler{coarse, 1};
-    for (std::size_t i = 0; i < needed.size(); ++i)
-        if (needed[i])
-            sampler.at(fine.node(i), [&](std::size_t k, float) { out[k] = 1; });
-    return out;
-}
 
 // From the needed nodes to the eye.
 std::vector<float> depths_to_eye(const LitLevel& level, const PointDepths& depths, const vec3& eye) {
@@ -79,8 +69,9 @@ std::vector<LitLevel> make_lit_levels(const ExtinctionPyramid& pyramid, const st
         LitLevel level;
         level.level = l;
         level.medium = coarse_medium(pyramid, l);
-        level.needed = l == 1 ? nodes_below(pyramid.lattice(0), needed, level.medium.lattice)
-                              : nodes_below(pyramid.lattice(l - 1), levels.back().needed, level.medium.lattice);
+        BrickLattice lattice;  // that of the coarse medium
+        level.needed = parents(pyramid.lattice(l - 1), l == 1 ? needed : levels.back().needed, lattice);
+        assert(level.needed.size() == level.medium.lattice.node_count());
         weigh_by_camera(level, depths, camera);
         levels.push_back(std::move(level));
     }

@@ -146,10 +146,8 @@ std::vector<Rgb> fluence_at_nodes(const Gathered& gathered, const std::vector<st
 }
 
 void prepare_interpolation(const BrickLattice& lattice, const std::vector<std::uint8_t>& mask, Gathered& gathered) {
-    const std::size_t n = mask.size();
-    for (auto* field : {&gathered.fluence, &gathered.scattered, &gathered.moments})
-        for (std::size_t c = 0; c * n < field->size(); ++c)
-            sharpen_interpolant(lattice, mask, std::span<float>(*field).subspan(c * n, n));
+    for (const std::span<float> plane : gathered.planes())
+        sharpen_interpolant(lattice, mask, plane);
     for (auto* field : {&gathered.fluence, &gathered.scattered})
         for (float& v : *field)
             v = std::max(v, 0.0f);

@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+"""How cost grows with the resolution of a volume: the lighting grid beside the path tracer, in one run.
+
+The volume of a shot is refined 1, 2, 4, ... times along each axis (brisance_refine adds deterministic detail), rendered
+by both methods, and certified. One row for each refinement: active voxels, pixels, CPU seconds, peak memory, certified
+error with its 95 % interval, and what paths would need for the grid's error: their tracing grows as the inverse square
+of the error, the rest of the run stays.
+
+    benchmarks/growth.py --factors 1 2 4 > growth.md
+    benchmarks/growth.py --shot shots/explosion.json --size 640x360 --factors 1 2
+
+CPU seconds and memory are those of runs without the certificate, as the operating system counts them.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+def run(command):
+    """Runs a command to its end. Returns its processor time [s] and peak memory [bytes]."""
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    message = process.stderr.read().decode(errors="replace")
+    _, status, usage = os.wait4(process.pid, 0)
+    if os.waitstatus_to_exitcode(status) != 0:
+        sys.exit(f"growth.py: {' '.join(command)}\n{message}")
+    return usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024
+
+
+def stage(statistics, name):
+    return next((s for s in statistics["stages"] if s["name"] == name), {"seconds": 0.0, "detail": {}})
+
+
+class Measurement:
+    """One method on one volume: cost without the certificate, error with it."""
+
+    def __init__(self, brisance, settings, folder, label):
+        command = [brisance, "render", *settings, "--progress", "none", "-o"]
+        self.cpu, self.memory = run([*command, str(folder / f"{label}.exr")])
+        run([*command, str(folder / f"{label}.certified.exr"), "--certify"])
+        self.statistics = json.loads((folder / f"{label}.certified.stats.json").read_text())
+        picture = self.statistics["certificate"]["picture"]
+        self.error, self.interval = picture["error"], picture["error_interval"]
+
+    def text(self):
+        low, high = (100.0 * x for x in self.interval)
+        return (f"{self.cpu:.0f} | {self.memory / 2**30:.2f} GiB | "
+                f"{100.0 * self.error:.1f} % ({low:.1f} to {high:.1f})")
+
+
+def row(arguments, factor, folder):
+    volume = folder / f"refined{factor}.vdb"
+    run([str(arguments.build / "benchmarks/brisance_refine"), str(arguments.volume), str(volume), str(factor)])
+    width, height = arguments.size.split("x")
+    settings = [str(arguments.shot), "--set", f"volume.file={volume}", "--set", f"camera.width={width}",
+                "--set", f"camera.height={height}"]
+    brisance = str(arguments.build / "bin/brisance")
+    of_grid = [option for setting in arguments.grid for option in ("--set", setting)]
+    grid = Measurement(brisance, [*settings, *of_grid], folder, f"grid{factor}")
+    paths = Measurement(brisance, [*settings, "--method", "path", "--set", f"tracing.samples={arguments.samples}"],
+                        folder, f"paths{factor}")
+    voxels = stage(grid.statistics, "medium")["detail"]["absorbing_nodes"]
+    tracing = stage(paths.statistics, "path tracing")["detail"]["cpu_seconds"]
+    needed = paths.cpu + tracing * ((paths.error / grid.error) ** 2 - 1.0)
+    volume.unlink()
+    return (f"| {voxels:,} | {int(width) * int(height):,} | {grid.text()} | {paths.text()} | {needed:,.0f} | "
+            f"{needed / grid.cpu:.1f} |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--shot", type=pathlib.Path, default=ROOT / "shots/explosion.json")
+    parser.add_argument("--volume", type=pathlib.Path, default=ROOT / "volumes/explosion.vdb", help="the shot's")
+    parser.add_argument("--factors", type=int, nargs="+", default=[1, 2, 4])
+    parser.add_argument("--size", default="1280x720", help="of the picture")
+    parser.add_argument("--samples", type=int, default=2, help="paths per pixel")
+    parser.add_argument("--grid", nargs="*", default=[], metavar="KEY=VALUE", help="of the lighting grid's shot")
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+    arguments = parser.parse_args()
+    print("| active voxels | pixels | grid: CPU s | memory | error | paths: CPU s | memory | error | "
+          "paths to the grid's error, CPU s | ratio |")
+    print("|" + " --- |" * 10, flush=True)
+    with tempfile.TemporaryDirectory() as folder:
+        for factor in arguments.factors:
+            print(row(arguments, factor, pathlib.Path(folder)), flush=True)
+
+
+if __name__ == "__main__":
+    main()
