@@ -16,7 +16,7 @@ struct LightingSettings {
     float error = 0.02f;
     // Relative error of the light that the picture shows up to which nodes are interpolated from coarser ones. 0: none
     // are, every node is lit by itself. Below 0: an eighth of `error`.
-    float interpolation = -1.0f;
+    float interpolation = 0.0f;
     float alpha = 2.0f;  // blending radius of level l is alpha * spacing of level l; at least 1
     int levels = 0;      // hierarchy levels above the voxels; 0: from the volume's extent
     ShadowMethod shadows = ShadowMethod::Maps;
