@@ -27,6 +27,14 @@ float farthest_distance(const GridLevel& level, const Medium& medium) {
 constexpr float kKnownError = 0.02f, kKnownResolution = 12.0f, kKnownDistances = 10.0f;
 constexpr float kLeastError = 1e-3f;  // beyond it, other errors of the hierarchy remain
 
+// The errors of many lights' maps average out. Fewer lights than these have finer maps, such that the error of the sum
+// stays; together they still cost less than so many lights.
+constexpr float kFewLights = 4096.0f;
+
+float growth_for_few(std::size_t lights) {
+    return std::pow(std::max(1.0f, kFewLights / float(std::max<std::size_t>(lights, 1))), 0.375f);
+}
+
 float times_finer(const LightingSettings& settings) {
     return std::pow(kKnownError / std::max(settings.error, kLeastError), 0.75f);
 }
@@ -49,7 +57,8 @@ ShadowMapLayout map_layout(const LightField& field, const GridLevel& level, bool
     ShadowMapLayout layout;
     // A coarser light's map covers more voxels but its own size blurs its shadows: resolution grows as the square root
     // of the spacing (more gained less than the hierarchy's own error on real smoke), to even numbers.
-    const float growth = std::sqrt(float(1 << std::min(level.level - 1, 6)));
+    const float growth =
+        std::max(std::sqrt(float(1 << std::min(level.level - 1, 6))), growth_for_few(level.position.size()));
     layout.resolution =
         std::min(128, 2 * static_cast<int>(std::lround(0.5f * growth * shadow_resolution(field.settings))));
     layout.distances = shadow_distances(field.settings);

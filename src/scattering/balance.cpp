@@ -7,7 +7,6 @@
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "gathering/escape_probability.h"
-#include "lighting_grid/footprint.h"
 #include "lighting_grid/voxel_lights.h"
 #include "medium/phase.h"
 #include "scattering/escape_rays.h"
@@ -150,6 +149,15 @@ dvec3 absorbed_power(const Medium& medium, std::vector<Rgb> fluence) {
     return collided_power(medium, fluence);
 }
 
+std::vector<ivec3> nodes_of_vertex(FootprintPicker& picker, const ivec3& vertex, int level, int count) {
+    std::vector<ivec3> nodes;
+    if (level > 0)
+        nodes = picker.pick(vertex, count);
+    if (nodes.empty())
+        nodes.push_back(vertex * (1 << level));
+    return nodes;
+}
+
 std::vector<float> collision_probabilities(const ExtinctionPyramid& pyramid, const std::vector<ivec3>& vertices,
                                            int level, int directions, int numbers) {
     const Medium& medium = pyramid.medium();
@@ -164,10 +172,10 @@ std::vector<float> collision_probabilities(const ExtinctionPyramid& pyramid, con
         parallel_blocks(count, 256, [&](std::size_t begin, std::size_t end) {
             FootprintPicker picker(medium, medium.extinction, level);
             for (std::size_t k = begin; k < end; ++k) {
-                const std::vector<ivec3>& starts = picker.pick(vertices[first + k], directions);
+                const std::vector<ivec3> starts = nodes_of_vertex(picker, vertices[first + k], level, directions);
                 Rng rng(Stream::EscapeRay, vertex_key(vertices[first + k]), 1);
                 const double turn_u = rng.next(), turn_v = rng.next();
-                for (std::size_t d = 0; d < starts.size(); ++d) {
+                for (int d = 0; d < directions; ++d) {
                     const std::size_t ray = k * directions + d;
                     escape_direction[ray] = uniform_sphere_direction(std::fmod((d + turn_u) / directions, 1.0),
                                                                      std::fmod(turn_v + d * kGoldenRatio, 1.0));

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "gathering/sh.h"
+#include "lighting_grid/footprint.h"
 #include "medium/lattice/extinction_pyramid.h"
 
 namespace brisance {
@@ -43,8 +44,13 @@ dvec3 directional_intensity(const std::vector<Rgb>& intensity, std::span<const f
 dvec3 collided_power(const Medium& medium, const std::vector<Rgb>& fluence);
 dvec3 absorbed_power(const Medium& medium, std::vector<Rgb> fluence);
 
+// Where light at a vertex of the lattice 2^level coarser starts: nodes under its hat, picked by extinction. The vertex
+// itself on the medium's own lattice, and where no node under its hat has extinction: light between two nodes is
+// emitted at both of them.
+std::vector<ivec3> nodes_of_vertex(FootprintPicker& picker, const ivec3& vertex, int level, int count);
+
 // Collision probability over all directions and over what each vertex stands for: `directions` stratified rays per
-// vertex (of the lattice 2^level coarser than the medium's), each from a node under its hat picked by extinction.
+// vertex (of the lattice 2^level coarser than the medium's), each from one of nodes_of_vertex().
 // `numbers` per vertex: the mean alone (1), or also those of the probability times sh_basis (kCollisionMoments). What
 // collides of a directional light is the sum of its coefficients times these.
 constexpr int kCollisionMoments = 1 + kShMoments;

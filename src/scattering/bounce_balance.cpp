@@ -64,9 +64,7 @@ double escaping_part(const ExtinctionPyramid& pyramid, int level, const Scattere
     for (std::size_t r = 0; r < starts.size(); ++r) {
         if (r == 0 || starts[r].light != starts[r - 1].light) {
             const ivec3 vertex = lattice.node(starts[r].light);
-            nodes = level > 0 ? picker.pick(vertex, kStarts) : std::vector<ivec3>{vertex};
-            if (nodes.empty())
-                nodes.push_back(vertex * (1 << level));
+            nodes = nodes_of_vertex(picker, vertex, level, kStarts);
         }
         const auto pick = std::min(nodes.size() - 1, std::size_t(rng.next_double() * double(nodes.size())));
         rays.set(r, vec3(nodes[pick] - medium.reference_node), starts[r].direction);

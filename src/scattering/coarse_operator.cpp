@@ -17,6 +17,8 @@ namespace {
 
 constexpr int kCollisionDirections = 32;
 constexpr int kBalanceSweeps = 3;
+// Lights at the points of a lattice of needles are gathered a hundred times too brightly by their neighbours.
+constexpr float kLeastFactor = 1e-3f;
 // A node that sharpening leaves less of its unit light than this is about to be emptied.
 constexpr float kEmptied = 0.1f;
 
@@ -128,7 +130,8 @@ void CoarseOperator::balance_nodes(const ExtinctionPyramid& fine) {
         for (std::size_t i : nodes) {
             const float expected = 4.0f * kPi * collision_[i * collision_numbers_];
             if (gathered.fluence[i] > 0.0f && expected > 0.0f)
-                factor_[i] = std::clamp(factor_[i] * std::sqrt(expected / gathered.fluence[i]), 0.2f, 5.0f);
+                factor_[i] = std::clamp(factor_[i] * std::sqrt(expected / gathered.fluence[i]), kLeastFactor,
+                                        1.0f / kLeastFactor);
         }
     }
 }

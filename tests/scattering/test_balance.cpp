@@ -156,6 +156,20 @@ TEST(Balance, CoarseVerticesEscapeAsTheSmokeTheyStandForDoes) {
     EXPECT_NEAR(escaped / all / 0.3324177, 1.0, 0.02);
 }
 
+// Light that leaves between a node with smoke and one without is that of both.
+TEST(Balance, FromANodeWithoutSmokeLightCollidesAsRaysFromItDo) {
+    const Lit lit(make_medium(glowing_ball(16, 2.0f)));
+    const ivec3 beside(0, 17, 0);
+    const auto node = std::size_t(lit.medium.lattice.find_node(beside));
+    ASSERT_EQ(lit.medium.extinction[node], 0.0f);
+    std::vector<Rgb> intensity(lit.intensity.size(), Rgb(0.0f));
+    intensity[node] = Rgb(1.0f);
+    const CollisionEstimate by_rays = estimate_collisions(lit.pyramid, intensity, {}, 100000);
+    const float by_table = collision_probabilities(lit.pyramid, {beside}, 0, 4096).front();
+    EXPECT_GT(by_table, 0.2f);
+    EXPECT_NEAR(by_table / by_rays.fraction.x, 1.0, 0.01);
+}
+
 TEST(Balance, CollisionsAreTheIntegralOfExtinctionTimesFluence) {
     const Lit lit(make_medium(glowing_ball(16, 3.0f)));
     const std::vector<Rgb> fluence(lit.medium.lattice.node_count(), Rgb(4.0f, 2.0f, 0.0f));

@@ -72,6 +72,7 @@ Case plane(const std::string& name, double albedo, double truth, double lattice_
         return scene_of(r, camera_at({0.0, 0.0, 1000.0}, dvec3(0.0), 0.4, 8), 512);
     };
     c.measure = every_pixel_is(Rgb(static_cast<float>(truth)));
+    c.quick = true;
     return c;
 }
 
@@ -105,6 +106,7 @@ Case voxel_scattering() {
     c.tolerance = {0.1, 0.005, "one node is all the light there is"};
     c.scene = [] { return scene_of(single_voxel(1.0, 0.8), camera_at({30.0, 10.0, 100.0}, dvec3(0.0), 0.3, 16), 128); };
     c.measure = like_the_reference(512);
+    c.quick = true;
     return c;
 }
 
