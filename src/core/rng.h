@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
+#include <string_view>
 
 namespace brisance {
 
@@ -33,6 +34,14 @@ enum class Stream : std::uint32_t {
     VolumetricPhoton,
     StoredTrack
 };
+
+// The stream of a module that names its own, apart from those above: FNV-1a (Fowler, Noll, Vo) of the name.
+constexpr Stream stream_of(std::string_view name) {
+    std::uint32_t hash = 0x811c9dc5u;
+    for (const char c : name)
+        hash = (hash ^ static_cast<unsigned char>(c)) * 0x01000193u;
+    return static_cast<Stream>(hash | 0x80000000u);
+}
 
 // SplitMix64 (Steele, Lea, Flood 2014), keyed by identity.
 class Rng {

@@ -1,6 +1,7 @@
 // Settings for gathering the fire's light and scattered light at points of the medium.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace brisance {
@@ -15,7 +16,7 @@ struct LightingSettings {
     // Relative error that shadow maps may add to the picture. Their resolution follows from it where it is not given.
     float error = 0.02f;
     // Relative error of the light that the picture shows up to which nodes are interpolated from coarser ones. 0: none
-    // are, every node is lit by itself. Below 0: an eighth of `error`.
+    // are, every node is lit by itself. Below 0: up to an eighth of `error`.
     float interpolation = 0.0f;
     float alpha = 2.0f;  // blending radius of level l is alpha * spacing of level l; at least 1
     int levels = 0;      // hierarchy levels above the voxels; 0: from the volume's extent
@@ -26,8 +27,13 @@ struct LightingSettings {
     bool energy_balance = true;  // scale each bounce so that emitted = collided + escaped
 };
 
-inline float interpolation_error(const LightingSettings& settings) {
-    return settings.interpolation < 0.0f ? 0.125f * settings.error : settings.interpolation;
+// Of a medium where this many nodes need light. By itself an error is only taken for the time that it saves: half of it
+// where lighting every node takes a second or two, and hardly any where that takes no time.
+inline float interpolation_error(const LightingSettings& settings, std::size_t nodes) {
+    constexpr float kNodesOfASecond = 30000.0f;
+    if (settings.interpolation >= 0.0f)
+        return settings.interpolation;
+    return 0.125f * settings.error * float(nodes) / (float(nodes) + kNodesOfASecond);
 }
 
 }  // namespace brisance

@@ -92,7 +92,7 @@ private:
     // Per node of the level, how much of the light gathered at the next finer level counts there, in [0, 1].
     std::vector<float> refinement_weights(int level, const Gathered& light, const std::vector<float>& change) const {
         const LitLevel& l = at(level);
-        const float allowed = kShare * interpolation_error(lattice_.input().lighting) * brightness(level, light);
+        const float allowed = kShare * lattice_.interpolation_error() * brightness(level, light);
         std::vector<float> error = estimated_errors(l, light);
         for (std::size_t i = 0; i < error.size(); ++i)
             error[i] = std::max(error[i], kNextChange * change[i]);
@@ -274,6 +274,23 @@ private:
         });
     }
 
+    // Collisions of light gathered at nodes of this level, over those that their interpolated light had. What is true
+    // of these nodes is taken to be true of the others, too.
+    float collisions_gained(int level, const std::vector<float>& weight, const Gathered& fine,
+                            const Gathered& out) const {
+        const std::vector<Rgb> now = fluence_at_nodes(fine, needed(level)),
+                               before = fluence_at_nodes(out, needed(level));
+        const std::vector<Rgb> per_fluence =
+            project_extinction_times(medium(level), std::vector<Rgb>(weight.size(), Rgb(1.0f)));
+        double gathered = 0.0, interpolated = 0.0;
+        for (std::size_t i = 0; i < weight.size(); ++i) {
+            const double w = weight[i] * per_fluence[i].x;
+            gathered += w * luminance(now[i]);
+            interpolated += w * conserving_[i] * luminance(before[i]);
+        }
+        return interpolated > 0.0 ? static_cast<float>(gathered / interpolated) : 1.0f;
+    }
+
     // Sharpened among its neighbours, which have the coarser level's light where none was gathered.
     void mix(int level, const std::vector<std::uint8_t>& mask, const std::vector<float>& weight, Gathered& fine,
              Gathered& out) {
@@ -285,13 +302,14 @@ private:
                     from[c][i] = to[c][i];
         });
         prepare_interpolation(nodes(level), needed(level), fine);
+        const float finer = collisions_gained(level, weight, fine, out);
         parallel_for(from.size(), [&](std::size_t c) {
             for (std::size_t i = 0; i < n; ++i)
                 if (mask[i])
                     to[c][i] += weight[i] * (from[c][i] - to[c][i]);
         });
         for (std::size_t i = 0; i < n; ++i)
-            conserving_[i] += weight[i] * (1.0f - conserving_[i]);
+            conserving_[i] = glm::mix(finer * conserving_[i], 1.0f, weight[i]);
     }
 
     const LitLattice& lattice_;

@@ -1,5 +1,7 @@
 #include "medium_lighting/lit_lattice.h"
 
+#include <algorithm>
+
 #include "core/parallel.h"
 #include "medium/phase.h"
 #include "medium_lighting/surface_occluders.h"
@@ -49,7 +51,9 @@ LitLattice::LitLattice(const MediumLightingInput& input)
                                   input.directional ? std::optional<vec3>(input.eye) : std::nullopt);
     if (!thin_medium_.empty())
         pyramid_.set_homogeneous_bricks(&thin_medium_.homogeneous_bricks());
-    if (interpolation_error(input.lighting) > 0.0f)
+    const auto nodes = std::count_if(needed_.begin(), needed_.end(), [](std::uint8_t n) { return n != 0; });
+    interpolation_error_ = brisance::interpolation_error(input.lighting, std::size_t(nodes));
+    if (interpolation_error_ > 0.0f)
         levels_ = make_lit_levels(pyramid_, needed_, {input.eye, input.pixel_angle}, kLitLevels);
 }
 

@@ -27,6 +27,8 @@ public:
     const Occluders* surfaces() const { return surfaces_.get(); }        // null: none
     const std::vector<std::uint8_t>& needed() const { return needed_; }  // per node: whether light is needed there
     std::size_t node_count() const { return needed_.size(); }
+    // Of the light that the picture shows, relative; 0: no node is interpolated.
+    float interpolation_error() const { return interpolation_error_; }
     // Coarser lattices to gather on first, from level 1 on; empty: every node is lit by itself.
     const std::vector<LitLevel>& levels() const { return levels_; }
 
@@ -49,6 +51,7 @@ private:
     std::vector<std::uint8_t> needed_;
     PointDepths depths_;
     ThinMedium thin_medium_;
+    float interpolation_error_ = 0.0f;
     std::vector<LitLevel> levels_;
 };
 

@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "gathering/point_depths.h"
+#include "lighting_grid/voxel_lights.h"
 
 namespace brisance {
 
@@ -38,9 +39,29 @@ std::vector<float> depths_to_eye(const LitLevel& level, const PointDepths& depth
     return out;
 }
 
+// Length of a voxel's longest edge [m].
+float longest_edge(const Medium& medium) {
+    float longest = 0.0f;
+    for (int a = 0; a < 3; ++a)
+        longest = std::max(longest, glm::length(medium.local_from_index[a]));
+    return longest;
+}
+
+// Mean extinction under each node's hat [1/m].
+std::vector<float> extinction_around(const Medium& medium) {
+    const std::vector<Rgb> integral =
+        project_extinction_times(medium, std::vector<Rgb>(medium.extinction.size(), Rgb(1.0f)));
+    std::vector<float> mean(integral.size());
+    const float volume = medium.spacing * medium.spacing * medium.spacing;
+    std::transform(integral.begin(), integral.end(), mean.begin(), [&](const Rgb& i) { return i.x / volume; });
+    return mean;
+}
+
 void weigh_by_camera(LitLevel& level, const PointDepths& depths, const LightingCamera& camera) {
     const std::vector<float> depth = depths_to_eye(level, depths, camera.eye);
-    const float width = level.medium.spacing;
+    const float width = longest_edge(level.medium);
+    // Light at a node beside the smoke is that of the smoke between it and the next.
+    const std::vector<float> around = extinction_around(level.medium);
     level.importance.assign(depth.size(), 0.0f);
     level.visible.assign(depth.size(), 0.0f);
     parallel_for(
@@ -48,7 +69,7 @@ void weigh_by_camera(LitLevel& level, const PointDepths& depths, const LightingC
         [&](std::size_t i) {
             if (!level.needed[i])
                 return;
-            const float own = level.medium.extinction[i] * width;
+            const float own = around[i] * width;
             const float distance =
                 std::max(glm::length(level.medium.local_of_node(level.medium.lattice.node(i)) - camera.eye), width);
             // A voxel is seen from its near side on.

@@ -37,7 +37,7 @@ void expect_even(const std::vector<int>& counts, const char* what) {
 
 TEST(Rng, OneStreamIsUniform) {
     constexpr int kCells = 1024;
-    for (const Stream stream : {Stream::EscapeRay, Stream::Path, Stream::StoredTrack}) {
+    for (const Stream stream : {Stream::EscapeRay, Stream::Path, Stream::StoredTrack, stream_of("photons/roulette")}) {
         Rng singles(stream, 5, 9), doubles(stream, 9, 5);
         std::vector<int> of_singles(kCells), of_doubles(kCells);
         for (int i = 0; i < kDraws; ++i) {
@@ -50,6 +50,14 @@ TEST(Rng, OneStreamIsUniform) {
         expect_even(of_singles, "next");
         expect_even(of_doubles, "next_double");
     }
+}
+
+// Names of modules never meet the numbers of the enumeration.
+TEST(Rng, StreamsThatAreNamedDiffer) {
+    static_assert(stream_of("photons") != stream_of("photons/roulette"));
+    static_assert(stream_of("") > Stream::StoredTrack);
+    Rng one(stream_of("photons"), 3), other(stream_of("photons/roulette"), 3);
+    EXPECT_NE(one.next_double(), other.next_double());
 }
 
 // A histogram of the leading bits is blind to all that follow them.

@@ -188,8 +188,7 @@ Medium smooth_burst(double spacing, const dvec3& offset = dvec3(0.0)) {
 
 // The picture is that of the smoke and not of its voxels: it stays within the error that shadows may add, 2 %.
 TEST(AdaptiveGather, TheSameSmokeInOtherVoxelsLooksTheSame) {
-    Shot shot = shot_of(0.0f);
-    shot.lighting.interpolation = -1.0f;  // auto
+    const Shot shot = shot_of(-1.0f);  // auto
     const RenderedFrame frame = picture(smooth_burst(0.075), shot), finer = picture(smooth_burst(0.0375), shot),
                         moved = picture(smooth_burst(0.075, {0.4, 0.3, -0.2}), shot);
     for (const char* layer : {"", "MV", "MM"}) {

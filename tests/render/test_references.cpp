@@ -84,8 +84,7 @@ struct ReferenceBounds {
 
 class InterpolatedReferences : public ::testing::TestWithParam<ReferenceBounds> {};
 
-// `auto` asks for an eighth of the error by interpolation, beside the 2 % by shadows and what the hierarchy has of its
-// own.
+// Interpolation has an eighth of the error at most, beside the 2 % by shadows and what the hierarchy has of its own.
 TEST_P(InterpolatedReferences, AreMetWithInterpolation) {
     const char* data = std::getenv("BRISANCE_DATA");
     if (!data)
