@@ -16,7 +16,8 @@ constexpr int kExteriorRayLevel = 2;
 // Levels above the medium's own on which light is gathered first.
 constexpr int kLitLevels = 3;
 
-// Nodes whose light the camera or the smoke can look up: corners of voxels with extinction.
+}  // namespace
+
 std::vector<std::uint8_t> nodes_beside_extinction(const Medium& medium) {
     constexpr int kWide = BrickLattice::kSize + 2;
     std::vector<std::uint8_t> needed(medium.lattice.node_count(), 0);
@@ -33,8 +34,6 @@ std::vector<std::uint8_t> nodes_beside_extinction(const Medium& medium) {
     });
     return needed;
 }
-
-}  // namespace
 
 LitLattice::LitLattice(const MediumLightingInput& input)
     : input_(input),

@@ -13,6 +13,9 @@
 
 namespace brisance {
 
+// Per node: whether the camera or the smoke can look up light there, at the corners of voxels with extinction.
+std::vector<std::uint8_t> nodes_beside_extinction(const Medium& medium);
+
 class LitLattice {
 public:
     explicit LitLattice(const MediumLightingInput& input);

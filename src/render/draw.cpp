@@ -180,7 +180,7 @@ Drawn draw_by_many_lights(const DrawInput& input, Statistics& statistics, Progre
 }
 
 std::optional<std::string> why_no_virtual_lights(const Shot& shot, const Plan& plan) {
-    if (shot.method != RenderMethod::LightingGrid)
+    if (shot.method == RenderMethod::Path)
         return "method path uses none";
     if (!plan.surfaces)
         return "there are no surfaces";

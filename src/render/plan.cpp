@@ -88,7 +88,7 @@ using Skip = std::function<void(const std::string& part, const std::string& reas
 std::string choose_owners(Plan& plan, const Shot& shot, const Medium& medium, const Skip& skip) {
     const Choice choice = choose_scattering(shot, medium);
     plan.scattering_choice = choice.method;
-    const bool many_lights = shot.method == RenderMethod::LightingGrid;
+    const bool many_lights = shot.method != RenderMethod::Path;
     const ScatteringMethod* const method = many_lights ? find_scattering_method(choice.method) : nullptr;
     const bool twice = plan.multiple || plan.needs(Cell::SM);
     plan.scattering_method = twice ? method : nullptr;
@@ -114,7 +114,7 @@ void skip_without_emission(const Plan& plan, const Shot& shot, const Medium& med
 
 void skip_with_emission(const Plan& plan, const Shot& shot, const Medium& medium, const std::string& owner,
                         const Skip& skip) {
-    const bool many_lights = shot.method == RenderMethod::LightingGrid, scatters = medium.scatters();
+    const bool many_lights = shot.method != RenderMethod::Path, scatters = medium.scatters();
     const std::string dark = medium.max_extinction <= 0.0f ? "there is no smoke to scatter" : "the albedo is zero";
     if (!plan.single)
         skip("MV", scatters ? "scattering.bounces is 0" : dark);
@@ -148,7 +148,7 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
         skip("column V, row M, column M", "no volume in the shot");
         return plan;
     }
-    const bool many_lights = shot.method == RenderMethod::LightingGrid;
+    const bool many_lights = shot.method != RenderMethod::Path;
     const bool lights_smoke = plan.single || plan.needs(Cell::MA) || plan.needs(Cell::MS);
     plan.directional = many_lights && lights_smoke && medium.mean_cosine != 0.0f;
     if (many_lights && lights_smoke && !plan.directional)

@@ -9,6 +9,7 @@
 #include "core/stopwatch.h"
 #include "reference/trace_picture.h"
 #include "render/checkpoint_key.h"
+#include "render/choose_method.h"
 #include "render/draw.h"
 #include "render/frame_input.h"
 #include "render/plan.h"
@@ -87,8 +88,12 @@ void draw_into(RenderedFrame& out, const DrawInput& input, Progress& progress) {
     out.metadata.samples_per_pixel = drawn.samples_per_pixel;
 }
 
-void render_into(RenderedFrame& out, const Shot& shot, const Medium& medium, const Surroundings* surroundings,
+void render_into(RenderedFrame& out, const Shot& asked, const Medium& medium, const Surroundings* surroundings,
                  const CameraSettings& camera_settings, const Checkpoint& checkpoint, Progress& progress) {
+    const Shot shot = asked.method == RenderMethod::Automatic
+                          ? with_method(asked, forecast_methods(asked, medium, surroundings, camera_settings,
+                                                                out.statistics, progress))
+                          : asked;
     const Plan plan = plan_cells(shot, medium, surroundings);
     out.statistics.cells = plan.cells();
     out.statistics.skipped = plan.skipped;

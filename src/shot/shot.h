@@ -21,7 +21,8 @@ namespace brisance {
 
 enum class RenderMethod {
     LightingGrid,  // many lights, lighting grid hierarchies
-    Path           // the reference path tracer
+    Path,          // the reference path tracer
+    Automatic      // whichever is likely to reach lighting.error sooner
 };
 
 // Its coefficients add to those of the shot's own volume.

@@ -305,6 +305,15 @@ class Rendering(VolumeCase):
                     "output.png=false", "--set", "output.statistics=false")
         self.assertEqual(self.outputs(), ["a.001.exr", "a.004.exr"])
 
+    def test_automatic_method_is_one_for_all_frames(self):
+        pattern = self.make_sequence([1, 2, 4])
+        done = self.expect(0, "render", pattern, *SMALL, "-f", "1,2", "-o", self.out / "a.#.exr", "--method", "auto",
+                           "--set", "output.png=false", says="method: the ")
+        self.assertEqual(done.stderr.count("method: the "), 1)
+        for frame in (1, 2):
+            stages = json.loads((self.out / f"a.{frame}.stats.json").read_text(encoding="utf-8"))["stages"]
+            self.assertNotIn("choice of the method", [stage["name"] for stage in stages])
+
     def test_keep_going(self):
         pattern = self.make_sequence([1, 2, 4])
         (self.folder / "burst_0002.vdb").write_text("damaged", encoding="utf-8")

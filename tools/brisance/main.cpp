@@ -90,8 +90,8 @@ void add_shot_options(CLI::App& command, RenderOptions& options) {
     command.add_option("-o,--output", options.output,
                        "The EXR, with #### for the frame number, or a folder; PNG and statistics go beside it");
     command.add_option("-f,--frames", options.frames, "Frames: 1001-1100x2,1200; without it, all that are on disk");
-    command.add_option("--method", options.method, "lighting_grid or path: the same as --set method=...")
-        ->check(CLI::IsMember({"lighting_grid", "path"}))
+    command.add_option("--method", options.method, "lighting_grid, path or auto: the same as --set method=...")
+        ->check(CLI::IsMember({"lighting_grid", "path", "auto"}))
         ->type_name("METHOD");
     add_common_options(command, options);
     command.add_flag("--keep-going", options.keep_going, "Renders the remaining frames when one fails");

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -15,6 +16,7 @@
 #include "film/write_image.h"
 #include "load_shot.h"
 #include "outputs.h"
+#include "render/choose_method.h"
 #include "render/render_frame.h"
 #include "shot/write_shot.h"
 #include "volume/vdb_header.h"
@@ -201,12 +203,26 @@ void write_frame(RenderedFrame& frame, const Shot& shot, const fs::path& volume,
     }
 }
 
+// method=auto: one for all frames, by the largest file of all that are on disk, whichever of them this call renders.
+Shot with_one_method(const Shot& shot, Progress& progress) {
+    if (shot.method != RenderMethod::Automatic || volume_pattern(shot).empty())
+        return shot;
+    const std::vector<FrameFile> all = resolve_frames(shot, std::nullopt);
+    if (all.size() < 2)
+        return shot;  // the frame itself decides
+    const auto smaller = [](const FrameFile& a, const FrameFile& b) {
+        return fs::file_size(a.file) < fs::file_size(b.file);
+    };
+    const FrameFile& largest = *std::max_element(all.begin(), all.end(), smaller);
+    return with_method(shot, forecast_methods(shot, largest.file, largest.frame, progress));
+}
+
 }  // namespace
 
 int run_render(const RenderOptions& options) {
     TextProgress progress(options.progress);
     const ThreadLimit limit(options.threads);
-    const Shot shot = load(options, progress);
+    Shot shot = load(options, progress);
     if (options.print_config) {
         progress.finish();
         std::fputs(to_json(shot).c_str(), stdout);
@@ -217,6 +233,10 @@ int run_render(const RenderOptions& options) {
     const std::vector<FrameOutput> outputs = plan_outputs(shot, options.output, frames, options.input);
     const std::vector<fs::path> checkpoints =
         plan_checkpoints(shot, options.checkpoint, frames, outputs, options.input);
+    if (!attempt(
+            "", [&] { shot = with_one_method(shot, progress); }, progress, failures) &&
+        !options.keep_going)
+        return static_cast<int>(failures.first);
     PngExposure exposure(shot);
     for (std::size_t i = 0; i < frames.size(); ++i) {
         const FrameFile& frame = frames[i];

@@ -4,8 +4,12 @@ namespace brisance {
 
 void add_tracing_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
-        "method", "lighting_grid: noise-free, fast; path: the unbiased reference path tracer",
-        choice<RenderMethod>({{"lighting_grid", RenderMethod::LightingGrid}, {"path", RenderMethod::Path}}),
+        "method",
+        "lighting_grid: noise-free, fast; path: the unbiased reference path tracer; auto: whichever is likely to reach "
+        "lighting.error sooner, one for all frames",
+        choice<RenderMethod>({{"lighting_grid", RenderMethod::LightingGrid},
+                              {"path", RenderMethod::Path},
+                              {"auto", RenderMethod::Automatic}}),
         [](Shot & s) -> auto& { return s.method; }));
     keys.push_back(make_key(
         "tracing.seed", "other seeds draw other random numbers: independent renders of one picture", whole(0, 1 << 30),

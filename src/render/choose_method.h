@@ -1,0 +1,43 @@
+// method=auto: the lighting grid or the path tracer, whichever is likely to reach lighting.error sooner.
+//
+// Both are forecast from counts, never from a clock, so that a shot takes the same method on any machine and however
+// many threads there are. The lighting grid's time is that of its nodes and of the camera's rays. The path tracer's is
+// that of the paths it needs: a pilot of a few pixels measures their variance, which falls as one over their number,
+// and their length. Seconds are of one core; forecasts were within a factor of 2.1 of what was measured, so that where
+// both are near each other either may be taken.
+//
+// Surfaces and lamps are not forecast: shots with them take the lighting grid.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "camera/settings.h"
+#include "core/progress.h"
+#include "emitters/surroundings.h"
+#include "medium/medium.h"
+#include "shot/shot.h"
+#include "statistics/statistics.h"
+
+namespace brisance {
+
+struct MethodForecast {
+    RenderMethod method = RenderMethod::LightingGrid;
+    std::string reason;         // one line
+    double grid_seconds = 0.0;  // of one core; both 0 where nothing was forecast
+    double path_seconds = 0.0;
+    double samples = 0.0;  // camera rays per pixel that paths need
+};
+
+// Appends its own cost to the stages.
+MethodForecast forecast_methods(const Shot& shot, const Medium& medium, const Surroundings* surroundings,
+                                const CameraSettings& camera, Statistics& statistics, Progress& progress);
+
+// The same for a frame that is not loaded, whose file may be empty (frame_input.h).
+MethodForecast forecast_methods(const Shot& shot, const std::filesystem::path& volume, int frame, Progress& progress);
+
+// The shot with the method taken. Paths are traced until their standard error is lighting.error, or tracing.error
+// where the shot states one.
+Shot with_method(Shot shot, const MethodForecast& forecast);
+
+}  // namespace brisance

@@ -1,0 +1,128 @@
+// method=auto takes the method that reaches the error asked for sooner, and renders as that method does.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/parallel.h"
+#include "fixtures/media.h"
+#include "fixtures/sets.h"
+#include "render/choose_method.h"
+#include "render/render_frame.h"
+
+namespace brisance {
+namespace {
+
+using namespace testing;
+
+// Glowing smoke of so many nodes in radius.
+Medium glow(int radius, float albedo = 0.7f) {
+    Recipe r = glowing_ball(radius, 2.0f);
+    r.settings.smoke.albedo = Rgb(albedo);
+    return make_medium(r);
+}
+
+Shot shot_of(int size, float error = 0.02f) {
+    Shot shot;
+    shot.method = RenderMethod::Automatic;
+    shot.lighting.error = error;
+    shot.camera_given = true;
+    shot.camera.eye = {0.3, -5.0, 1.5};
+    shot.camera.target = {0.0, 0.0, 0.0};
+    shot.camera.vertical_fov_degrees = 32.0;
+    shot.camera.width = shot.camera.height = size;
+    return shot;
+}
+
+MethodForecast forecast(const Shot& shot, const Medium& medium, const Surroundings* surroundings = nullptr) {
+    Statistics statistics;
+    Progress silent;
+    return forecast_methods(shot, medium, surroundings, shot.camera, statistics, silent);
+}
+
+TEST(ChooseMethod, SmallPicturesTakePathsAndLargeOnesTheGrid) {
+    const Medium medium = glow(24);
+    EXPECT_EQ(forecast(shot_of(8), medium).method, RenderMethod::Path);
+    EXPECT_EQ(forecast(shot_of(1024), medium).method, RenderMethod::LightingGrid);
+}
+
+// Four times the pixels are four times the paths, and so is half the error. The grid's nodes do not see either.
+TEST(ChooseMethod, PathsCostWhatPixelsAndErrorAsk) {
+    const Medium medium = glow(16);
+    const MethodForecast one = forecast(shot_of(128, 0.01f), medium), finer = forecast(shot_of(128, 0.005f), medium),
+                         larger = forecast(shot_of(256, 0.01f), medium);
+    EXPECT_NEAR(finer.path_seconds / one.path_seconds, 4.0, 0.1);
+    EXPECT_NEAR(larger.path_seconds / one.path_seconds, 4.0, 0.8);
+    EXPECT_EQ(finer.grid_seconds, one.grid_seconds);
+}
+
+// The pilot says what the path tracer then finds: its own stratification makes it better, by up to a half.
+TEST(ChooseMethod, ForecastsTheSamplesThatPathsNeed) {
+    const Medium medium = glow(12);
+    Shot shot = shot_of(64, 0.03f);
+    const MethodForecast f = forecast(shot, medium);
+    shot = with_method(shot, {RenderMethod::Path, "", 0.0, 0.0, 0.0});
+    Progress silent;
+    const double taken = render_medium(shot, medium, silent).metadata.samples_per_pixel;
+    EXPECT_GT(f.samples / taken, 0.67);
+    EXPECT_LT(f.samples / taken, 2.0);
+}
+
+TEST(ChooseMethod, RendersAsTheMethodThatItTakes) {
+    const Medium medium = glow(8);
+    for (const int size : {8, 400}) {
+        Shot shot = shot_of(size, 0.05f);
+        shot.camera.samples_per_axis = 1;
+        Progress silent;
+        const RenderedFrame frame = render_medium(shot, medium, silent);
+        const MethodForecast f = forecast(shot, medium);
+        EXPECT_EQ(f.method, size == 8 ? RenderMethod::Path : RenderMethod::LightingGrid);
+        EXPECT_EQ(frame.image.layer("").pixels,
+                  render_medium(with_method(shot, f), medium, silent).image.layer("").pixels);
+        EXPECT_EQ(frame.statistics.stages.front().name, "choice of the method");
+        EXPECT_EQ(frame.halves.empty(), size != 8);
+    }
+}
+
+// The error of what paths render is the one asked for.
+TEST(ChooseMethod, PathsEndAtTheErrorAskedFor) {
+    Shot shot = shot_of(8, 0.04f);
+    Progress silent;
+    const RenderedFrame frame = render_medium(shot, glow(24), silent);
+    ASSERT_EQ(frame.halves.size(), 2u);
+    double noise = 0.0, norm = 0.0;
+    const std::vector<float>&a = frame.halves[0].layer("").pixels, &b = frame.halves[1].layer("").pixels;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        if (i % 4 == 3)
+            continue;  // alpha
+        noise += std::pow(double(a[i]) - b[i], 2);
+        norm += std::pow(double(a[i]) + b[i], 2);
+    }
+    EXPECT_LE(std::sqrt(noise / norm), 0.0401);
+}
+
+TEST(ChooseMethod, IsTheSameOnAnyNumberOfThreads) {
+    const Medium medium = glow(12);
+    const auto seconds = [&](int threads) {
+        const ThreadLimit limit(threads);
+        const MethodForecast f = forecast(shot_of(64), medium);
+        return std::pair(f.path_seconds, f.grid_seconds);
+    };
+    EXPECT_EQ(seconds(1), seconds(2));
+}
+
+TEST(ChooseMethod, WhatIsNotForecastIsLitByTheGrid) {
+    Scene scene;
+    add_quad(scene, {-4, -4, -1.1f}, {8, 0, 0}, {0, 8, 0}, lambert(0.7f));
+    const Surroundings set(std::move(scene), {});
+    const auto grid = [](const MethodForecast& f) {
+        return f.method == RenderMethod::LightingGrid && f.path_seconds == 0.0 && !f.reason.empty();
+    };
+    EXPECT_TRUE(grid(forecast(shot_of(8), glow(8), &set)));
+    EXPECT_TRUE(grid(forecast(shot_of(8), glow(8, 0.0f))));
+    Shot rays = shot_of(8);
+    rays.scattering_methods.method = RayLightsMethod::kName;
+    EXPECT_TRUE(grid(forecast(rays, glow(8))));
+}
+
+}  // namespace
+}  // namespace brisance
