@@ -274,21 +274,21 @@ private:
         });
     }
 
-    // Collisions of light gathered at nodes of this level, over those that their interpolated light had. What is true
-    // of these nodes is taken to be true of the others, too.
+    // Collisions at nodes of this level after gathering there, over those of the interpolated light before. Nodes that
+    // are not gathered are given the same ratio. It is 1 where none are.
     float collisions_gained(int level, const std::vector<float>& weight, const Gathered& fine,
                             const Gathered& out) const {
-        const std::vector<Rgb> now = fluence_at_nodes(fine, needed(level)),
-                               before = fluence_at_nodes(out, needed(level));
+        const std::vector<Rgb> gathered = fluence_at_nodes(fine, needed(level)),
+                               interpolated = fluence_at_nodes(out, needed(level));
         const std::vector<Rgb> per_fluence =
             project_extinction_times(medium(level), std::vector<Rgb>(weight.size(), Rgb(1.0f)));
-        double gathered = 0.0, interpolated = 0.0;
+        double before = 0.0, after = 0.0;
         for (std::size_t i = 0; i < weight.size(); ++i) {
-            const double w = weight[i] * per_fluence[i].x;
-            gathered += w * luminance(now[i]);
-            interpolated += w * conserving_[i] * luminance(before[i]);
+            const float was = conserving_[i] * luminance(interpolated[i]);
+            before += double(per_fluence[i].x) * was;
+            after += double(per_fluence[i].x) * glm::mix(was, luminance(gathered[i]), weight[i]);
         }
-        return interpolated > 0.0 ? static_cast<float>(gathered / interpolated) : 1.0f;
+        return before > 0.0 ? static_cast<float>(after / before) : 1.0f;
     }
 
     // Sharpened among its neighbours, which have the coarser level's light where none was gathered.
@@ -302,14 +302,14 @@ private:
                     from[c][i] = to[c][i];
         });
         prepare_interpolation(nodes(level), needed(level), fine);
-        const float finer = collisions_gained(level, weight, fine, out);
+        const float gained = collisions_gained(level, weight, fine, out);
         parallel_for(from.size(), [&](std::size_t c) {
             for (std::size_t i = 0; i < n; ++i)
                 if (mask[i])
                     to[c][i] += weight[i] * (from[c][i] - to[c][i]);
         });
         for (std::size_t i = 0; i < n; ++i)
-            conserving_[i] = glm::mix(finer * conserving_[i], 1.0f, weight[i]);
+            conserving_[i] = glm::mix(gained * conserving_[i], 1.0f, weight[i]);
     }
 
     const LitLattice& lattice_;

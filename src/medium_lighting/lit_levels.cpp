@@ -52,8 +52,8 @@ std::vector<float> extinction_around(const Medium& medium) {
     const std::vector<Rgb> integral =
         project_extinction_times(medium, std::vector<Rgb>(medium.extinction.size(), Rgb(1.0f)));
     std::vector<float> mean(integral.size());
-    const float volume = medium.spacing * medium.spacing * medium.spacing;
-    std::transform(integral.begin(), integral.end(), mean.begin(), [&](const Rgb& i) { return i.x / volume; });
+    std::transform(integral.begin(), integral.end(), mean.begin(),
+                   [&](const Rgb& i) { return i.x / medium.voxel_volume; });
     return mean;
 }
 

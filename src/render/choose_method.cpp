@@ -95,7 +95,9 @@ Pilot run_pilot(const Shot& shot, const Medium& medium, const CameraSettings& se
         square += p.square;
         segments += p.paths.paths + p.paths.scatterings;
     }
-    return {square > 0.0 ? variance / square : 0.0, double(segments) / (double(count) * double(kPilotSamples))};
+    // Where all is black, so is the picture; where noise hides all light, no number of paths is known to suffice.
+    const double noise = variance > 0.0 ? variance / std::max(square, 1e-12 * variance) : 0.0;
+    return {noise, double(segments) / (double(count) * double(kPilotSamples))};
 }
 
 MethodForecast without_forecast(const std::string& reason) {

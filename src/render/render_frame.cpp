@@ -111,6 +111,8 @@ void render_into(RenderedFrame& out, const Shot& asked, const Medium& medium, co
     out.metadata.camera_from_world = camera.camera_from_world();
     out.metadata.vertical_fov_degrees = camera_settings.vertical_fov_degrees;
     out.metadata.text["brisance/cells"] = joined(plan.cells());
+    if (asked.method == RenderMethod::Automatic)
+        out.metadata.text["brisance/method"] = shot.method == RenderMethod::Path ? "path" : "lighting_grid";
     out.statistics.peak_resident_bytes = peak_resident_bytes();
 }
 

@@ -80,6 +80,7 @@ TEST(ChooseMethod, RendersAsTheMethodThatItTakes) {
                   render_medium(with_method(shot, f), medium, silent).image.layer("").pixels);
         EXPECT_EQ(frame.statistics.stages.front().name, "choice of the method");
         EXPECT_EQ(frame.halves.empty(), size != 8);
+        EXPECT_EQ(frame.metadata.text.at("brisance/method"), size == 8 ? "path" : "lighting_grid");
     }
 }
 
