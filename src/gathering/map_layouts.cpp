@@ -27,8 +27,8 @@ float farthest_distance(const GridLevel& level, const Medium& medium) {
 constexpr float kKnownError = 0.02f, kKnownResolution = 12.0f, kKnownDistances = 10.0f;
 constexpr float kLeastError = 1e-3f;  // beyond it, other errors of the hierarchy remain
 
-// The errors of many lights' maps average out. Fewer lights than these have finer maps, such that the error of the sum
-// stays; together they still cost less than so many lights.
+// The errors of many lights' maps average out. A level of fewer lights than this has finer maps, so that the error of
+// their sum is that of so many lights. All maps together still cost less.
 constexpr float kFewLights = 4096.0f;
 
 float growth_for_few(std::size_t lights) {

@@ -27,9 +27,9 @@ struct LightingSettings {
     bool energy_balance = true;  // scale each bounce so that emitted = collided + escaped
 };
 
-// Of a medium where this many nodes need light. By itself an error is only taken for the time that it saves: half of it
-// where lighting every node takes a second or two, and hardly any where that takes no time.
-inline float interpolation_error(const LightingSettings& settings, std::size_t nodes) {
+// The error that interpolation may add in a medium where this many nodes need light. Without a stated one, an error is
+// tolerated only where it saves time: half of the largest where lighting every node takes a second or two.
+inline float tolerated_interpolation(const LightingSettings& settings, std::size_t nodes) {
     constexpr float kNodesOfASecond = 30000.0f;
     if (settings.interpolation >= 0.0f)
         return settings.interpolation;

@@ -51,7 +51,7 @@ LitLattice::LitLattice(const MediumLightingInput& input)
     if (!thin_medium_.empty())
         pyramid_.set_homogeneous_bricks(&thin_medium_.homogeneous_bricks());
     const auto nodes = std::count_if(needed_.begin(), needed_.end(), [](std::uint8_t n) { return n != 0; });
-    interpolation_error_ = brisance::interpolation_error(input.lighting, std::size_t(nodes));
+    interpolation_error_ = tolerated_interpolation(input.lighting, std::size_t(nodes));
     if (interpolation_error_ > 0.0f)
         levels_ = make_lit_levels(pyramid_, needed_, {input.eye, input.pixel_angle}, kLitLevels);
 }

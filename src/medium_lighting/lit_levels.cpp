@@ -48,7 +48,7 @@ float longest_edge(const Medium& medium) {
 }
 
 // Mean extinction under each node's hat [1/m].
-std::vector<float> extinction_around(const Medium& medium) {
+std::vector<float> extinction_under_hats(const Medium& medium) {
     const std::vector<Rgb> integral =
         project_extinction_times(medium, std::vector<Rgb>(medium.extinction.size(), Rgb(1.0f)));
     std::vector<float> mean(integral.size());
@@ -61,7 +61,7 @@ void weigh_by_camera(LitLevel& level, const PointDepths& depths, const LightingC
     const std::vector<float> depth = depths_to_eye(level, depths, camera.eye);
     const float width = longest_edge(level.medium);
     // Light at a node beside the smoke is that of the smoke between it and the next.
-    const std::vector<float> around = extinction_around(level.medium);
+    const std::vector<float> around = extinction_under_hats(level.medium);
     level.importance.assign(depth.size(), 0.0f);
     level.visible.assign(depth.size(), 0.0f);
     parallel_for(

@@ -7,26 +7,28 @@
 
 #include "camera/camera.h"
 #include "camera_rays/picture.h"
+#include "core/available_memory.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "medium_lighting/lit_lattice.h"
 #include "reference/trace_picture.h"
 #include "render/frame_input.h"
+#include "render/memory_need.h"
 #include "render/plan.h"
 
 namespace brisance {
 
 namespace {
 
-// Seconds of one core at 2.5 GHz, measured on four volumes of 0.2 to 0.7 million nodes: 50 to 57 microseconds a node
-// for all orders, 80 with directional light; 0.7 to 1.9 a segment of a path; about 1 a ray of the camera.
+// Seconds of one core at 2.5 GHz, fitted to four pictures of 0.2 to 0.7 million nodes: 50 to 57 microseconds a node for
+// all orders, 80 with directional light; 0.7 to 1.9 a segment of a path; about 1 a ray of the camera.
 constexpr double kNode = 55e-6, kDirectionalNode = 80e-6, kSegment = 1.2e-6, kCameraRay = 1e-6;
 constexpr double kSingleOrder = 0.4;       // of a node's time, with one scattering
 constexpr double kTrackingOfVoxel = 2e-6;  // set-up of the path tracer
 
 constexpr std::size_t kPilotPixels = 2048;
 constexpr int kPilotSamples = 8;
-constexpr int kLeastSamples = 16;  // fewer know their own error badly
+constexpr int kLeastSamples = 16;  // the error of fewer is badly known
 
 double error_wanted(const Shot& shot) {
     return shot.tracing.error > 0.0 ? shot.tracing.error : double(shot.lighting.error);
@@ -95,13 +97,17 @@ Pilot run_pilot(const Shot& shot, const Medium& medium, const CameraSettings& se
         square += p.square;
         segments += p.paths.paths + p.paths.scatterings;
     }
-    // Where all is black, so is the picture; where noise hides all light, no number of paths is known to suffice.
+    // A black pilot needs no paths. Where noise hides all light, paths are taken to need far too many.
     const double noise = variance > 0.0 ? variance / std::max(square, 1e-12 * variance) : 0.0;
     return {noise, double(segments) / (double(count) * double(kPilotSamples))};
 }
 
-MethodForecast without_forecast(const std::string& reason) {
-    return {RenderMethod::LightingGrid, "method: the lighting grid, since " + reason, 0.0, 0.0, 0.0};
+MethodForecast without_forecast(RenderMethod method, const std::string& reason) {
+    MethodForecast out;
+    out.method = method;
+    out.reason = fmt::format("method: {}, since {}",
+                             method == RenderMethod::Path ? "the path tracer" : "the lighting grid", reason);
+    return out;
 }
 
 MethodForecast from_counts(const Shot& shot, const Medium& medium, const Plan& plan, const CameraSettings& camera) {
@@ -122,40 +128,54 @@ MethodForecast from_counts(const Shot& shot, const Medium& medium, const Plan& p
     return out;
 }
 
+bool fits_in_memory(const Shot& shot, const Medium& medium, const Plan& plan) {
+    const std::optional<std::uint64_t> available = available_memory();
+    return !available || bytes_to_light(medium, plan.directional, shot.lighting.memory_limit_bytes) <= *available;
+}
+
+MethodForecast forecast(const Shot& shot, const Medium& medium, const Plan& plan, const CameraSettings& camera) {
+    const auto grid_since = [](const std::string& reason) {
+        return without_forecast(RenderMethod::LightingGrid, reason);
+    };
+    if (plan.surfaces || plan.emitters)
+        return grid_since("shots with surfaces or lamps are not forecast");
+    if (plan.scattering_method)
+        return grid_since("scattering.method is " + plan.scattering_choice);
+    if (!plan.single)
+        return grid_since("no light is scattered");
+    if (!fits_in_memory(shot, medium, plan))
+        return without_forecast(RenderMethod::Path, "the lighting grid needs more memory than there is");
+    return from_counts(shot, medium, plan, camera);
+}
+
 }  // namespace
 
 MethodForecast forecast_methods(const Shot& shot, const Medium& medium, const Surroundings* surroundings,
-                                const CameraSettings& camera, Statistics& statistics, Progress& progress) {
+                                const CameraSettings& camera, Progress& progress) {
     progress.stage("choice of the method");
     const Stopwatch watch;
     Shot sized = shot;
     sized.method = RenderMethod::LightingGrid;
     sized.camera = camera;
-    const Plan plan = plan_cells(sized, medium, surroundings);
-    MethodForecast out;
-    if (plan.surfaces || plan.emitters)
-        out = without_forecast("shots with surfaces or lamps are not forecast");
-    else if (plan.scattering_method)
-        out = without_forecast("scattering.method is " + plan.scattering_choice);
-    else if (!plan.single)
-        out = without_forecast("no light is scattered");
-    else
-        out = from_counts(sized, medium, plan, camera);
-    statistics.stages.push_back({"choice of the method",
-                                 watch.seconds(),
-                                 0,
-                                 {{"method", out.method == RenderMethod::Path ? "path" : "lighting_grid"},
-                                  {"path_seconds", out.path_seconds},
-                                  {"path_samples", out.samples},
-                                  {"grid_seconds", out.grid_seconds}}});
+    MethodForecast out = forecast(sized, medium, plan_cells(sized, medium, surroundings), camera);
+    out.cost = {"choice of the method",
+                watch.seconds(),
+                0,
+                {{"method", out.name()},
+                 {"path_seconds", out.path_seconds},
+                 {"path_samples", out.samples},
+                 {"grid_seconds", out.grid_seconds}}};
     progress.notice(out.reason);
     return out;
 }
 
 MethodForecast forecast_methods(const Shot& shot, const std::filesystem::path& volume, int frame, Progress& progress) {
+    const Stopwatch watch;
     Statistics statistics;
     const FrameInput input = load_frame(shot, volume, frame, statistics, progress);
-    return forecast_methods(shot, input.medium, input.surroundings.get(), input.camera, statistics, progress);
+    MethodForecast out = forecast_methods(shot, input.medium, input.surroundings.get(), input.camera, progress);
+    out.cost.seconds = watch.seconds();
+    return out;
 }
 
 Shot with_method(Shot shot, const MethodForecast& forecast) {

@@ -88,12 +88,20 @@ void draw_into(RenderedFrame& out, const DrawInput& input, Progress& progress) {
     out.metadata.samples_per_pixel = drawn.samples_per_pixel;
 }
 
-void render_into(RenderedFrame& out, const Shot& asked, const Medium& medium, const Surroundings* surroundings,
+// Resolves method=auto for this frame alone.
+Shot with_chosen_method(const Shot& shot, const Medium& medium, const Surroundings* surroundings,
+                        const CameraSettings& camera, RenderedFrame& out, Progress& progress) {
+    if (shot.method != RenderMethod::Automatic)
+        return shot;
+    const MethodForecast forecast = forecast_methods(shot, medium, surroundings, camera, progress);
+    out.statistics.stages.push_back(forecast.cost);
+    out.metadata.text["brisance/method"] = forecast.name();
+    return with_method(shot, forecast);
+}
+
+void render_into(RenderedFrame& out, const Shot& given, const Medium& medium, const Surroundings* surroundings,
                  const CameraSettings& camera_settings, const Checkpoint& checkpoint, Progress& progress) {
-    const Shot shot = asked.method == RenderMethod::Automatic
-                          ? with_method(asked, forecast_methods(asked, medium, surroundings, camera_settings,
-                                                                out.statistics, progress))
-                          : asked;
+    const Shot shot = with_chosen_method(given, medium, surroundings, camera_settings, out, progress);
     const Plan plan = plan_cells(shot, medium, surroundings);
     out.statistics.cells = plan.cells();
     out.statistics.skipped = plan.skipped;
@@ -111,8 +119,6 @@ void render_into(RenderedFrame& out, const Shot& asked, const Medium& medium, co
     out.metadata.camera_from_world = camera.camera_from_world();
     out.metadata.vertical_fov_degrees = camera_settings.vertical_fov_degrees;
     out.metadata.text["brisance/cells"] = joined(plan.cells());
-    if (asked.method == RenderMethod::Automatic)
-        out.metadata.text["brisance/method"] = shot.method == RenderMethod::Path ? "path" : "lighting_grid";
     out.statistics.peak_resident_bytes = peak_resident_bytes();
 }
 
@@ -155,7 +161,11 @@ Statistics plan_frame(const Shot& shot, const std::filesystem::path& volume, int
     Statistics statistics;
     Recorder progress(to, statistics);
     const FrameInput input = load_frame(shot, volume, frame, statistics, progress);
-    const Plan plan = plan_cells(shot, input.medium, input.surroundings.get());
+    const Shot chosen =
+        shot.method != RenderMethod::Automatic
+            ? shot
+            : with_method(shot, forecast_methods(shot, input.medium, input.surroundings.get(), input.camera, progress));
+    const Plan plan = plan_cells(chosen, input.medium, input.surroundings.get());
     statistics.cells = plan.cells();
     statistics.skipped = plan.skipped;
     return statistics;

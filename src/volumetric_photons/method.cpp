@@ -22,7 +22,7 @@ MadeInScattering VolumetricPhotonsMethod::make(const InScatteringRequest& reques
     const VolumetricPhotonReport& r = photons->report();
     MadeInScattering made{nullptr, photons->bytes(), {}, 0.0};
     made.detail = {
-        {"particles", r.paths}, {"flights", r.flights}, {"landings", r.landings}, {"not_finite", r.not_finite}};
+        {"particles", r.paths}, {"flights", r.flights}, {"surface_photons", r.surface_photons}, {"not_finite", r.not_finite}};
     made.estimator = std::move(photons);
     return made;
 }

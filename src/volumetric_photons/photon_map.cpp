@@ -18,9 +18,9 @@ constexpr float kOutOfPlane = 0.3f;
 constexpr float kLeastCosine = 1e-2f;
 
 struct Points {
-    const std::vector<SurfacePhoton>& landings;
-    std::size_t kdtree_get_point_count() const { return landings.size(); }
-    float kdtree_get_pt(std::size_t i, std::size_t axis) const { return landings[i].position[int(axis)]; }
+    const std::vector<SurfacePhoton>& photons;
+    std::size_t kdtree_get_point_count() const { return photons.size(); }
+    float kdtree_get_pt(std::size_t i, std::size_t axis) const { return photons[i].position[int(axis)]; }
     template <class Box>
     bool kdtree_get_bbox(Box&) const {
         return false;
@@ -29,10 +29,10 @@ struct Points {
 
 struct Near {
     float distance2;
-    std::uint32_t landing;
+    std::uint32_t photon;
     // Ties in distance are broken by the lower index, so that the order of visits does not matter.
     bool operator<(const Near& other) const {
-        return distance2 != other.distance2 ? distance2 < other.distance2 : landing < other.landing;
+        return distance2 != other.distance2 ? distance2 < other.distance2 : photon < other.photon;
     }
 };
 
@@ -41,9 +41,9 @@ class Nearest {
 public:
     using DistanceType = float;
 
-    Nearest(std::span<const SurfacePhoton> landings, const vec3& point, const vec3& normal, std::size_t most,
+    Nearest(std::span<const SurfacePhoton> photons, const vec3& point, const vec3& normal, std::size_t most,
             std::vector<Near>& found)
-        : landings_(landings), point_(point), normal_(normal), most_(most), found_(found) {
+        : photons_(photons), point_(point), normal_(normal), most_(most), found_(found) {
         found_.clear();
     }
     std::size_t size() const { return found_.size(); }
@@ -52,7 +52,7 @@ public:
     float worstDist() const { return full() ? found_.front().distance2 : std::numeric_limits<float>::max(); }
     bool addPoint(float distance2, std::uint32_t index) {
         const Near next{distance2, index};
-        if ((full() && !(next < found_.front())) || !counts(landings_[index], distance2))
+        if ((full() && !(next < found_.front())) || !counts(photons_[index], distance2))
             return true;
         if (full()) {
             std::pop_heap(found_.begin(), found_.end());
@@ -70,7 +70,7 @@ private:
         return glm::dot(l.normal, normal_) > kSameFacing && above * above <= kOutOfPlane * kOutOfPlane * distance2;
     }
 
-    std::span<const SurfacePhoton> landings_;
+    std::span<const SurfacePhoton> photons_;
     vec3 point_, normal_;
     std::size_t most_;
     std::vector<Near>& found_;
@@ -80,7 +80,7 @@ private:
 
 class PhotonMap::Tree {
 public:
-    explicit Tree(const std::vector<SurfacePhoton>& landings) : points_{landings}, index_(3, points_) {}
+    explicit Tree(const std::vector<SurfacePhoton>& photons) : points_{photons}, index_(3, points_) {}
     void find(Nearest& nearest, const vec3& point) const {
         index_.findNeighbors(nearest, &point.x, nanoflann::SearchParams());
     }
@@ -90,9 +90,9 @@ private:
     nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Points>, Points, 3, std::uint32_t> index_;
 };
 
-PhotonMap::PhotonMap(std::vector<SurfacePhoton> landings) : landings_(std::move(landings)) {
-    if (!landings_.empty())
-        tree_ = std::make_unique<Tree>(landings_);
+PhotonMap::PhotonMap(std::vector<SurfacePhoton> photons) : photons_(std::move(photons)) {
+    if (!photons_.empty())
+        tree_ = std::make_unique<Tree>(photons_);
 }
 
 PhotonMap::~PhotonMap() = default;
@@ -105,7 +105,7 @@ Rgb PhotonMap::scattered(const SurfacePoint& point, const Bsdf& bsdf, const dvec
     const bool above = glm::dot(point.frame.normal, toward_viewer) >= 0.0;
     const vec3 position(point.position), normal(above ? point.frame.normal : -point.frame.normal);
     // One photon more, whose distance is the radius of the disc.
-    Nearest nearest(landings_, position, normal, static_cast<std::size_t>(neighbours) + 1, near);
+    Nearest nearest(photons_, position, normal, static_cast<std::size_t>(neighbours) + 1, near);
     tree_->find(nearest, position);
     if (near.size() < 2)
         return Rgb(0.0f);
@@ -113,7 +113,7 @@ Rgb PhotonMap::scattered(const SurfacePoint& point, const Bsdf& bsdf, const dvec
     const double area = std::numbers::pi * near.back().distance2;
     Rgb sum(0.0f);
     for (std::size_t i = 0; i + 1 < near.size(); ++i) {
-        const SurfacePhoton& l = landings_[near[i].landing];
+        const SurfacePhoton& l = photons_[near[i].photon];
         const dvec3 toward_source(-l.direction);
         const float cosine = std::abs(glm::dot(vec3(point.frame.normal), l.direction));
         sum += bsdf.evaluate(toward_viewer, toward_source) / std::max(cosine, kLeastCosine) * l.power;

@@ -19,22 +19,22 @@ struct SurfacePhoton {
 
 class PhotonMap {
 public:
-    explicit PhotonMap(std::vector<SurfacePhoton> landings);
+    explicit PhotonMap(std::vector<SurfacePhoton> photons);
     ~PhotonMap();
     PhotonMap(const PhotonMap&) = delete;
     PhotonMap& operator=(const PhotonMap&) = delete;
 
-    std::size_t size() const { return landings_.size(); }
+    std::size_t size() const { return photons_.size(); }
     // Light [W/(m^2 sr)] that these lobes scatter to the viewer (unit), estimated from the `neighbours` photons nearest
     // to the point that lie on surfaces of similar normal and in the same plane: a blur over the disc that contains
     // them.
     Rgb scattered(const SurfacePoint& point, const Bsdf& bsdf, const dvec3& toward_viewer, int neighbours) const;
 
-    std::uint64_t bytes() const { return landings_.size() * (sizeof(SurfacePhoton) + sizeof(std::uint32_t)); }
+    std::uint64_t bytes() const { return photons_.size() * (sizeof(SurfacePhoton) + sizeof(std::uint32_t)); }
 
 private:
     class Tree;
-    std::vector<SurfacePhoton> landings_;
+    std::vector<SurfacePhoton> photons_;
     std::unique_ptr<Tree> tree_;
 };
 

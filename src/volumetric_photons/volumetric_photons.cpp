@@ -11,14 +11,14 @@ constexpr int kSamples = 8;
 // A ray starts at the eye if its line passes the eye within this fraction of its distance.
 constexpr double kSameLine = 1e-5;
 
-// Stores the landing of a flight that was scattered in smoke.
-void leave_landing(const ParticleFlight& flight, std::vector<SurfacePhoton>& landings) {
+// Stores the photon of a flight that was scattered in smoke.
+void store_photon(const ParticleFlight& flight, std::vector<SurfacePhoton>& photons) {
     const SurfacePoint* point = flight.landing();
     if (!point)
         return;
     const dvec3 &normal = point->frame.normal, &direction = flight.ray().direction;
     const bool above = glm::dot(normal, direction) < 0.0;
-    landings.push_back({vec3(point->position), vec3(above ? normal : -normal), vec3(direction), flight.power});
+    photons.push_back({vec3(point->position), vec3(above ? normal : -normal), vec3(direction), flight.power});
 }
 
 }  // namespace
@@ -30,20 +30,20 @@ VolumetricPhotons::VolumetricPhotons(const DirectLight& scene, const VolumetricP
       settings_(settings),
       eye_(eye),
       cache_(scene.field().medium(), eye, emitted_power(scene, ball_around(scene)), other_rays),
-      landings_(follow(bounces < 0 ? -1 : bounces - 1)) {
+      photon_map_(follow(bounces < 0 ? -1 : bounces - 1)) {
     cache_.finish();
-    report_.landings = landings_.size();
+    report_.surface_photons = photon_map_.size();
 }
 
 std::vector<SurfacePhoton> VolumetricPhotons::follow(int most_before) {
     return lights_of_flights<SurfacePhoton>(
         scene_, {Stream::VolumetricPhoton, settings_.paths, settings_.seed}, most_before,
-        [&](const ParticleFlight& flight, std::vector<SurfacePhoton>& landings) {
+        [&](const ParticleFlight& flight, std::vector<SurfacePhoton>& photons) {
             if (!flight.from_medium)
                 return;
             Rng keep_rng(Stream::StoredTrack, flight.particle, settings_.seed | std::uint64_t(flight.before) << 32);
             cache_.add(flight.ray(), flight.segment.end, flight.power, keep_rng);
-            leave_landing(flight, landings);
+            store_photon(flight, photons);
         },
         report_);
 }
@@ -76,7 +76,7 @@ Rgb VolumetricPhotons::along_ray(const RayMedium& seen, Rng& rng, SelectionCost*
 
 Rgb VolumetricPhotons::at_surface(const SurfacePoint& point, const ReceiverLobes& lobes, const dvec3& toward_viewer,
                                   Rng&, SelectionCost*) const {
-    return landings_.scattered(point, lobes.whole, toward_viewer, settings_.neighbours);
+    return photon_map_.scattered(point, lobes.whole, toward_viewer, settings_.neighbours);
 }
 
 }  // namespace brisance

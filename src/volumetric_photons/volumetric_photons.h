@@ -1,7 +1,7 @@
 // Light scattered by the medium, estimated by photons: along their tracks through the medium, for the camera and for
 // rays that leave surfaces (track_length_cache.h), and where they land on surfaces (photon_map.h). The cells MM and SM
 // without noise that varies between camera rays. The estimates are blurred over a voxel in the medium and over a disc
-// of `neighbours` landings on surfaces.
+// of `neighbours` photons on surfaces.
 #pragma once
 
 #include "light_selection/in_scattering.h"
@@ -13,7 +13,7 @@
 namespace brisance {
 
 struct VolumetricPhotonReport : FlightReport {
-    std::uint64_t landings = 0;
+    std::uint64_t surface_photons = 0;
 };
 
 class VolumetricPhotons : public InScattering {
@@ -28,7 +28,7 @@ public:
                    SelectionCost* cost = nullptr) const override;
 
     const VolumetricPhotonReport& report() const { return report_; }
-    std::uint64_t bytes() const { return cache_.bytes() + landings_.bytes(); }
+    std::uint64_t bytes() const { return cache_.bytes() + photon_map_.bytes(); }
 
 private:
     std::vector<SurfacePhoton> follow(int most_before);
@@ -39,7 +39,7 @@ private:
     dvec3 eye_;
     VolumetricPhotonReport report_;
     TrackLengthCache cache_;
-    PhotonMap landings_;
+    PhotonMap photon_map_;
 };
 
 }  // namespace brisance

@@ -310,9 +310,16 @@ class Rendering(VolumeCase):
         done = self.expect(0, "render", pattern, *SMALL, "-f", "1,2", "-o", self.out / "a.#.exr", "--method", "auto",
                            "--set", "output.png=false", says="method: the ")
         self.assertEqual(done.stderr.count("method: the "), 1)
-        for frame in (1, 2):
+        for frame, stages_first in ((1, True), (2, False)):
             stages = json.loads((self.out / f"a.{frame}.stats.json").read_text(encoding="utf-8"))["stages"]
-            self.assertNotIn("choice of the method", [stage["name"] for stage in stages])
+            self.assertEqual("choice of the method" in [stage["name"] for stage in stages], stages_first)
+
+    def test_automatic_method_is_not_stopped_by_a_damaged_frame_that_is_not_rendered(self):
+        pattern = self.make_sequence([1, 2])
+        (self.folder / "burst_0003.vdb").write_bytes(b"damaged" * self.volume.stat().st_size)
+        shot = self.write("a.json", json.dumps({"volume": {"file": pattern, "preset": "houdini"}}))
+        self.expect(0, "render", shot, *SMALL, "-f", "1", "-o", self.out / "a.#.exr", "--method", "auto",
+                    says=["burst_0003.vdb", "method: the "])
 
     def test_keep_going(self):
         pattern = self.make_sequence([1, 2, 4])

@@ -34,9 +34,8 @@ Shot shot_of(int size, float error = 0.02f) {
 }
 
 MethodForecast forecast(const Shot& shot, const Medium& medium, const Surroundings* surroundings = nullptr) {
-    Statistics statistics;
     Progress silent;
-    return forecast_methods(shot, medium, surroundings, shot.camera, statistics, silent);
+    return forecast_methods(shot, medium, surroundings, shot.camera, silent);
 }
 
 TEST(ChooseMethod, SmallPicturesTakePathsAndLargeOnesTheGrid) {
@@ -45,8 +44,9 @@ TEST(ChooseMethod, SmallPicturesTakePathsAndLargeOnesTheGrid) {
     EXPECT_EQ(forecast(shot_of(1024), medium).method, RenderMethod::LightingGrid);
 }
 
-// Four times the pixels are four times the paths, and so is half the error. The grid's nodes do not see either.
-TEST(ChooseMethod, PathsCostWhatPixelsAndErrorAsk) {
+// Four times the pixels need four times the paths, and so does half the error. The grid's time does not change with the
+// error.
+TEST(ChooseMethod, PathsCostMoreWithPixelsAndLessError) {
     const Medium medium = glow(16);
     const MethodForecast one = forecast(shot_of(128, 0.01f), medium), finer = forecast(shot_of(128, 0.005f), medium),
                          larger = forecast(shot_of(256, 0.01f), medium);
@@ -55,12 +55,12 @@ TEST(ChooseMethod, PathsCostWhatPixelsAndErrorAsk) {
     EXPECT_EQ(finer.grid_seconds, one.grid_seconds);
 }
 
-// The pilot says what the path tracer then finds: its own stratification makes it better, by up to a half.
+// The pilot ignores that the path tracer's samples are stratified, which need up to a half fewer.
 TEST(ChooseMethod, ForecastsTheSamplesThatPathsNeed) {
     const Medium medium = glow(12);
     Shot shot = shot_of(64, 0.03f);
     const MethodForecast f = forecast(shot, medium);
-    shot = with_method(shot, {RenderMethod::Path, "", 0.0, 0.0, 0.0});
+    shot = with_method(shot, {RenderMethod::Path, "", 0.0, 0.0, 0.0, {}});
     Progress silent;
     const double taken = render_medium(shot, medium, silent).metadata.samples_per_pixel;
     EXPECT_GT(f.samples / taken, 0.67);
@@ -99,6 +99,20 @@ TEST(ChooseMethod, PathsEndAtTheErrorAskedFor) {
         norm += std::pow(double(a[i]) + b[i], 2);
     }
     EXPECT_LE(std::sqrt(noise / norm), 0.0401);
+}
+
+// The shot's own error comes first, and the number of samples does not count.
+TEST(ChooseMethod, AStatedErrorOfPathsCounts) {
+    const Medium medium = glow(12);
+    Shot shot = shot_of(32, 0.02f);
+    shot.tracing.samples = 2;
+    const MethodForecast by_default = forecast(shot, medium);
+    shot.tracing.error = 0.01;
+    const MethodForecast stated = forecast(shot, medium);
+    EXPECT_NEAR(stated.samples / by_default.samples, 4.0, 0.1);
+    const Shot traced = with_method(shot, {RenderMethod::Path, "", 0.0, 0.0, 0.0, {}});
+    EXPECT_EQ(traced.tracing.error, 0.01);
+    EXPECT_EQ(traced.tracing.samples, 0);
 }
 
 TEST(ChooseMethod, IsTheSameOnAnyNumberOfThreads) {

@@ -54,7 +54,7 @@ TEST(ParticlesAgainstPaths, BouncesEndWhereTheyAreAskedTo) {
                         bounces == 2 ? "two bounces" : "three bounces");
     const Stage once(coloured_ball(8, 2.0f, 0.0f), floor_below(0.7f), {}, 1);
     const VolumetricPhotons none(once.scene(), settings(1), once.bounces(), dvec3(100.0), true);
-    EXPECT_EQ(none.report().landings, 0u);
+    EXPECT_EQ(none.report().surface_photons, 0u);
     Rng rng(Stream::Points, 3);
     for (int i = 0; i < 100; ++i) {
         const Twice seen = once.by_lights(none, once.ray(rng), rng);

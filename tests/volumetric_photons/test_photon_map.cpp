@@ -31,31 +31,31 @@ SurfacePoint on_floor(const dvec3& position) {
 
 // On the square from -1 to 1: that many particles of 1 W together.
 std::vector<SurfacePhoton> on_square(int count, float height, const vec3& normal, std::uint64_t seed) {
-    std::vector<SurfacePhoton> landings;
+    std::vector<SurfacePhoton> photons;
     Rng rng(Stream::Points, seed);
     for (int i = 0; i < count; ++i) {
         const float x = 2.0f * rng.next() - 1.0f, y = 2.0f * rng.next() - 1.0f;
         const vec3 direction = glm::normalize(vec3(rng.next() - 0.5f, rng.next() - 0.5f, -1.0f));
-        landings.push_back({{x, y, height}, normal, normal.z > 0.0f ? direction : -direction, Rgb(1.0f / count)});
+        photons.push_back({{x, y, height}, normal, normal.z > 0.0f ? direction : -direction, Rgb(1.0f / count)});
     }
-    return landings;
+    return photons;
 }
 
-Rgb seen(const PhotonMap& landings, const dvec3& position, int neighbours) {
+Rgb seen(const PhotonMap& photons, const dvec3& position, int neighbours) {
     const SurfacePoint p = on_floor(position);
-    return landings.scattered(p, Bsdf(p.material, p.frame), glm::normalize(dvec3(0.3, 0.1, 1.0)), neighbours);
+    return photons.scattered(p, Bsdf(p.material, p.frame), glm::normalize(dvec3(0.3, 0.1, 1.0)), neighbours);
 }
 
 // An irradiance of a quarter watt per square metre. One of n neighbours is the last whose distance counts: relative
 // standard deviation 1 / sqrt(n - 1) of each, and 400 places apart are about independent.
 TEST(PhotonMap, TellAnEvenIrradiance) {
     constexpr int kNeighbours = 50;
-    const PhotonMap landings(on_square(200000, 0.0f, {0, 0, 1}, 1));
+    const PhotonMap photons(on_square(200000, 0.0f, {0, 0, 1}, 1));
     double sum = 0.0, square = 0.0;
     int places = 0;
     for (int i = 0; i < 20; ++i)
         for (int j = 0; j < 20; ++j, ++places) {
-            const double v = seen(landings, {-0.76 + 0.08 * i, -0.76 + 0.08 * j, 0.0}, kNeighbours).x;
+            const double v = seen(photons, {-0.76 + 0.08 * i, -0.76 + 0.08 * j, 0.0}, kNeighbours).x;
             sum += v;
             square += v * v;
         }

@@ -203,18 +203,33 @@ void write_frame(RenderedFrame& frame, const Shot& shot, const fs::path& volume,
     }
 }
 
-// method=auto: one for all frames, by the largest file of all that are on disk, whichever of them this call renders.
-Shot with_one_method(const Shot& shot, Progress& progress) {
+// The forecast's time belongs to the first frame.
+void note_choice(const MethodForecast& forecast, bool first, RenderedFrame& frame) {
+    frame.metadata.text["brisance/method"] = forecast.name();
+    if (!first)
+        return;
+    frame.statistics.stages.insert(frame.statistics.stages.begin(), forecast.cost);
+    frame.statistics.seconds += forecast.cost.seconds;
+}
+
+// method=auto: one method for all frames, by the largest file on disk that can be read, whichever frames this call
+// renders. Nothing where another method is set, or where there is one frame, which chooses for itself.
+std::optional<MethodForecast> one_method(const Shot& shot, Progress& progress) {
     if (shot.method != RenderMethod::Automatic || volume_pattern(shot).empty())
-        return shot;
-    const std::vector<FrameFile> all = resolve_frames(shot, std::nullopt);
+        return std::nullopt;
+    std::vector<FrameFile> all = resolve_frames(shot, std::nullopt);
     if (all.size() < 2)
-        return shot;  // the frame itself decides
-    const auto smaller = [](const FrameFile& a, const FrameFile& b) {
-        return fs::file_size(a.file) < fs::file_size(b.file);
-    };
-    const FrameFile& largest = *std::max_element(all.begin(), all.end(), smaller);
-    return with_method(shot, forecast_methods(shot, largest.file, largest.frame, progress));
+        return std::nullopt;
+    std::ranges::stable_sort(all, std::greater(), [](const FrameFile& f) { return fs::file_size(f.file); });
+    for (const FrameFile& frame : all)
+        try {
+            return forecast_methods(shot, frame.file, frame.frame, progress);
+        } catch (const Error& error) {
+            progress.warning("method", std::string("not chosen by this frame: ") + error.what());
+        }
+    MethodForecast grid;
+    grid.reason = "method: the lighting grid, since no frame can be read";
+    return grid;
 }
 
 }  // namespace
@@ -233,16 +248,17 @@ int run_render(const RenderOptions& options) {
     const std::vector<FrameOutput> outputs = plan_outputs(shot, options.output, frames, options.input);
     const std::vector<fs::path> checkpoints =
         plan_checkpoints(shot, options.checkpoint, frames, outputs, options.input);
-    if (!attempt(
-            "", [&] { shot = with_one_method(shot, progress); }, progress, failures) &&
-        !options.keep_going)
-        return static_cast<int>(failures.first);
+    const std::optional<MethodForecast> forecast = frames.empty() ? std::nullopt : one_method(shot, progress);
+    if (forecast)
+        shot = with_method(shot, *forecast);
     PngExposure exposure(shot);
     for (std::size_t i = 0; i < frames.size(); ++i) {
         const FrameFile& frame = frames[i];
         progress.begin_frame(frame.frame, frame.file.string(), i, frames.size());
         const auto work = [&] {
             RenderedFrame rendered = render_frame(shot, frame.file, frame.frame, progress, checkpoints[i]);
+            if (forecast)
+                note_choice(*forecast, i == 0, rendered);
             write_frame(rendered, shot, frame.file, outputs[i], exposure, progress);
             if (options.explain)
                 progress.say(without_last_newline(rendered.statistics.explain()));
@@ -260,12 +276,14 @@ int run_render(const RenderOptions& options) {
 int run_plan(const RenderOptions& options) {
     TextProgress progress(options.progress);
     const ThreadLimit limit(options.threads);
-    const Shot shot = load(options, progress);
+    Shot shot = load(options, progress);
     Failures failures;
     const std::vector<FrameFile> frames = usable_frames(shot, options, progress, failures);
     if (frames.empty())
         return static_cast<int>(failures.first);
     const std::vector<FrameOutput> outputs = plan_outputs(shot, options.output, frames, options.input);
+    if (const std::optional<MethodForecast> forecast = one_method(shot, progress))
+        shot = with_method(shot, *forecast);
     const Statistics plan = plan_frame(shot, frames.front().file, frames.front().frame, progress);
     progress.finish();
     for (std::size_t i = 0; i < frames.size(); ++i)

@@ -16,7 +16,8 @@ void add_tracing_keys(std::vector<Key>& keys) {
         [](Shot & s) -> auto& { return s.tracing.seed; }));
     keys.push_back(make_key(
         "tracing.samples",
-        "camera rays per pixel, each the start of several paths; none: until tracing.seconds or tracing.error",
+        "camera rays per pixel, each the start of several paths; none: until tracing.seconds or tracing.error; method "
+        "auto does not use it",
         or_word(whole(2, 1 << 30), "none", 0), [](Shot & s) -> auto& { return s.tracing.samples; }));
     keys.push_back(make_key(
         "tracing.seconds", "stops after this time, when every pixel has had equally many paths [s]",
