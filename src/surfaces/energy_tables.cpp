@@ -121,10 +121,10 @@ Albedos albedos_of(const Numbers& n) {
 }
 
 // Of `count` entries evenly over 0..1: the one below x, and the fraction by which x lies beyond it.
-std::pair<int, double> cell_of(double x, int count) {
+std::pair<int, double> interval_of(double x, int count) {
     const double position = std::clamp(x, 0.0, 1.0) * (count - 1);
-    const int cell = std::min(static_cast<int>(position), count - 2);
-    return {cell, position - cell};
+    const int interval = std::min(static_cast<int>(position), count - 2);
+    return {interval, position - interval};
 }
 
 double mean_blend_of(double ior) {
@@ -191,8 +191,8 @@ EnergyTables::EnergyTables(double ior)
 }
 
 Albedos EnergyTables::at(double alpha, double cosine) const {
-    const auto [row, down] = cell_of(roughness_coordinate(alpha), kRoughnesses);
-    const auto [column, along] = cell_of(angle_coordinate(alpha, cosine), kAngles);
+    const auto [row, down] = interval_of(roughness_coordinate(alpha), kRoughnesses);
+    const auto [column, along] = interval_of(angle_coordinate(alpha, cosine), kAngles);
     Numbers sum{};
     for (int r = 0; r < 2; ++r)
         for (int c = 0; c < 2; ++c)
@@ -203,7 +203,7 @@ Albedos EnergyTables::at(double alpha, double cosine) const {
 }
 
 Albedos EnergyTables::mean(double alpha) const {
-    const auto [row, along] = cell_of(roughness_coordinate(alpha), kMeans);
+    const auto [row, along] = interval_of(roughness_coordinate(alpha), kMeans);
     Numbers sum{};
     add(means_[row], 1.0 - along, sum);
     add(means_[row + 1], along, sum);

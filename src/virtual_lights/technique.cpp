@@ -86,7 +86,7 @@ constexpr std::size_t kKindCount = std::tuple_size_v<decltype(kKinds)>;
 constexpr std::size_t kGathererCount = std::tuple_size_v<decltype(kGatherers)>;
 
 // A kind of light with a flux: whether there is such a thing, and what gatherers need to know of it.
-struct KindCell {
+struct KindWithFlux {
     void (*fit)(LightSet&) = nullptr;  // null: the kind needs what the flux does not have
     bool hittable = false;
     std::array<decltype(Technique::gather), kGathererCount> gather{};  // null: the gatherer needs what the kind lacks
@@ -103,7 +103,7 @@ constexpr decltype(Technique::gather) gather_from() {
 }
 
 template <class Family, class Flux>
-constexpr KindCell kind_cell() {
+constexpr KindWithFlux kind_with_flux() {
     if constexpr (requires { typename Family::template Of<Flux>; }) {
         using Kind = typename Family::template Of<Flux>;
         static_assert(VirtualLightKind<Kind>);
@@ -118,13 +118,13 @@ constexpr KindCell kind_cell() {
     }
 }
 
-using KindRow = std::array<KindCell, kFluxCount>;
+using KindRow = std::array<KindWithFlux, kFluxCount>;
 
 template <class Family>
 constexpr KindRow kind_row() {
     return std::apply(
         [](const auto&... flux) {
-            return KindRow{kind_cell<Family, typename std::decay_t<decltype(flux)>::Type>()...};
+            return KindRow{kind_with_flux<Family, typename std::decay_t<decltype(flux)>::Type>()...};
         },
         kFluxes);
 }
@@ -166,7 +166,7 @@ std::size_t index_of(const std::vector<TechniqueChoice>& choices, const std::str
 // Rows of the table.
 struct Chosen {
     std::size_t placement, flux, kind, gatherer;
-    const KindCell& cell() const { return kProduct[kind][flux]; }
+    const KindWithFlux& with_flux() const { return kProduct[kind][flux]; }
 };
 
 Chosen chosen(const VirtualLightSettings& s) {
@@ -186,7 +186,7 @@ std::string flux_complaint(const Chosen& c) {
 }
 
 std::string kind_complaint(const Chosen& c) {
-    if (c.cell().fit)
+    if (c.with_flux().fit)
         return {};
     const std::string kind = light_kinds()[c.kind].name, flux = light_fluxes()[c.flux].name;
     return "kind " + kind + " needs " + kKindNeeds[c.kind] + ": flux " +
@@ -203,19 +203,19 @@ std::string kinds_that(const Has& has) {
 }
 
 std::string gatherer_complaint(const Chosen& c) {
-    if (!c.cell().fit || c.cell().gather[c.gatherer])
+    if (!c.with_flux().fit || c.with_flux().gather[c.gatherer])
         return {};
     return "sampling " + light_gatherers()[c.gatherer].name + " needs " + kGathererNeeds[c.gatherer] + ": kind " +
-           kinds_that([&](const KindCell& cell) { return cell.gather[c.gatherer] != nullptr; }) + "; kind " +
+           kinds_that([&](const KindWithFlux& k) { return k.gather[c.gatherer] != nullptr; }) + "; kind " +
            light_kinds()[c.kind].name + " goes with sampling " +
-           names_where(light_gatherers(), [&](std::size_t i) { return c.cell().gather[i] != nullptr; });
+           names_where(light_gatherers(), [&](std::size_t i) { return c.with_flux().gather[i] != nullptr; });
 }
 
 std::string extension_complaint(const Chosen& c, bool path_extension) {
-    if (!c.cell().fit || c.cell().hittable || !path_extension)
+    if (!c.with_flux().fit || c.with_flux().hittable || !path_extension)
         return {};
     return std::string("path_extension needs ") + kHittable + ": kind " +
-           kinds_that([](const KindCell& cell) { return cell.hittable; }) + "; kind " + light_kinds()[c.kind].name +
+           kinds_that([](const KindWithFlux& k) { return k.hittable; }) + "; kind " + light_kinds()[c.kind].name +
            " goes with path_extension=false";
 }
 
@@ -287,7 +287,7 @@ Technique technique_of(const VirtualLightSettings& settings) {
     const Chosen c = chosen(settings);
     constexpr auto kBuild = std::apply(
         [](const auto&... row) { return std::array{&std::decay_t<decltype(row)>::Type::build...}; }, kFluxes);
-    return {&kPlacements[c.placement], kBuild[c.flux], c.cell().fit, c.cell().gather[c.gatherer]};
+    return {&kPlacements[c.placement], kBuild[c.flux], c.with_flux().fit, c.with_flux().gather[c.gatherer]};
 }
 
 }  // namespace brisance

@@ -21,8 +21,10 @@ MadeInScattering VolumetricPhotonsMethod::make(const InScatteringRequest& reques
         std::make_unique<VolumetricPhotons>(request.scene, settings, request.bounces, request.eye, other_rays);
     const VolumetricPhotonReport& r = photons->report();
     MadeInScattering made{nullptr, photons->bytes(), {}, 0.0};
-    made.detail = {
-        {"particles", r.paths}, {"flights", r.flights}, {"surface_photons", r.surface_photons}, {"not_finite", r.not_finite}};
+    made.detail = {{"particles", r.paths},
+                   {"flights", r.flights},
+                   {"surface_photons", r.surface_photons},
+                   {"not_finite", r.not_finite}};
     made.estimator = std::move(photons);
     return made;
 }

@@ -10,7 +10,7 @@ namespace brisance {
 
 namespace {
 
-// Voxels along a cell's side: the tree chooses between cells by their distance, inside all voxels count alike.
+// Voxels along a cluster's side: the tree chooses between clusters by their distance, inside all voxels count alike.
 constexpr int kCellShift = 3;
 
 std::uint64_t key_of(const ivec3& node) {
@@ -35,25 +35,25 @@ VisibilityRatio::VisibilityRatio(const Medium& medium, const PointDepths& depths
         const dvec3 p(medium.local_of_node(medium.lattice.node(node)));
         const float weight = density[node];
         if (i == 0 || lit[i].first != lit[i - 1].first) {
-            cells_.push_back({static_cast<std::uint32_t>(i), 0.0f});
+            clusters_.push_back({static_cast<std::uint32_t>(i), 0.0f});
             bounds.push_back({p, p, {0, 0, 1}, std::numbers::pi, 0.5 * std::numbers::pi, 0.0, false});
         }
         bounds.back().low = glm::min(bounds.back().low, p);
         bounds.back().high = glm::max(bounds.back().high, p);
         bounds.back().intensity += weight;
-        cells_.back().sum += weight;
+        clusters_.back().sum += weight;
         nodes_.push_back(node);
-        passed_.push_back(cells_.back().sum);
+        passed_.push_back(clusters_.back().sum);
         per_weight_.push_back(luminance(intensity[node]) / weight);
     }
-    cells_.push_back({static_cast<std::uint32_t>(lit.size()), 0.0f});
+    clusters_.push_back({static_cast<std::uint32_t>(lit.size()), 0.0f});
     tree_ = LightTree(bounds);
 }
 
 // A voxel in proportion to its weight.
-std::size_t VisibilityRatio::voxel_in(std::size_t cell, Rng& rng) const {
-    const auto begin = passed_.begin() + cells_[cell].first, end = passed_.begin() + cells_[cell + 1].first;
-    const auto found = std::min(std::upper_bound(begin, end, rng.next() * cells_[cell].sum), end - 1);
+std::size_t VisibilityRatio::voxel_in(std::size_t cluster, Rng& rng) const {
+    const auto begin = passed_.begin() + clusters_[cluster].first, end = passed_.begin() + clusters_[cluster + 1].first;
+    const auto found = std::min(std::upper_bound(begin, end, rng.next() * clusters_[cluster].sum), end - 1);
     return static_cast<std::size_t>(found - passed_.begin());
 }
 
@@ -76,7 +76,7 @@ bool VisibilityRatio::draw(const LitPoint& point, Rng& rng, std::array<Draw, kDr
             continue;
         const std::size_t voxel = voxel_in(choice->light, rng);
         points[k] = point_in(voxel, rng);
-        share[k] = cells_[choice->light].sum * per_weight_[voxel] / float(choice->probability);
+        share[k] = clusters_[choice->light].sum * per_weight_[voxel] / float(choice->probability);
     }
     const vec3 from(point.position);
     std::array<float, kDraws> depth;
@@ -92,7 +92,7 @@ bool VisibilityRatio::draw(const LitPoint& point, Rng& rng, std::array<Draw, kDr
 }
 
 std::uint64_t VisibilityRatio::bytes() const {
-    return nodes_.size() * 12 + cells_.size() * sizeof(Cell) + tree_.bytes();
+    return nodes_.size() * 12 + clusters_.size() * sizeof(Cluster) + tree_.bytes();
 }
 
 }  // namespace brisance

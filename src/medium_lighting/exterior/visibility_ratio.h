@@ -40,19 +40,19 @@ public:
     std::uint64_t bytes() const;
 
 private:
-    struct Cell {
+    struct Cluster {
         std::uint32_t first = 0;  // of its voxels
         float sum = 0.0f;         // of their weights
     };
-    std::size_t voxel_in(std::size_t cell, Rng& rng) const;
+    std::size_t voxel_in(std::size_t cluster, Rng& rng) const;
     vec3 point_in(std::size_t voxel, Rng& rng) const;
 
     const Medium& medium_;
     const PointDepths& depths_;
-    std::vector<std::uint32_t> nodes_;  // that glow, cell by cell
-    std::vector<float> passed_;         // running sum of weights within the cell
+    std::vector<std::uint32_t> nodes_;  // that glow, cluster by cluster
+    std::vector<float> passed_;         // running sum of weights within the cluster
     std::vector<float> per_weight_;     // luminance of the intensity over the weight
-    std::vector<Cell> cells_;           // one more than there are, as an end
+    std::vector<Cluster> clusters_;     // one more than there are, as an end
     LightTree tree_;
 };
 
