@@ -27,10 +27,12 @@ void short_segments(benchmark::State& state) {
             begin[a].push_back(rng.next() * extent);
             end[a].push_back(begin[a].back() + (rng.next() - 0.5f) * 16.0f / std::sqrt(3.0f));
         }
-    const float* b[3] = {begin[0].data(), begin[1].data(), begin[2].data()};
-    const float* e[3] = {end[0].data(), end[1].data(), end[2].data()};
+    const Segments segments{{begin[0].data(), begin[1].data(), begin[2].data()},
+                            {end[0].data(), end[1].data(), end[2].data()},
+                            metres.data(),
+                            kSegments};
     for (auto _ : state) {
-        segment_optical_depths(fire.pyramid.view(level), b, e, metres.data(), 0.5f, kSegments, depths.data());
+        segment_optical_depths(fire.pyramid.view(level), segments, 0.5f, depths.data());
         benchmark::DoNotOptimize(depths.data());
     }
     state.counters["segments/s"] = benchmark::Counter(double(kSegments), benchmark::Counter::kIsIterationInvariantRate);
@@ -46,9 +48,10 @@ void single_samples(benchmark::State& state) {
     for (auto& axis : at)
         for (std::size_t i = 0; i < kPoints; ++i)
             axis.push_back(rng.next() * 100.0f);
-    const float* p[3] = {at[0].data(), at[1].data(), at[2].data()};
+    const Segments points{
+        {at[0].data(), at[1].data(), at[2].data()}, {at[0].data(), at[1].data(), at[2].data()}, metres.data(), kPoints};
     for (auto _ : state) {
-        segment_optical_depths(fire.pyramid.view(0), p, p, metres.data(), 1.0f, kPoints, values.data());
+        segment_optical_depths(fire.pyramid.view(0), points, 1.0f, values.data());
         benchmark::DoNotOptimize(values.data());
     }
     state.counters["samples/s"] = benchmark::Counter(double(kPoints), benchmark::Counter::kIsIterationInvariantRate);

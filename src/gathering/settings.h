@@ -1,6 +1,7 @@
 // Settings for gathering the fire's light and scattered light at points of the medium.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -16,8 +17,8 @@ struct LightingSettings {
     // Relative error that shadow maps may add to the picture. Their resolution follows from it where it is not given.
     float error = 0.02f;
     // Relative error of the light that the picture shows up to which nodes are interpolated from coarser ones. 0: none
-    // are, every node is lit by itself. Below 0: up to an eighth of `error`.
-    float interpolation = 0.0f;
+    // are, every node is lit by itself. Below 0: up to an eighth of `error` in large media.
+    float interpolation = -1.0f;
     float alpha = 2.0f;  // blending radius of level l is alpha * spacing of level l; at least 1
     int levels = 0;      // hierarchy levels above the voxels; 0: from the volume's extent
     ShadowMethod shadows = ShadowMethod::Maps;
@@ -28,12 +29,14 @@ struct LightingSettings {
 };
 
 // The error that interpolation may add in a medium where this many nodes need light. Without a stated one, an error is
-// tolerated only where it saves time: half of the largest where lighting every node takes a second or two.
+// tolerated only where it saves time: none where lighting every node takes a minute of one core or less, half of the
+// largest where it takes three.
 inline float tolerated_interpolation(const LightingSettings& settings, std::size_t nodes) {
-    constexpr float kNodesOfASecond = 30000.0f;
+    constexpr float kNodesOfAMinute = 1e6f;
     if (settings.interpolation >= 0.0f)
         return settings.interpolation;
-    return 0.125f * settings.error * float(nodes) / (float(nodes) + kNodesOfASecond);
+    const float saved = std::max(0.0f, float(nodes) - kNodesOfAMinute);
+    return 0.125f * settings.error * saved / (saved + 2.0f * kNodesOfAMinute);
 }
 
 }  // namespace brisance

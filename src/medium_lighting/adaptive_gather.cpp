@@ -6,6 +6,7 @@
 #include "core/parallel.h"
 #include "lighting_grid/voxel_lights.h"
 #include "medium/phase.h"
+#include "scattering/balance.h"
 #include "scattering/multiple_scattering.h"
 
 namespace brisance {
@@ -28,14 +29,13 @@ float scattered_radiance(const Gathered& g, std::size_t i, std::size_t n) {
 
 class Refinement {
 public:
-    Refinement(const LitLattice& lattice, bool moments, const GatherAt& gather)
-        : lattice_(lattice), moments_(moments), gather_(gather) {}
+    Refinement(const LitLattice& lattice, bool moments, const LevelLights& lights)
+        : lattice_(lattice), moments_(moments), lights_(lights) {}
 
     AdaptiveLight run(nlohmann::ordered_json& detail) {
         int level = static_cast<int>(lattice_.levels().size());
-        Gathered light = gather_at(level, needed(level), false);
+        Gathered light = gather_all(level);
         auto counts = nlohmann::ordered_json::array({{{"level", level}, {"nodes", count(needed(level))}}});
-        prepare_interpolation(nodes(level), needed(level), light);
         // Of the source functions, from the next coarser level to this one. Of the coarsest, all is new.
         std::vector<float> change = level > 0 ? sources(level, light) : std::vector<float>{};
         for (; level > 0; --level) {
@@ -58,20 +58,28 @@ private:
         return std::size_t(std::count_if(mask.begin(), mask.end(), [](std::uint8_t m) { return m != 0; }));
     }
 
-    Gathered gather_at(int level, const std::vector<std::uint8_t>& mask, bool sparse) const {
+    GatherTarget target(int level, const std::vector<std::uint8_t>& mask, bool sparse) const {
         LatticeRequest request = lattice_.request();
         request.needed = &mask;
         request.moments = moments_;
-        return gather_({level, level == 0 ? lattice_.pyramid() : *at(level).pyramid, request, sparse});
+        return {level, level == 0 ? lattice_.pyramid() : *at(level).pyramid, request, sparse};
     }
 
-    // Root mean square over what the camera sees [W/(m^2 sr)].
-    float brightness(int level, const Gathered& light) const {
-        const LitLevel& l = at(level);
+    // At all needed nodes.
+    Gathered gather_all(int level) const {
+        const GatherTarget all = target(level, needed(level), false);
+        Gathered light = lights_.gather(all);
+        prepare_interpolation(nodes(level), needed(level), light);
+        if (level > 0)
+            lights_.balance(all, light);
+        return light;
+    }
+
+    // Root mean square over what the camera sees.
+    static float brightness(const LitLevel& l, const std::vector<float>& radiance) {
         double sum = 0.0, weights = 0.0;
         for (std::size_t i = 0; i < l.visible.size(); ++i) {
-            const double s = l.visible[i] > 0.0f ? source(l, light, i) : 0.0;
-            sum += l.visible[i] * s * s;
+            sum += double(l.visible[i]) * radiance[i] * radiance[i];
             weights += l.visible[i];
         }
         return weights > 0.0 ? static_cast<float>(std::sqrt(sum / weights)) : 0.0f;
@@ -92,7 +100,8 @@ private:
     // Per node of the level, how much of the light gathered at the next finer level counts there, in [0, 1].
     std::vector<float> refinement_weights(int level, const Gathered& light, const std::vector<float>& change) const {
         const LitLevel& l = at(level);
-        const float allowed = kShare * lattice_.interpolation_error() * brightness(level, light);
+        const std::vector<float> radiance = radiance_through_nodes(l, sources(level, light), lattice_.input().eye);
+        const float typical = brightness(l, radiance), share = kShare * lattice_.interpolation_error();
         std::vector<float> error = estimated_errors(l, light);
         for (std::size_t i = 0; i < error.size(); ++i)
             error[i] = std::max(error[i], kNextChange * change[i]);
@@ -100,6 +109,8 @@ private:
         parallel_for(
             weight.size(),
             [&](std::size_t i) {
+                // Between the pixel's own radiance and the picture's: dark parts count more than in the sum of squares.
+                const float allowed = share * std::sqrt(radiance[i] * typical);
                 if (!l.needed[i] || !(allowed > 0.0f))
                     return;
                 const float part = l.importance[i] * largest_around(l, error, i) / allowed;
@@ -177,13 +188,14 @@ private:
         const std::size_t gathered = count(mask);
         counts.push_back({{"level", level}, {"nodes", gathered}});
         change = level > 0 ? sources(level, out) : std::vector<float>{};
+        gathered_.power = dvec3(0.0);
         if (gathered > 0) {
-            Gathered fine = gather_at(level, mask, true);
+            Gathered fine = lights_.gather(target(level, mask, true));
             mix(level, mask, weight, fine, out);
         }
         for (std::size_t i = 0; i < change.size(); ++i)
             change[i] = needed(level)[i] ? std::abs(change[i] - source(at(level), out, i)) : 0.0f;
-        gathered_ = std::move(weight);
+        gathered_.share = std::move(weight);
         return out;
     }
 
@@ -302,6 +314,7 @@ private:
                     from[c][i] = to[c][i];
         });
         prepare_interpolation(nodes(level), needed(level), fine);
+        gathered_.power = collided_power(medium(level), fluence_at_nodes(fine, needed(level)), weight);
         const float gained = collisions_gained(level, weight, fine, out);
         parallel_for(from.size(), [&](std::size_t c) {
             for (std::size_t i = 0; i < n; ++i)
@@ -314,16 +327,16 @@ private:
 
     const LitLattice& lattice_;
     bool moments_;
-    const GatherAt& gather_;
-    std::vector<float> gathered_;  // of the level lit last, as of AdaptiveLight
+    const LevelLights& lights_;
+    GatheredPart gathered_;  // at the level lit last, as of AdaptiveLight
     std::vector<float> conserving_;
 };
 
 }  // namespace
 
-AdaptiveLight gather_adaptively(const LitLattice& lattice, bool moments, const GatherAt& gather,
+AdaptiveLight gather_adaptively(const LitLattice& lattice, bool moments, const LevelLights& lights,
                                 nlohmann::ordered_json& detail) {
-    return Refinement(lattice, moments, gather).run(detail);
+    return Refinement(lattice, moments, lights).run(detail);
 }
 
 }  // namespace brisance

@@ -11,26 +11,15 @@
 // interpolated as its eighth root: in smoke it falls almost exponentially. Beside surfaces all nodes are lit.
 #pragma once
 
-#include <functional>
-
 #include "medium_lighting/adaptive_light.h"
+#include "medium_lighting/level_lights.h"
 #include "statistics/statistics.h"
 
 namespace brisance {
 
-// Where to gather: level 0 is the medium's own lattice.
-struct GatherTarget {
-    int level;
-    const ExtinctionPyramid& pyramid;
-    LatticeRequest request;
-    bool sparse;  // few of the lattice's nodes are requested
-};
-
-using GatherAt = std::function<Gathered(const GatherTarget&)>;
-
 // Light at the needed nodes of the lattice. `moments`: with them. Adds the number of nodes gathered at each level to
 // `detail`.
-AdaptiveLight gather_adaptively(const LitLattice& lattice, bool moments, const GatherAt& gather,
+AdaptiveLight gather_adaptively(const LitLattice& lattice, bool moments, const LevelLights& lights,
                                 nlohmann::ordered_json& detail);
 
 }  // namespace brisance

@@ -18,17 +18,16 @@ struct AdaptiveLight {
     Gathered light;  // at the needed nodes, prepared for interpolation by the camera
 
     // Per node, both empty where all light was gathered at the nodes themselves.
-    std::vector<float> gathered;    // the part of the light that was gathered there, in [0, 1]
+    GatheredPart gathered;          // what the nodes gathered themselves
     std::vector<float> conserving;  // the factor with which the light conserves energy
 
     // Makes `light` the light that conserves energy, but at nodes with `as_it_is` (per node, or empty).
     void conserve(const std::vector<std::uint8_t>& as_it_is);
 };
 
-// Scales the light so that the medium's own `lights` conserve energy. What all of it needs is s, and p is the part of
-// collisions at nodes that gathered. All light is scaled by 1 + (s - 1) p. The rest of the balance is what
-// interpolation has added to it, and goes into the conserving factors of interpolated light: with them it is scaled by
-// 1 + (s - 1) (1 + p).
+// Scales the light so that the medium's own `lights` conserve energy. The nodes that gathered themselves set the scale
+// of all light: what rays say collides there over what was gathered. The rest of the balance is what interpolation has
+// added, and goes into the conserving factors of interpolated light.
 void balance_light(const LitLattice& lattice, const ScatteredLight& lights, AdaptiveLight& light,
                    BounceBalance& balance);
 

@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "gathering/point_depths.h"
 #include "lighting_grid/voxel_lights.h"
+#include "shadows/shadow_kernels.h"
 
 namespace brisance {
 
@@ -80,12 +81,108 @@ void weigh_by_camera(LitLevel& level, const PointDepths& depths, const LightingC
         4096);
 }
 
+// Luminance of the emission coefficient per node of the medium.
+std::vector<float> emission_coefficients(const Medium& medium) {
+    std::vector<float> emission(medium.extinction.size(), 0.0f);
+    parallel_for(
+        emission.size(),
+        [&](std::size_t i) {
+            if (!medium.source.empty())
+                emission[i] = medium.extinction[i] * luminance(medium.source[i]);
+            if (!medium.emission.empty())
+                emission[i] += luminance(medium.emission[i]);
+        },
+        4096);
+    return emission;
+}
+
+// Averages the emission to the lattice twice as coarse, and makes it the source functions of a level.
+std::vector<float> coarser_emission(const BrickLattice& fine, std::vector<float>& emission,
+                                    const std::vector<float>& extinction) {
+    BrickLattice lattice;
+    std::vector<float> coarse;
+    coarsen(fine, emission, 1, lattice, coarse);
+    emission = coarse;
+    for (std::size_t i = 0; i < coarse.size(); ++i)
+        coarse[i] = extinction[i] > 0.0f ? coarse[i] / extinction[i] : 0.0f;
+    return coarse;
+}
+
+// Lines from an eye through points and on to the far end of a medium, in nodes from its reference.
+class LinesOfSight {
+public:
+    LinesOfSight(const Medium& medium, const vec3& eye) : medium_(medium), eye_(medium.index_from_local * eye) {
+        const ivec3 low = medium.lattice.min_brick() * BrickLattice::kSize - medium.reference_node;
+        low_ = vec3(low - 1);
+        high_ = vec3(low + medium.lattice.brick_extent() * BrickLattice::kSize);
+    }
+
+    // Part of the line through a node [nodes from the reference] that lies in the medium's box.
+    void clip(const vec3& node, vec3& begin, vec3& end) const {
+        const vec3 direction = node - eye_;
+        float enter = 0.0f, leave = 1e30f;
+        for (int a = 0; a < 3; ++a)
+            if (direction[a] != 0.0f) {
+                const float one = (low_[a] - eye_[a]) / direction[a], other = (high_[a] - eye_[a]) / direction[a];
+                enter = std::max(enter, std::min(one, other));
+                leave = std::min(leave, std::max(one, other));
+            }
+        leave = leave < 1e30f ? std::max(enter, leave) : enter;  // the eye itself has no line through it
+        begin = eye_ + enter * direction;
+        end = eye_ + leave * direction;
+    }
+    float metres(const vec3& begin, const vec3& end) const {
+        return glm::length(medium_.local_from_index * (end - begin));
+    }
+
+private:
+    const Medium& medium_;
+    vec3 eye_, low_, high_;
+};
+
 }  // namespace
+
+std::vector<float> radiance_through_nodes(const LitLevel& level, const std::vector<float>& scattered, const vec3& eye) {
+    constexpr std::size_t kRun = 256;
+    const Medium& medium = level.medium;
+    std::vector<float> source = scattered;
+    for (std::size_t i = 0; i < level.emitted.size(); ++i)
+        source[i] += level.emitted[i];
+    const PackedField packed(medium.lattice, source, medium.reference_node);
+    const PackedExtinction extinction = level.pyramid->view(0), sources = packed.view();
+    const LinesOfSight lines(medium, eye);
+    std::vector<std::uint32_t> nodes;
+    for (std::size_t i = 0; i < level.needed.size(); ++i)
+        if (level.needed[i])
+            nodes.push_back(static_cast<std::uint32_t>(i));
+    std::vector<float> radiance(level.needed.size(), 0.0f);
+    parallel_for((nodes.size() + kRun - 1) / kRun, [&](std::size_t run) {
+        std::array<std::array<float, kRun>, 8> planes{};  // begin, end, length, result
+        const std::size_t first = run * kRun, count = std::min(kRun, nodes.size() - first);
+        for (std::size_t k = 0; k < count; ++k) {
+            vec3 begin, end;
+            lines.clip(vec3(medium.lattice.node(nodes[first + k]) - medium.reference_node), begin, end);
+            for (int a = 0; a < 3; ++a)
+                planes[a][k] = begin[a], planes[3 + a][k] = end[a];
+            planes[6][k] = lines.metres(begin, end);
+        }
+        const Segments segments{{planes[0].data(), planes[1].data(), planes[2].data()},
+                                {planes[3].data(), planes[4].data(), planes[5].data()},
+                                planes[6].data(),
+                                kRun};
+        segment_collisions(extinction, sources, segments, 1.0f, planes[7].data());
+        for (std::size_t k = 0; k < count; ++k)
+            radiance[nodes[first + k]] = planes[7][k];
+    });
+    return radiance;
+}
 
 std::vector<LitLevel> make_lit_levels(const ExtinctionPyramid& pyramid, const std::vector<std::uint8_t>& needed,
                                       const LightingCamera& camera, int count) {
     std::vector<LitLevel> levels;
     const PointDepths depths(pyramid, kCameraRayLevel);
+    const bool emits = pyramid.medium().emits();
+    std::vector<float> emission = emits ? emission_coefficients(pyramid.medium()) : std::vector<float>{};
     for (int l = 1; l <= std::min(count, pyramid.level_count() - 1); ++l) {
         LitLevel level;
         level.level = l;
@@ -94,6 +191,8 @@ std::vector<LitLevel> make_lit_levels(const ExtinctionPyramid& pyramid, const st
         level.needed = parents(pyramid.lattice(l - 1), l == 1 ? needed : levels.back().needed, lattice);
         assert(level.needed.size() == level.medium.lattice.node_count());
         weigh_by_camera(level, depths, camera);
+        if (emits)
+            level.emitted = coarser_emission(pyramid.lattice(l - 1), emission, level.medium.extinction);
         levels.push_back(std::move(level));
     }
     for (LitLevel& level : levels) {

@@ -25,10 +25,16 @@ struct LitLevel {
     std::vector<float> importance;
     // Per node: transmittance to the camera times opacity times solid angle, to average over what is seen [sr].
     std::vector<float> visible;
+    // Per node: source function of the medium's own emission, luminance [W/(m^2 sr)]; empty: none.
+    std::vector<float> emitted;
 };
 
 // Levels 1 to `count`, fewer where the pyramid has fewer. `needed`: nodes of the medium where light is needed;
 std::vector<LitLevel> make_lit_levels(const ExtinctionPyramid& pyramid, const std::vector<std::uint8_t>& needed,
                                       const LightingCamera& camera, int count);
+
+// Per node, 0 where it is not needed: the radiance along the line from the eye through the node to the far end of the
+// medium, luminance [W/(m^2 sr)]. `scattered`: source function of scattered light per node, luminance.
+std::vector<float> radiance_through_nodes(const LitLevel& level, const std::vector<float>& scattered, const vec3& eye);
 
 }  // namespace brisance

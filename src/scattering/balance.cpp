@@ -50,31 +50,24 @@ vec3 ray_direction(std::size_t ray) {
                                     std::fmod(0.5 + ray * 0.5698402909980532, 1.0));
 }
 
-// One ray from each of the picked nodes to the edge of the medium or a surface: the part that collides.
-std::vector<float> collisions_from(const ExtinctionPyramid& pyramid, const Occluders* occluders,
-                                   const std::vector<std::size_t>& picks) {
+// One ray from each of the picked nodes to the edge of the medium or a surface.
+EscapeRays rays_from(const ExtinctionPyramid& pyramid, const Occluders* occluders,
+                     const std::vector<std::size_t>& picks) {
     const Medium& medium = pyramid.medium();
-    EscapeRays escape(pyramid, occluders, picks.size());
+    EscapeRays rays(pyramid, occluders, picks.size());
     parallel_for(
         picks.size(),
         [&](std::size_t r) {
-            const std::size_t i = picks[r];
-            const ivec3 node = medium.lattice.node(i);
-            escape.set(r, vec3(node - medium.reference_node), ray_direction(r));
+            rays.set(r, vec3(medium.lattice.node(picks[r]) - medium.reference_node), ray_direction(r));
         },
         1024);
-    return escape.collision_probabilities();
+    return rays;
 }
 
-}  // namespace
-
-CollisionEstimate estimate_collisions(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& intensity,
-                                      std::span<const float> directional, std::size_t rays) {
+// The estimate by rays from `picks`, of which `collided` collides.
+CollisionEstimate collision_estimate(const std::vector<Rgb>& intensity, std::span<const float> directional,
+                                     const std::vector<std::size_t>& picks, const std::vector<float>& collided) {
     CollisionEstimate estimate;
-    const std::vector<std::size_t> picks = pick_nodes(luminances(intensity), rays);
-    if (picks.empty())
-        return estimate;
-    const std::vector<float> collided = collisions_from(pyramid, pyramid.occluders(), picks);
     dvec3 hit[kBatches] = {}, emitted[kBatches] = {};
     for (std::size_t r = 0; r < picks.size(); ++r) {
         const std::size_t i = picks[r];
@@ -102,6 +95,30 @@ CollisionEstimate estimate_collisions(const ExtinctionPyramid& pyramid, const st
     return estimate;
 }
 
+}  // namespace
+
+CollisionEstimate estimate_collisions(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& intensity,
+                                      std::span<const float> directional, std::size_t rays) {
+    const std::vector<std::size_t> picks = pick_nodes(luminances(intensity), rays);
+    if (picks.empty())
+        return {};
+    return collision_estimate(intensity, directional, picks,
+                              rays_from(pyramid, pyramid.occluders(), picks).collision_probabilities());
+}
+
+PartlyCollided estimate_collisions(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& intensity,
+                                   std::span<const float> directional, std::size_t rays,
+                                   const std::vector<float>& part) {
+    const std::vector<std::size_t> picks = pick_nodes(luminances(intensity), rays);
+    if (picks.empty())
+        return {};
+    const EscapeRays from_lights = rays_from(pyramid, pyramid.occluders(), picks);
+    const Medium& medium = pyramid.medium();
+    const PackedField weight(medium.lattice, part, medium.reference_node);
+    return {collision_estimate(intensity, directional, picks, from_lights.collision_probabilities()),
+            collision_estimate(intensity, directional, picks, from_lights.weighted_collisions(weight))};
+}
+
 EscapeEstimate estimate_escape(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& intensity,
                                std::span<const float> directional, const std::vector<float>& likelihood,
                                std::size_t rays) {
@@ -110,7 +127,7 @@ EscapeEstimate estimate_escape(const ExtinctionPyramid& pyramid, const std::vect
     const std::vector<std::size_t> picks = pick_nodes(density, rays);
     if (picks.size() < kBatches)
         return {};
-    const std::vector<float> collided = collisions_from(pyramid, nullptr, picks);
+    const std::vector<float> collided = rays_from(pyramid, nullptr, picks).collision_probabilities();
     dvec3 batches[kBatches] = {};
     for (std::size_t r = 0; r < picks.size(); ++r) {
         const double ray_stands_for = all / density[picks[r]] / double(picks.size());
@@ -141,6 +158,12 @@ dvec3 directional_intensity(const std::vector<Rgb>& intensity, std::span<const f
 
 dvec3 collided_power(const Medium& medium, const std::vector<Rgb>& fluence) {
     return total(project_extinction_times(medium, fluence)) / (4.0 * double(kPi));
+}
+
+dvec3 collided_power(const Medium& medium, std::vector<Rgb> fluence, const std::vector<float>& share) {
+    for (std::size_t i = 0; i < fluence.size(); ++i)
+        fluence[i] *= share[i];
+    return collided_power(medium, fluence);
 }
 
 dvec3 absorbed_power(const Medium& medium, std::vector<Rgb> fluence) {

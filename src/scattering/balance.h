@@ -17,12 +17,21 @@ struct CollisionEstimate {
     std::size_t rays = 0;
 };
 
+// The same of a part of the collisions.
+struct PartlyCollided {
+    CollisionEstimate all, part;
+};
+
 // `rays` rays start at the lights' nodes in proportion to luminance, systematically over the nodes' order, and leave in
 // stratified directions; each carries what its march to the edge of the medium absorbs and scatters. `directional`:
 // degrees 1 and 2 of the lights, 24 per node (sh.h), or none. Unbiased for the node lights but for the march's step.
 // The spread of interleaved batches gives the standard error.
 CollisionEstimate estimate_collisions(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& intensity,
                                       std::span<const float> directional, std::size_t rays);
+// `part`: how much a collision at a node counts in the part's estimate, in [0, 1].
+PartlyCollided estimate_collisions(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& intensity,
+                                   std::span<const float> directional, std::size_t rays,
+                                   const std::vector<float>& part);
 
 // Power that would leave the medium without surfaces, over 4 pi [W/sr], by as many rays, which start more often where
 // `likelihood` (per node, any positive guess of how much escapes there) is high: where all but little is swallowed, the
@@ -40,8 +49,10 @@ dvec3 directional_intensity(const std::vector<Rgb>& intensity, std::span<const f
                             const vec3& direction);
 
 // Power that collides, is absorbed or scattered, over 4 pi [W/sr]: the exact integral of extinction * fluence of the
-// two interpolated fields. And the part of it that is absorbed: the same with (1 - albedo) * fluence.
+// two interpolated fields. Of a share of each node's fluence. And the part of it that is absorbed: the same with
+// (1 - albedo) * fluence.
 dvec3 collided_power(const Medium& medium, const std::vector<Rgb>& fluence);
+dvec3 collided_power(const Medium& medium, std::vector<Rgb> fluence, const std::vector<float>& share);
 dvec3 absorbed_power(const Medium& medium, std::vector<Rgb> fluence);
 
 // Where light at a vertex of the lattice 2^level coarser starts: nodes under its hat, picked by extinction. The vertex

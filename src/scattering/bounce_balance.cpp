@@ -31,6 +31,22 @@ double weight_of_rays(double difference, double noise) {
     return variance / (variance + noise * noise);
 }
 
+// What rays say collides over what was gathered, per colour.
+Rgb factor_of(const CollisionEstimate& marched, const dvec3& emitted, const dvec3& gathered) {
+    const double y = luminance(Rgb(emitted));
+    Rgb factor(1.0f);
+    if (!(y > 0.0))
+        return factor;
+    const double collided = luminance(Rgb(gathered)) / y, expected = luminance(Rgb(marched.fraction * emitted)) / y;
+    if (!(collided > 0.0) || !(expected > 0.0))
+        return factor;
+    const double weight = weight_of_rays(collided / expected - 1.0, marched.standard_error / expected);
+    for (int c = 0; c < 3; ++c)
+        if (gathered[c] > 0.0)
+            factor[c] = static_cast<float>(1.0 + weight * (marched.fraction[c] * emitted[c] / gathered[c] - 1.0));
+    return factor;
+}
+
 // A ray from a light.
 struct Start {
     std::size_t light;
@@ -106,29 +122,39 @@ EscapeMeasurement measure_escape(const ExtinctionPyramid& pyramid, int level, co
 }
 
 Rgb energy_balance_factor(const ExtinctionPyramid& pyramid, const ScatteredLight& lights,
-                          const std::vector<Rgb>& fluence, BounceBalance& balance) {
-    const CollisionEstimate marched =
-        estimate_collisions(pyramid, lights.intensity, lights.directional, kCollisionRays);
-    const dvec3 emitted = total(lights.intensity);
-    const dvec3 gathered = collided_power(pyramid.medium(), fluence);
+                          const std::vector<Rgb>& fluence) {
+    return factor_of(estimate_collisions(pyramid, lights.intensity, lights.directional, kCollisionRays),
+                     total(lights.intensity), collided_power(pyramid.medium(), fluence));
+}
+
+BalanceFactors energy_balance_factors(const ExtinctionPyramid& pyramid, const ScatteredLight& lights,
+                                      const std::vector<Rgb>& fluence, const GatheredPart& gathered,
+                                      BounceBalance& balance) {
+    const dvec3 emitted = total(lights.intensity), collided = collided_power(pyramid.medium(), fluence);
     const double y = luminance(Rgb(emitted));
     if (!(y > 0.0))
-        return Rgb(1.0f);
+        return {};
     const EscapeMeasurement escape = measure_escape(pyramid, 0, lights, kEscapeRays, 0);
-    balance.collided = luminance(Rgb(gathered)) / y;
+    balance.collided = luminance(Rgb(collided)) / y;
     balance.escaped = escape.fraction;
     balance.escaped_error = escape.standard_error;
-    const double expected = luminance(Rgb(marched.fraction * emitted)) / y;
-    if (!(balance.collided > 0.0) || !(expected > 0.0))
-        return Rgb(1.0f);
-    const double noise = marched.standard_error / expected;
-    const double weight = weight_of_rays(balance.collided / expected - 1.0, noise);
-    Rgb scale(1.0f);
-    for (int c = 0; c < 3; ++c)
-        if (gathered[c] > 0.0)
-            scale[c] = static_cast<float>(1.0 + weight * (marched.fraction[c] * emitted[c] / gathered[c] - 1.0));
-    balance.scale = luminance(Rgb(dvec3(scale) * gathered)) / luminance(Rgb(gathered));
-    return scale;
+    BalanceFactors factors;
+    Rgb all;
+    if (gathered.share.empty()) {
+        factors.gathered = factors.rest = all = energy_balance_factor(pyramid, lights, fluence);
+    } else {
+        const PartlyCollided marched =
+            estimate_collisions(pyramid, lights.intensity, lights.directional, kCollisionRays, gathered.share);
+        all = factor_of(marched.all, emitted, collided);
+        factors.gathered = factor_of(marched.part, emitted, gathered.power);
+        const dvec3 here = collided_power(pyramid.medium(), fluence, gathered.share);
+        for (int c = 0; c < 3; ++c)
+            if (const double rest = collided[c] - here[c]; rest > 0.0)
+                factors.rest[c] = float(std::max(0.0, (all[c] * collided[c] - factors.gathered[c] * here[c]) / rest));
+    }
+    if (balance.collided > 0.0)
+        balance.scale = luminance(Rgb(dvec3(all) * collided)) / luminance(Rgb(collided));
+    return factors;
 }
 
 void SeriesBalance::add(const ScatteredLight& lights, const FlightPower& flight, const ScatteredLight& scattered) {

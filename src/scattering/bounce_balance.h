@@ -38,9 +38,25 @@ EscapeMeasurement measure_escape(const ExtinctionPyramid& pyramid, int level, co
 
 // The factor per colour that makes a gather at all nodes conserve energy: what rays say collides, over what was
 // gathered. Where hardly any ray meets the medium, rays know the collisions worse than the gather does, and the factor
-// stays nearer 1. Fills all of `balance` but its orders and `emitted`.
+// stays nearer 1.
 Rgb energy_balance_factor(const ExtinctionPyramid& pyramid, const ScatteredLight& lights,
-                          const std::vector<Rgb>& fluence, BounceBalance& balance);
+                          const std::vector<Rgb>& fluence);
+
+// What some nodes gathered themselves where others were interpolated.
+struct GatheredPart {
+    std::vector<float> share;  // per node, the part of its light that was gathered there, in [0, 1]; empty: all
+    dvec3 power{0.0};          // collided_power() of that share of what was gathered
+};
+
+struct BalanceFactors {
+    Rgb gathered{1.0f}, rest{1.0f};
+};
+
+// The factors of what was gathered and of the rest, which err differently: rays count the collisions of the gathered
+// part by themselves. Fills all of `balance` but its orders and `emitted`.
+BalanceFactors energy_balance_factors(const ExtinctionPyramid& pyramid, const ScatteredLight& lights,
+                                      const std::vector<Rgb>& fluence, const GatheredPart& gathered,
+                                      BounceBalance& balance);
 
 // Sums the power of the flights of a series, to measure all of them by one set of rays.
 class SeriesBalance {

@@ -9,6 +9,12 @@
 
 namespace brisance {
 
+namespace {
+
+constexpr float kStep = 1.0f;  // [nodes]
+
+}  // namespace
+
 vec3 uniform_sphere_direction(double u, double v) {
     const double z = 1.0 - 2.0 * u;
     const double s = std::sqrt(std::max(0.0, 1.0 - z * z));
@@ -49,17 +55,32 @@ void EscapeRays::set(std::size_t ray, const vec3& from_nodes, const vec3& direct
     }
 }
 
-std::vector<float> EscapeRays::collision_probabilities() const {
-    std::vector<float> collided(padded_);
-    const PackedExtinction view = pyramid_.view(0);
+template <class March>
+std::vector<float> EscapeRays::for_runs(const March& march) const {
+    std::vector<float> out(padded_);
     parallel_blocks(padded_, 1024, [&](std::size_t first, std::size_t last) {
-        const float* begin[3] = {&begin_[0][first], &begin_[1][first], &begin_[2][first]};
-        const float* end[3] = {&end_[0][first], &end_[1][first], &end_[2][first]};
-        segment_optical_depths(view, begin, end, &length_[first], 1.0f, last - first, &collided[first]);
-        for (std::size_t i = first; i < last; ++i)
+        march(Segments{{&begin_[0][first], &begin_[1][first], &begin_[2][first]},
+                       {&end_[0][first], &end_[1][first], &end_[2][first]},
+                       &length_[first],
+                       last - first},
+              &out[first]);
+    });
+    return out;
+}
+
+std::vector<float> EscapeRays::collision_probabilities() const {
+    const PackedExtinction extinction = pyramid_.view(0);
+    return for_runs([&](const Segments& run, float* collided) {
+        segment_optical_depths(extinction, run, kStep, collided);
+        for (std::size_t i = 0; i < run.count; ++i)
             collided[i] = -std::expm1(-collided[i]);
     });
-    return collided;
+}
+
+std::vector<float> EscapeRays::weighted_collisions(const PackedField& weight) const {
+    const PackedExtinction extinction = pyramid_.view(0), weights = weight.view();
+    return for_runs(
+        [&](const Segments& run, float* sums) { segment_collisions(extinction, weights, run, kStep, sums); });
 }
 
 }  // namespace brisance

@@ -22,6 +22,8 @@ public:
 
     // Per ray, padded to a multiple of 16: 1 - transmittance. Marches with steps of at most one node.
     std::vector<float> collision_probabilities() const;
+    // The same, each collision counted with the weight where it happens. `weight`: on the medium's lattice.
+    std::vector<float> weighted_collisions(const PackedField& weight) const;
 
 private:
     // The medium's bounding box in nodes from the reference, one node wider.
@@ -31,6 +33,10 @@ private:
     static NodeBox bounding_box(const Medium& medium);
     // Distance [m] from p along `direction` [nodes per metre] to the box's wall.
     static float exit_distance(const NodeBox& box, const vec3& p, const vec3& direction);
+
+    // Calls `march` with runs of rays, and where their results go.
+    template <class March>
+    std::vector<float> for_runs(const March& march) const;
 
     const ExtinctionPyramid& pyramid_;
     const Occluders* occluders_;

@@ -250,28 +250,53 @@ void march_parallel(const PackedExtinction* mips, std::span<const ShadowStep> ne
     }
 }
 
-void segments(const PackedExtinction& level, const float* const begin[3], const float* const end[3],
-              const float* metres, float step_nodes, std::size_t count, float* depths) {
-    const D d;
-    const std::size_t lanes = hn::Lanes(d);
-    for (std::size_t r = 0; r < count; r += lanes) {
-        V from[3], segment[3];
+// Segments of one group of lanes, cut into steps of the same number.
+struct SegmentGroup {
+    V from[3], segment[3];
+    int steps;
+
+    HWY_INLINE SegmentGroup(D d, const Segments& all, std::size_t r, float step_nodes) {
         V square = hn::Zero(d);
         for (int a = 0; a < 3; ++a) {
-            from[a] = hn::LoadU(d, begin[a] + r);
-            segment[a] = hn::Sub(hn::LoadU(d, end[a] + r), from[a]);
+            from[a] = hn::LoadU(d, all.begin[a] + r);
+            segment[a] = hn::Sub(hn::LoadU(d, all.end[a] + r), from[a]);
             square = hn::MulAdd(segment[a], segment[a], square);
         }
         const float longest = hn::GetLane(hn::MaxOfLanes(d, hn::Sqrt(square)));
-        const int steps = 1 + static_cast<int>(longest / step_nodes);
+        steps = 1 + static_cast<int>(longest / step_nodes);
+    }
+    // Of the field in the middle of a step.
+    HWY_INLINE V sample(D d, const PackedExtinction& field, int step) const {
+        const V t = hn::Set(d, (step + 0.5f) / steps);
+        return sample_extinction(d, field, hn::MulAdd(t, segment[0], from[0]), hn::MulAdd(t, segment[1], from[1]),
+                                 hn::MulAdd(t, segment[2], from[2]));
+    }
+};
+
+void segments(const PackedExtinction& extinction, const Segments& all, float step_nodes, float* depths) {
+    const D d;
+    for (std::size_t r = 0; r < all.count; r += hn::Lanes(d)) {
+        const SegmentGroup group(d, all, r, step_nodes);
         V sum = hn::Zero(d);
-        for (int s = 0; s < steps; ++s) {
-            const V t = hn::Set(d, (s + 0.5f) / steps);
-            sum =
-                hn::Add(sum, sample_extinction(d, level, hn::MulAdd(t, segment[0], from[0]),
-                                               hn::MulAdd(t, segment[1], from[1]), hn::MulAdd(t, segment[2], from[2])));
+        for (int s = 0; s < group.steps; ++s)
+            sum = hn::Add(sum, group.sample(d, extinction, s));
+        hn::StoreU(hn::Mul(sum, hn::Mul(hn::LoadU(d, all.metres + r), hn::Set(d, 1.0f / group.steps))), d, depths + r);
+    }
+}
+
+void collisions(const PackedExtinction& extinction, const PackedExtinction& weight, const Segments& all,
+                float step_nodes, float* sums) {
+    const D d;
+    for (std::size_t r = 0; r < all.count; r += hn::Lanes(d)) {
+        const SegmentGroup group(d, all, r, step_nodes);
+        const V length = hn::Mul(hn::LoadU(d, all.metres + r), hn::Set(d, 1.0f / group.steps));
+        V left = hn::Set(d, 1.0f), sum = hn::Zero(d);
+        for (int s = 0; s < group.steps && !hn::AllTrue(d, hn::Lt(left, hn::Set(d, 1e-6f))); ++s) {
+            const V passed = hn::Mul(left, hn::Exp(d, hn::Neg(hn::Mul(length, group.sample(d, extinction, s)))));
+            sum = hn::MulAdd(hn::Sub(left, passed), group.sample(d, weight, s), sum);
+            left = passed;
         }
-        hn::StoreU(hn::Mul(sum, hn::Mul(hn::LoadU(d, metres + r), hn::Set(d, 1.0f / steps))), d, depths + r);
+        hn::StoreU(sum, d, sums + r);
     }
 }
 
@@ -285,6 +310,7 @@ namespace brisance {
 HWY_EXPORT(march);
 HWY_EXPORT(march_parallel);
 HWY_EXPORT(segments);
+HWY_EXPORT(collisions);
 
 void march_shadow_rays(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
                        std::span<const ShadowStep> steps, const vec3& origin, const ShadowRays& rays, int distances,
@@ -298,9 +324,13 @@ void march_parallel_rays(const PackedExtinction* mips, std::span<const ShadowSte
     HWY_DYNAMIC_DISPATCH(march_parallel)(mips, near_steps, steps, origin, rays, distances, scale, out, strides);
 }
 
-void segment_optical_depths(const PackedExtinction& level, const float* const begin[3], const float* const end[3],
-                            const float* metres, float step_nodes, std::size_t count, float* depths) {
-    HWY_DYNAMIC_DISPATCH(segments)(level, begin, end, metres, step_nodes, count, depths);
+void segment_optical_depths(const PackedExtinction& extinction, const Segments& all, float step_nodes, float* depths) {
+    HWY_DYNAMIC_DISPATCH(segments)(extinction, all, step_nodes, depths);
+}
+
+void segment_collisions(const PackedExtinction& extinction, const PackedExtinction& weight, const Segments& all,
+                        float step_nodes, float* sums) {
+    HWY_DYNAMIC_DISPATCH(collisions)(extinction, weight, all, step_nodes, sums);
 }
 
 }  // namespace brisance

@@ -48,10 +48,23 @@ void march_parallel_rays(const PackedExtinction* mips, std::span<const ShadowSte
                          std::span<const ShadowStep> steps, const vec3& origin, const ShadowRays& rays, int distances,
                          float scale, std::uint16_t* out, const HomogeneousStrides* strides = nullptr);
 
-// Computes the optical depths of `count` segments from planar begins to planar ends, in nodes of level 0 relative to
-// the reference; `metres` holds their lengths. It uses the midpoint rule with steps of at most `step_nodes` nodes.
-// Arrays are padded to 16.
-void segment_optical_depths(const PackedExtinction& level, const float* const begin[3], const float* const end[3],
-                            const float* metres, float step_nodes, std::size_t count, float* depths);
+// Segments in planar arrays padded to a multiple of 16: from `begin` to `end`, in nodes of the lattice relative to the
+// reference, `metres` long.
+struct Segments {
+    const float* begin[3];
+    const float* end[3];
+    const float* metres;
+    std::size_t count;  // padded
+};
+
+// The optical depths of the segments, by the midpoint rule with steps of at most `step_nodes` nodes.
+void segment_optical_depths(const PackedExtinction& extinction, const Segments& segments, float step_nodes,
+                            float* depths);
+
+// How much of a light that starts with 1 collides along the segments, each collision counted with the value of the
+// field `weight` where it happens. Where `weight` is the source function, it is the radiance that arrives at the
+// beginning of a segment.
+void segment_collisions(const PackedExtinction& extinction, const PackedExtinction& weight, const Segments& segments,
+                        float step_nodes, float* sums);
 
 }  // namespace brisance

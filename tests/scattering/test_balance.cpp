@@ -214,5 +214,25 @@ TEST(Balance, WithoutLightsNothingCollides) {
     EXPECT_EQ(e.fraction, dvec3(0.0));
 }
 
+// A part and the rest add up, and halves of a ball that are alike have a half each.
+TEST(Balance, CollisionsAreCountedByParts) {
+    const Lit lit(make_medium(glowing_ball(16, 2.0f)));
+    const std::size_t nodes = lit.medium.extinction.size();
+    std::vector<float> all(nodes, 1.0f), half(nodes), rest(nodes);
+    for (std::size_t i = 0; i < nodes; ++i) {
+        const int x = lit.medium.lattice.node(i).x;
+        half[i] = x > 0 ? 1.0f : x == 0 ? 0.5f : 0.0f;
+        rest[i] = 1.0f - half[i];
+    }
+    const auto of = [&](const std::vector<float>& part) {
+        return estimate_collisions(lit.pyramid, lit.intensity, {}, 40000, part);
+    };
+    const PartlyCollided whole = of(all), right = of(half), left = of(rest);
+    EXPECT_NEAR(whole.part.fraction.x / whole.all.fraction.x, 1.0, 1e-3);
+    EXPECT_NEAR((right.part.fraction.x + left.part.fraction.x) / whole.all.fraction.x, 1.0, 1e-3);
+    EXPECT_NEAR(right.part.fraction.x / whole.all.fraction.x, 0.5, 5.0 * right.part.standard_error);
+    EXPECT_LT(right.part.standard_error, 0.01);
+}
+
 }  // namespace
 }  // namespace brisance

@@ -27,11 +27,32 @@ Recipe blobs() {
     return r;
 }
 
-struct Segments {
+struct PointPairs {
     std::vector<vec3> from, to;  // local [m]
 
     std::vector<float> depths(const ExtinctionPyramid& pyramid, const std::vector<float>& metres, int level,
                               float step_nodes) const {
+        return march(pyramid, metres, level, [&](const Segments& segments, float* result) {
+            segment_optical_depths(pyramid.view(level), segments, step_nodes, result);
+        });
+    }
+
+    // As segment_collisions() on the medium's own lattice.
+    std::vector<float> collisions(const ExtinctionPyramid& pyramid, const std::vector<float>& weight,
+                                  float step_nodes) const {
+        const Medium& medium = pyramid.medium();
+        const PackedField weights(medium.lattice, weight, medium.reference_node);
+        std::vector<float> metres;
+        for (std::size_t i = 0; i < from.size(); ++i)
+            metres.push_back(glm::distance(from[i], to[i]));
+        return march(pyramid, metres, 0, [&](const Segments& segments, float* result) {
+            segment_collisions(pyramid.view(0), weights.view(), segments, step_nodes, result);
+        });
+    }
+
+    template <class Kernel>
+    std::vector<float> march(const ExtinctionPyramid& pyramid, const std::vector<float>& metres, int level,
+                             const Kernel& kernel) const {
         const std::size_t padded = (from.size() + 15) / 16 * 16;
         std::vector<float> begin[3], end[3], length(padded, 0.0f), result(padded);
         const float shrink = 1.0f / float(1 << level);
@@ -46,9 +67,11 @@ struct Segments {
                 begin[a][i] = f[a], end[a][i] = t[a];
             length[i] = metres[i];
         }
-        const float* b[3] = {begin[0].data(), begin[1].data(), begin[2].data()};
-        const float* e[3] = {end[0].data(), end[1].data(), end[2].data()};
-        segment_optical_depths(pyramid.view(level), b, e, length.data(), step_nodes, padded, result.data());
+        const Segments segments{{begin[0].data(), begin[1].data(), begin[2].data()},
+                                {end[0].data(), end[1].data(), end[2].data()},
+                                length.data(),
+                                padded};
+        kernel(segments, result.data());
         result.resize(from.size());
         return result;
     }
@@ -56,7 +79,7 @@ struct Segments {
 
 // Single points: segments of no extent that count as one metre.
 std::vector<float> samples(const ExtinctionPyramid& pyramid, const std::vector<vec3>& points, int level) {
-    return Segments{points, points}.depths(pyramid, std::vector<float>(points.size(), 1.0f), level, 1.0f);
+    return PointPairs{points, points}.depths(pyramid, std::vector<float>(points.size(), 1.0f), level, 1.0f);
 }
 
 vec3 random_local(const Medium& medium, Rng& rng, float low, float high) {
@@ -125,7 +148,7 @@ TEST(Segments, OpticalDepthsAgreeWithThePlainMarch) {
     const Medium medium = make_medium(blobs());
     const ExtinctionPyramid pyramid(medium, 1);
     Rng rng(Stream::EscapeRay, 2);
-    Segments s;
+    PointPairs s;
     std::vector<float> metres;
     for (int i = 0; i < 500; ++i) {
         s.from.push_back(random_local(medium, rng, -25.0f, 38.0f));
@@ -146,7 +169,7 @@ TEST(Segments, InUniformSmokeDepthIsExtinctionTimesLength) {
     const Medium medium = make_medium(r);
     const ExtinctionPyramid pyramid(medium, 1);
     Rng rng(Stream::EscapeRay, 3);
-    Segments s;
+    PointPairs s;
     std::vector<float> metres;
     for (int i = 0; i < 64; ++i) {
         s.from.push_back(random_local(medium, rng, -20.0f, 32.0f));
@@ -156,6 +179,40 @@ TEST(Segments, InUniformSmokeDepthIsExtinctionTimesLength) {
     const std::vector<float> depths = s.depths(pyramid, metres, 0, 1.0f);
     for (std::size_t i = 0; i < metres.size(); ++i)
         ASSERT_NEAR(depths[i], 3.0f * metres[i], 5e-4f * 3.0f * metres[i]);
+}
+
+// With a weight of 1 everywhere, what collides is what does not pass, whatever the steps.
+TEST(Segments, AllCollisionsAreWhatDoesNotPass) {
+    const Medium medium = make_medium(blobs());
+    const ExtinctionPyramid pyramid(medium, 1);
+    Rng rng(Stream::EscapeRay, 3);
+    PointPairs s;
+    std::vector<float> metres;
+    for (int i = 0; i < 500; ++i) {
+        s.from.push_back(random_local(medium, rng, -25.0f, 38.0f));
+        s.to.push_back(random_local(medium, rng, -25.0f, 38.0f));
+        metres.push_back(glm::distance(s.from.back(), s.to.back()));
+    }
+    const std::vector<float> depths = s.depths(pyramid, metres, 0, 0.5f);
+    const std::vector<float> sums = s.collisions(pyramid, std::vector<float>(medium.extinction.size(), 1.0f), 0.5f);
+    for (std::size_t i = 0; i < s.from.size(); ++i)
+        ASSERT_NEAR(sums[i], -std::expm1(-depths[i]), 1e-3f) << "depth " << depths[i];
+}
+
+// In homogeneous smoke, a weight that rises linearly from 0 to 1 over optical depth d sums to 1/d - e^-d (1 + 1/d).
+TEST(Segments, CollisionsCountWithTheWeightWhereTheyHappen) {
+    Recipe r = blobs();
+    r.density = [](const ivec3&) { return 1.0f; };
+    const Medium medium = make_medium(r);
+    const ExtinctionPyramid pyramid(medium, 1);
+    constexpr int kFrom = -15, kTo = 25;  // nodes along x
+    std::vector<float> weight(medium.extinction.size());
+    for (std::size_t i = 0; i < weight.size(); ++i)
+        weight[i] = std::clamp(float(medium.lattice.node(i).x - kFrom) / float(kTo - kFrom), 0.0f, 1.0f);
+    const PointPairs along{{medium.local_of_node({kFrom, 3, 3})}, {medium.local_of_node({kTo, 3, 3})}};
+    const float depth = medium.max_extinction * glm::distance(along.from[0], along.to[0]);
+    const float expected = (1.0f - std::exp(-depth) * (1.0f + depth)) / depth;
+    EXPECT_NEAR(along.collisions(pyramid, weight, 0.25f)[0] / expected, 1.0f, 0.01f);
 }
 
 }  // namespace

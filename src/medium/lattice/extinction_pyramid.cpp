@@ -1,7 +1,5 @@
 #include "medium/lattice/extinction_pyramid.h"
 
-#include <Imath/half.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -10,8 +8,6 @@
 namespace brisance {
 
 namespace {
-
-constexpr float kStoredMaximum = 60000.0f;  // of a half float: leaves nine decades before values turn subnormal
 
 constexpr int kAveraged = 2 * BrickLattice::kSize + 1;  // fine nodes per axis that one coarse brick averages
 
@@ -51,53 +47,6 @@ void coarsen(const BrickLattice& fine, std::span<const float> values, int channe
     });
 }
 
-ExtinctionPyramid::Packed ExtinctionPyramid::pack(const BrickLattice& lattice, const std::vector<float>& nodes,
-                                                  const ivec3& reference_brick) {
-    Packed p;
-    p.min_brick = lattice.min_brick() - reference_brick - 2;
-    p.extent = lattice.brick_extent() + 3;
-    p.directory.assign(std::size_t(p.extent.x) * p.extent.y * p.extent.z, 0);
-    const float maximum = nodes.empty() ? 0.0f : *std::max_element(nodes.begin(), nodes.end());
-    p.scale = maximum / kStoredMaximum;
-
-    // Cells of a brick reach one node into the next brick, so every brick's lower neighbours get cells too.
-    std::vector<ivec3> voxel_bricks;
-    for (std::size_t b = 0; b < lattice.brick_count(); ++b)
-        for (int k = 0; k < 8; ++k)
-            voxel_bricks.push_back(lattice.brick(b) - ivec3(k >> 2, k >> 1 & 1, k & 1));
-    const BrickLattice cells(std::move(voxel_bricks));
-    constexpr int kSide = BrickLattice::kSize + 1;
-    std::vector<std::uint8_t> used(cells.brick_count(), 0);
-    std::vector<std::vector<std::uint32_t>> packed(cells.brick_count());
-    // Extinction too small for its inverse to be a float stops nothing over any distance a float can hold.
-    const float to_stored = maximum > 1e-30f ? kStoredMaximum / maximum : 0.0f;
-    parallel_for(cells.brick_count(), [&](std::size_t b) {
-        std::vector<float> box(kSide * kSide * kSide);
-        copy_box(lattice, nodes, 1, cells.first_node(b), ivec3(kSide), box);
-        if (std::all_of(box.begin(), box.end(), [](float v) { return v == 0.0f; }))
-            return;
-        auto& words = packed[b];
-        words.resize(PackedExtinction::kWordsPerBrick);
-        for (int row = 0; row < kSide * kSide; ++row)
-            for (int z = 0; z < BrickLattice::kSize; ++z) {
-                const Imath::half low(box[row * kSide + z] * to_stored);
-                const Imath::half high(box[row * kSide + z + 1] * to_stored);
-                words[row * BrickLattice::kSize + z] = std::uint32_t{low.bits()} | std::uint32_t{high.bits()} << 16;
-            }
-    });
-    p.words.assign(PackedExtinction::kWordsPerBrick, 0);
-    for (std::size_t b = 0; b < cells.brick_count(); ++b) {
-        if (packed[b].empty())
-            continue;
-        const ivec3 r = cells.brick(b) - reference_brick - p.min_brick;
-        p.directory[(std::size_t(r.x) * p.extent.y + r.y) * p.extent.z + r.z] =
-            static_cast<std::int32_t>(p.words.size());
-        p.words.insert(p.words.end(), packed[b].begin(), packed[b].end());
-        packed[b] = {};
-    }
-    return p;
-}
-
 ExtinctionPyramid::ExtinctionPyramid(const Medium& medium, int levels) : medium_(&medium) {
     lattices_.push_back(medium.lattice);
     nodes_.push_back(medium.extinction);
@@ -113,23 +62,13 @@ ExtinctionPyramid::ExtinctionPyramid(const Medium& medium, int levels) : medium_
         nodes_.push_back(std::move(values));
     }
     for (std::size_t l = 0; l < lattices_.size(); ++l)
-        packed_.push_back(pack(lattices_[l], nodes_[l], (medium.reference_node >> int(l)) >> 3));
-}
-
-PackedExtinction ExtinctionPyramid::view(int level) const {
-    const Packed& p = packed_[level];
-    return {p.directory.data(),
-            p.words.data(),
-            {p.min_brick.x, p.min_brick.y, p.min_brick.z},
-            {p.extent.x, p.extent.y, p.extent.z},
-            p.scale};
+        packed_.emplace_back(lattices_[l], nodes_[l], medium.reference_node >> int(l));
 }
 
 std::uint64_t ExtinctionPyramid::bytes() const {
     std::uint64_t sum = 0;
     for (std::size_t l = 0; l < packed_.size(); ++l)
-        sum +=
-            packed_[l].directory.size() * 4 + packed_[l].words.size() * 4 + nodes_[l].size() * 4 + lattices_[l].bytes();
+        sum += packed_[l].bytes() + nodes_[l].size() * 4 + lattices_[l].bytes();
     return sum;
 }
 

@@ -1,28 +1,19 @@
 // The extinction field and its coarser averages, packed for fast trilinear sampling.
 //
 // Level l has nodes at the index points 2^l k: node values of level l + 1 are (1/4, 1/2, 1/4) averages per axis of
-// level l's, which keeps the integral. Each packed brick of 8^3 cells holds 9 x 9 x 8 words of 32 bits, word (x, y, z)
-// being the half floats of nodes z and z + 1: a trilinear sample is four loads.
+// level l's, which keeps the integral.
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "medium/lattice/homogeneous_bricks.h"
 #include "medium/lattice/occluders.h"
+#include "medium/lattice/packed_field.h"
 #include "medium/medium.h"
 
 namespace brisance {
-
-// The data that a kernel needs to sample one level. Positions are in the level's nodes, relative to the reference node.
-struct PackedExtinction {
-    static constexpr int kWordsPerBrick = 9 * 9 * 8;
-    const std::int32_t* directory;  // first word of each brick; 0 for the empty brick; a rim of empty bricks all round
-    const std::uint32_t* words;
-    std::int32_t min_brick[3];
-    std::int32_t extent[3];
-    float scale;  // extinction [1/m] of a stored 1
-};
 
 class ExtinctionPyramid {
 public:
@@ -32,7 +23,7 @@ public:
     ExtinctionPyramid(const Medium& medium, int levels);
 
     int level_count() const { return static_cast<int>(packed_.size()); }
-    PackedExtinction view(int level) const;
+    PackedExtinction view(int level) const { return packed_[level].view(); }
     const BrickLattice& lattice(int level) const { return lattices_[level]; }
     const std::vector<float>& nodes(int level) const { return nodes_[level]; }
     const Medium& medium() const { return *medium_; }
@@ -54,21 +45,12 @@ public:
     float extinction_at(const vec3& local) const;
 
 private:
-    struct Packed {
-        std::vector<std::int32_t> directory;
-        std::vector<std::uint32_t> words;
-        ivec3 min_brick{0};
-        ivec3 extent{0};
-        float scale = 0.0f;
-    };
-    static Packed pack(const BrickLattice& lattice, const std::vector<float>& nodes, const ivec3& reference_brick);
-
     const Medium* medium_;
     const Occluders* occluders_ = nullptr;
     const HomogeneousBricks* homogeneous_bricks_ = nullptr;
     std::vector<BrickLattice> lattices_;
     std::vector<std::vector<float>> nodes_;
-    std::vector<Packed> packed_;
+    std::vector<PackedField> packed_;
 };
 
 // Averages node values (`channels` interleaved) to the next coarser lattice with weights (1/4, 1/2, 1/4) per axis.

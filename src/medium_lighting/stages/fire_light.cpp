@@ -4,7 +4,6 @@
 #include "lighting_grid/voxel_lights.h"
 #include "medium_lighting/adaptive_gather.h"
 #include "medium_lighting/balance_table.h"
-#include "medium_lighting/gather_lights.h"
 #include "medium_lighting/level_costs.h"
 
 namespace brisance {
@@ -31,12 +30,9 @@ AdaptiveLight gather_at_lattice(const LitLattice& lattice, const HierarchyLights
     const LightingSettings& settings = lattice.input().lighting;
     StageCost stage{"light from the fire (MV)", 0.0, 0, {}};
     std::vector<LevelCost> costs;
-    AdaptiveLight arriving = gather_adaptively(
-        lattice, lattice.request().moments,
-        [&](const GatherTarget& target) {
-            return gather_lights(lattice, lights, settings.alpha, target, costs, progress);
-        },
-        stage.detail);
+    AdaptiveLight arriving =
+        gather_adaptively(lattice, lattice.request().moments,
+                          LevelLights(lattice, lights, settings.alpha, costs, progress), stage.detail);
     if (settings.energy_balance) {
         BounceBalance balance;
         balance.emitted = 1.0;

@@ -3,7 +3,6 @@
 #include "core/stopwatch.h"
 #include "medium_lighting/adaptive_gather.h"
 #include "medium_lighting/balance_table.h"
-#include "medium_lighting/gather_lights.h"
 #include "medium_lighting/level_costs.h"
 #include "scattering/balance.h"
 
@@ -83,11 +82,7 @@ private:
         const auto thin = take_thin_medium_lights(lattice_.medium(), thin_bricks, lights);
         const MediumLightingInput& input = lattice_.input();
         AdaptiveLight light = gather_adaptively(
-            lattice_, false,
-            [&](const GatherTarget& target) {
-                return gather_lights(lattice_, lights, input.scattering.alpha, target, costs, progress_);
-            },
-            detail_);
+            lattice_, false, LevelLights(lattice_, lights, input.scattering.alpha, costs, progress_), detail_);
         if (!thin)
             return light;
         LightField of_thin = thin->lights.field(lattice_.pyramid(), input.scattering.alpha, input.lighting, nullptr);
