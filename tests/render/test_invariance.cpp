@@ -1,0 +1,73 @@
+// The lighting depends on what is at each point of space, not on the voxels that say so: pictures of one scene in two
+// representations differ by less than the stated error, lighting.error, in every cell, and the same stages light both.
+#include <gtest/gtest.h>
+
+#include "same_picture.h"
+
+namespace brisance {
+namespace {
+
+using namespace testing;
+
+std::vector<SameScene> scenes() {
+    return {smoke_ball(0.0f), smoke_ball(0.6f), burst_in_haze(0.0f), fire_in_haze()};
+}
+
+class Invariance : public ::testing::TestWithParam<SameScene> {};
+
+INSTANTIATE_TEST_SUITE_P(Of, Invariance, ::testing::ValuesIn(scenes()),
+                         [](const auto& scene) { return scene.param.name; });
+
+TEST_P(Invariance, ZerosOnOneSideChangeNothing) {
+    expect_same_picture(cropped(GetParam()), padded(cropped(GetParam()), {29, 0, 0}, {0, 0, 0}), "29 zeros in -x");
+}
+
+TEST_P(Invariance, AnOddNumberOfZerosChangesNothing) {
+    expect_same_picture(cropped(GetParam()), padded(cropped(GetParam()), {0, 0, 0}, {3, 13, 7}),
+                        "3, 13 and 7 zeros in +x, +y, +z");
+}
+
+// Lattices are anchored to the world's origin: only a move shifts bricks and the levels of hierarchies.
+TEST_P(Invariance, AnOddNumberOfVoxelsFromTheOriginChangesNothing) {
+    expect_same_picture(GetParam(), moved(GetParam(), {3, 5, 7}), "moved by (3, 5, 7) voxels");
+}
+
+TEST_P(Invariance, ATurnOfTheVoxelsChangesNothing) {
+    expect_same_picture(GetParam(), turned(GetParam()), "voxels turned about x");
+}
+
+TEST_P(Invariance, ATurnOfTheTransformChangesNothing) {
+    expect_same_picture(GetParam(), turned_by_transform(GetParam()), "transform turned about z");
+}
+
+TEST_P(Invariance, AnEighthOfAVoxelChangesNothing) {
+    expect_same_picture(GetParam(), moved(GetParam(), dvec3(0.125)), "moved by an eighth of a voxel");
+}
+
+TEST_P(Invariance, HalfAVoxelChangesNothing) {
+    expect_same_picture(GetParam(), moved(GetParam(), dvec3(0.5)), "moved by half a voxel");
+}
+
+TEST_P(Invariance, TwoTouchingVolumesAreOne) {
+    expect_same_picture(GetParam(), split(GetParam(), 1), "split at x = 1");
+}
+
+class Resampling : public ::testing::TestWithParam<SameScene> {};
+
+INSTANTIATE_TEST_SUITE_P(Of, Resampling, ::testing::Values(smoke_ball(0.0f), smoke_ball(0.6f), fire_in_haze()),
+                         [](const auto& scene) { return scene.param.name; });
+
+TEST_P(Resampling, HalfTheVoxelsEdgeChangesNothing) {
+    expect_same_picture(GetParam(), finer(GetParam()), "voxels of half the edge");
+}
+
+// What haze shows of a burst came through its skin, and the lights that stand for the skin are those of the voxels:
+// the error is the one that the limits state, and which levels light the haze depends on the voxels.
+TEST(ResamplingOfHaze, HalfTheVoxelsEdgeStaysWithinTheLimit) {
+    constexpr double kLimit = 0.08;
+    for (const SameScene& scene : {burst_in_haze(0.0f), burst_in_veil()})
+        expect_near_light(light(scene), light(finer(scene)), {"V", "MV", "MM"}, kLimit, scene.name);
+}
+
+}  // namespace
+}  // namespace brisance
