@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -20,6 +21,8 @@ struct CertifiedError {
     double mean = 0.0;        // mean(I) / mean(R) - 1
     Interval mean_interval;
     double largest_share = 0.0;  // of the squared error's variance, from the pair of pixels that adds most
+    double square_deviation = std::numeric_limits<double>::infinity();  // standard error of `square`
+    std::size_t strata = 0;                                             // its degrees of freedom
 };
 
 struct Certificate {

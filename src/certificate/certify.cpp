@@ -218,6 +218,9 @@ void estimate_error(CertifiedError& e, const SurveyedSums& s, double norm) {
     e.error = std::sqrt(std::max(0.0, e.square));
     e.error_interval = {0.0, kInfinity};
     e.largest_share = s.largest_share;
+    e.strata = s.strata;
+    if (below > 0.0)
+        e.square_deviation = std::sqrt(std::max(0.0, s.aa + e.square * (2.0 * s.ab + e.square * s.bb))) / below;
     // Fieller's interval holds all q for which a - q below is within t standard errors of 0:
     // (a - q below)^2 <= t^2 var(a + q b).
     const double squared = below * below - t2 * s.bb, middle = s.a * below + t2 * s.ab, rest = s.a * s.a - t2 * s.aa;
@@ -283,21 +286,19 @@ void warn(const Certificate& c, Progress& progress) {
 
 }  // namespace
 
-Certificate certify(const Image& image, const CertifiedScene& scene, const CertifySettings& settings,
+Certificate certify(const Image& image, const CertifiedScene& scene, const PathTracer& tracer, const SurveySize& size,
                     Progress& progress) {
-    progress.stage("certificate");
     const std::vector<Target> targets = targets_of(image, scene.surroundings);
     const Population population(image, targets);
-    const PixelSurvey survey(population.sizes(), image.width, draws_of(settings.samples), settings.seed);
+    const PixelSurvey survey(population.sizes(), image.width, size.draws, size.seed);
     const auto& draws = survey.draws();
     Certificate out;
-    out.seed = settings.seed;
+    out.seed = size.seed;
     out.not_finite_pixels = population.not_usable();
     out.pixels = draws.size();
-    out.samples_per_pixel = draws.empty() ? 0 : std::max<std::uint64_t>(2, settings.samples / out.pixels);
+    out.samples_per_pixel = draws.empty() ? 0 : std::max<std::uint64_t>(2, size.samples / out.pixels);
     out.samples = out.pixels * out.samples_per_pixel;
-    const PathTracer tracer(scene.medium, scene.tracing, scene.bounces, scene.surroundings);
-    Sampler sampler(targets, tracer, scene.camera, settings.seed, static_cast<int>(out.samples_per_pixel));
+    Sampler sampler(targets, tracer, scene.camera, size.seed, static_cast<int>(out.samples_per_pixel));
     std::vector<AllEstimates> estimates(draws.size());
     std::atomic<std::size_t> done = 0;
     parallel_for(draws.size(), [&](std::size_t i) {
@@ -310,6 +311,16 @@ Certificate certify(const Image& image, const CertifiedScene& scene, const Certi
         out.errors.push_back(black && !scene.shines ? error_of_black(targets[t])
                                                     : certified_error(population, targets[t], estimates, t));
     }
+    return out;
+}
+
+Certificate certify(const Image& image, const CertifiedScene& scene, const CertifySettings& settings,
+                    Progress& progress) {
+    progress.stage("certificate");
+    const PathTracer tracer(scene.medium, scene.tracing, scene.bounces, scene.surroundings);
+    Certificate out =
+        certify(image, scene, tracer,
+                {draws_of(settings.samples), static_cast<std::size_t>(settings.samples), settings.seed}, progress);
     warn(out, progress);
     return out;
 }

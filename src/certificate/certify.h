@@ -17,6 +17,7 @@
 #include "core/progress.h"
 #include "emitters/surroundings.h"
 #include "film/image.h"
+#include "reference/path_tracer.h"
 #include "tracking/settings.h"
 
 namespace brisance {
@@ -31,6 +32,13 @@ struct CertifiedScene {
     bool shines = true;  // there is fire, or there are emitters
 };
 
+// The size of a survey, and the random numbers that it draws.
+struct SurveySize {
+    std::size_t draws;    // of pixels, some perhaps more than once
+    std::size_t samples;  // in all
+    int seed;
+};
+
 // Certifies a picture by any method: its beauty, and the ledger cells that it has layers of. The estimators are those
 // of scene.tracing. The result is the same to the bit for any number of threads. Warns of pixels and samples that are
 // not finite, and when few pixels decide.
@@ -38,6 +46,10 @@ struct CertifiedScene {
 // It cannot detect light that none of its samples found, nor errors in few pixels. If a share s of the pixels is too
 // dark, it remains undetected with probability (1 - s)^(draws / 5). Pixels that are too bright are nearly always found.
 Certificate certify(const Image& image, const CertifiedScene& scene, const CertifySettings& settings,
+                    Progress& progress);
+
+// The same by a survey of the given size, without warnings. `tracer` is of the scene.
+Certificate certify(const Image& image, const CertifiedScene& scene, const PathTracer& tracer, const SurveySize& size,
                     Progress& progress);
 
 }  // namespace brisance

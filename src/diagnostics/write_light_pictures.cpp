@@ -126,6 +126,7 @@ void write_light_pictures(const LightPictures& pictures, const LightPictureFiles
         written(file);
     };
     metadata.text.erase("brisance/certificate");
+    metadata.text.erase("brisance/believed_error");
     const std::vector<PlyProperty> properties = properties_of(pictures.lights, exposure_stops, view);
     write(files.ply, [&](const fs::path& file) { write_ply(file, properties, kComments); });
     write(files.exr, [&](const fs::path& file) { write_exr(file, pictures.image, metadata); });

@@ -7,7 +7,7 @@
 #include "diagnostics/light_pictures.h"
 #include "emitters/surroundings.h"
 #include "film/write_image.h"
-#include "render/plan.h"
+#include "forecast/plan.h"
 #include "shot/shot.h"
 #include "statistics/statistics.h"
 

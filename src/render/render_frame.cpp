@@ -7,12 +7,15 @@
 #include "camera/camera.h"
 #include "certificate/certify.h"
 #include "core/stopwatch.h"
+#include "forecast/machine_speed.h"
+#include "forecast/plan.h"
 #include "reference/trace_picture.h"
+#include "render/believe.h"
 #include "render/checkpoint_key.h"
 #include "render/choose_method.h"
 #include "render/draw.h"
 #include "render/frame_input.h"
-#include "render/plan.h"
+#include "render/time_budget.h"
 
 namespace brisance {
 
@@ -51,16 +54,17 @@ std::string joined(const std::vector<std::string>& names) {
     return all;
 }
 
-void add_certificate(RenderedFrame& out, const DrawInput& input, Progress& progress) {
+Belief add_belief(RenderedFrame& out, const DrawInput& input, Progress& progress) {
+    StageCost cost;
+    Belief belief = believe(out, input, cost, progress);
+    out.statistics.stages.push_back(std::move(cost));
+    return belief;
+}
+
+Certificate add_certificate(RenderedFrame& out, const DrawInput& input, const Belief& belief, Progress& progress) {
     const Stopwatch watch;
     const std::clock_t cpu = std::clock();
-    const CertifiedScene scene{input.medium,
-                               input.camera,
-                               input.surroundings,
-                               input.shot.tracing,
-                               input.shot.scattering.bounces,
-                               input.plan.emission || input.plan.emitters};
-    const Certificate certificate = certify(out.image, scene, input.shot.certify, progress);
+    Certificate certificate = certify(out.image, certified_scene(input), input.shot.certify, progress);
     out.statistics.certificate = certificate.to_json();
     out.statistics.stages.push_back(
         {"certificate",
@@ -68,7 +72,19 @@ void add_certificate(RenderedFrame& out, const DrawInput& input, Progress& progr
          0,
          {{"samples", certificate.samples}, {"cpu_seconds", double(std::clock() - cpu) / CLOCKS_PER_SEC}}});
     out.metadata.text["brisance/certificate"] = certificate.to_json().dump();
-    progress.notice("certificate: " + certificate.line());
+    const std::string ratios = belief.ratios(certificate);
+    progress.notice("certificate: " + certificate.line() + (ratios.empty() ? "" : "; " + ratios));
+    return certificate;
+}
+
+// What is believed of the picture's error, and what is certified of it if the shot asks for that.
+void add_errors(RenderedFrame& out, const DrawInput& input, Progress& progress) {
+    const Belief belief = add_belief(out, input, progress);
+    std::optional<Certificate> certificate;
+    if (input.shot.certify.enabled)
+        certificate = add_certificate(out, input, belief, progress);
+    out.statistics.believed_error = belief.to_json(certificate ? &*certificate : nullptr);
+    out.metadata.text["brisance/believed_error"] = out.statistics.believed_error.dump();
 }
 
 void trace_into(RenderedFrame& out, const DrawInput& input, const Checkpoint& checkpoint, Progress& progress) {
@@ -114,12 +130,26 @@ void render_into(RenderedFrame& out, const Shot& given, const Medium& medium, co
         trace_into(out, input, checkpoint, progress);
     else
         draw_into(out, input, progress);
-    if (shot.certify.enabled)
-        add_certificate(out, input, progress);
+    add_errors(out, input, progress);
     out.metadata.camera_from_world = camera.camera_from_world();
     out.metadata.vertical_fov_degrees = camera_settings.vertical_fov_degrees;
     out.metadata.text["brisance/cells"] = joined(plan.cells());
     out.statistics.peak_resident_bytes = peak_resident_bytes();
+}
+
+// Resolves the shot's time for this frame alone. Some settings are the camera's.
+Shot with_time(const Shot& shot, const Medium& medium, const Surroundings* surroundings, CameraSettings& camera,
+               double spent, RenderedFrame& out, Progress& progress) {
+    if (!(shot.seconds > 0.0))
+        return shot;
+    const Stopwatch watch;
+    const double speed = machine_speed();
+    TimedSettings timed =
+        settings_for_time(shot, medium, surroundings, camera, {shot.seconds, spent + watch.seconds(), speed}, progress);
+    camera.samples_per_axis = timed.shot.camera.samples_per_axis;
+    camera.edge_refinement = timed.shot.camera.edge_refinement;
+    out.statistics.stages.push_back(std::move(timed.cost));
+    return timed.shot;
 }
 
 // Seconds in all; what no stage reports is a stage, too.
@@ -134,12 +164,14 @@ void finish(RenderedFrame& out, double seconds) {
 
 }  // namespace
 
-RenderedFrame render_frame(const Shot& shot, const std::filesystem::path& volume, int frame, Progress& to,
+RenderedFrame render_frame(const Shot& given, const std::filesystem::path& volume, int frame, Progress& to,
                            const std::filesystem::path& checkpoint) {
     const Stopwatch watch;
     RenderedFrame out;
     Recorder progress(to, out.statistics);
-    const FrameInput input = load_frame(shot, volume, frame, out.statistics, progress);
+    FrameInput input = load_frame(given, volume, frame, out.statistics, progress);
+    const Shot shot =
+        with_time(given, input.medium, input.surroundings.get(), input.camera, watch.seconds(), out, progress);
     render_into(out, shot, input.medium, input.surroundings.get(), input.camera,
                 {checkpoint, checkpoint_key(shot, volume, frame)}, progress);
     out.metadata.frame = frame;
@@ -147,24 +179,28 @@ RenderedFrame render_frame(const Shot& shot, const std::filesystem::path& volume
     return out;
 }
 
-RenderedFrame render_medium(const Shot& shot, const Medium& medium, Progress& to, const Surroundings* surroundings) {
+RenderedFrame render_medium(const Shot& given, const Medium& medium, Progress& to, const Surroundings* surroundings) {
     const Stopwatch watch;
     RenderedFrame out;
     Recorder progress(to, out.statistics);
-    const CameraSettings camera = shot.camera_given ? shot.camera : framed_camera(medium, shot.camera);
+    CameraSettings camera = given.camera_given ? given.camera : framed_camera(medium, given.camera);
+    const Shot shot = with_time(given, medium, surroundings, camera, watch.seconds(), out, progress);
     render_into(out, shot, medium, surroundings, camera, {}, progress);
     finish(out, watch.seconds());
     return out;
 }
 
 Statistics plan_frame(const Shot& shot, const std::filesystem::path& volume, int frame, Progress& to) {
+    const Stopwatch watch;
     Statistics statistics;
     Recorder progress(to, statistics);
-    const FrameInput input = load_frame(shot, volume, frame, statistics, progress);
-    const Shot chosen =
-        shot.method != RenderMethod::Automatic
-            ? shot
-            : with_method(shot, forecast_methods(shot, input.medium, input.surroundings.get(), input.camera, progress));
+    FrameInput input = load_frame(shot, volume, frame, statistics, progress);
+    RenderedFrame unused;
+    Shot chosen =
+        with_time(shot, input.medium, input.surroundings.get(), input.camera, watch.seconds(), unused, progress);
+    if (chosen.method == RenderMethod::Automatic)
+        chosen = with_method(chosen,
+                             forecast_methods(chosen, input.medium, input.surroundings.get(), input.camera, progress));
     const Plan plan = plan_cells(chosen, input.medium, input.surroundings.get());
     statistics.cells = plan.cells();
     statistics.skipped = plan.skipped;

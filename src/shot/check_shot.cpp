@@ -63,7 +63,8 @@ void check_fire(const Given& given, const FireSettings& fire) {
 
 void check_tracing(const Given& given, const Shot& shot) {
     const TracingSettings& t = shot.tracing;
-    if (shot.method == RenderMethod::Path && t.samples == 0 && t.seconds <= 0.0 && t.error <= 0.0)
+    if (shot.method == RenderMethod::Path && shot.seconds <= 0.0 && t.samples == 0 && t.seconds <= 0.0 &&
+        t.error <= 0.0)
         reject(given, "tracing.samples", "is none: the render would never end; give tracing.seconds or tracing.error");
 }
 

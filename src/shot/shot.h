@@ -42,6 +42,7 @@ struct Shot {
     bool camera_given = false;    // false: framed on what there is, or a glTF file's
     bool exposure_given = false;  // false: chosen from the picture
     RenderMethod method = RenderMethod::LightingGrid;
+    double seconds = 0.0;  // of wall time for a frame, from which settings of least error follow; 0: as they are
     LightingSettings lighting;
     ScatteringSettings scattering;
     ScatteringMethodSettings scattering_methods;

@@ -18,6 +18,8 @@ nlohmann::ordered_json Statistics::to_json() const {
             stage["detail"] = s.detail;
         json["stages"].push_back(std::move(stage));
     }
+    if (!believed_error.is_null())
+        json["believed_error"] = believed_error;
     if (!certificate.is_null())
         json["certificate"] = certificate;
     json["warnings"] = warnings;

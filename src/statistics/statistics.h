@@ -24,8 +24,9 @@ struct Statistics {
     std::vector<std::string> cells;  // ledger cells that run, in the order of the sum
     std::vector<SkippedPart> skipped;
     std::vector<StageCost> stages;
-    nlohmann::ordered_json certificate;  // null: not requested
-    std::vector<std::string> warnings;   // "code: line"
+    nlohmann::ordered_json believed_error;  // null: nothing was rendered
+    nlohmann::ordered_json certificate;     // null: not requested
+    std::vector<std::string> warnings;      // "code: line"
     std::vector<std::string> notices;
     double seconds = 0.0;
     std::uint64_t peak_resident_bytes = 0;

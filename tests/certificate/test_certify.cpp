@@ -10,8 +10,8 @@
 #include "certificate/certify.h"
 #include "core/parallel.h"
 #include "fixtures/media.h"
+#include "forecast/plan.h"
 #include "reference/trace_picture.h"
-#include "render/plan.h"
 #include "render/render_frame.h"
 
 namespace brisance {

@@ -205,6 +205,15 @@ class Rendering(VolumeCase):
                     "output.statistics=false", "--set", "name=burst")
         self.assertEqual(self.outputs(), ["burst.exr"])
 
+    def test_time_and_believed_error(self):
+        self.expect(2, "render", self.volume, "--seconds", "0", says="--seconds")
+        self.expect(0, "render", self.volume, *LIT, "--seconds", "0.001", "-o", self.out / "a.exr",
+                    says=["seconds: ", "believed error: "])
+        statistics = json.loads((self.out / "a.stats.json").read_text(encoding="utf-8"))
+        self.assertIn("choice for the time", [stage["name"] for stage in statistics["stages"]])
+        self.assertGreater(statistics["believed_error"]["picture"]["error"], 0.0)
+        self.assertIn(b"brisance/believed_error\0string\0", (self.out / "a.exr").read_bytes())
+
     def test_same_bits_with_any_number_of_threads(self):
         environment = {**os.environ, "SOURCE_DATE_EPOCH": "1000000000"}
         for threads in (1, 2, 8):

@@ -10,8 +10,8 @@
 #include "../volume/temp_folder.h"
 #include "core/parallel.h"
 #include "fixtures/media.h"
+#include "forecast/plan.h"
 #include "reference/trace_picture.h"
-#include "render/plan.h"
 
 namespace brisance {
 namespace {

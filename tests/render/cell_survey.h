@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "film/image.h"
+#include "forecast/plan.h"
 #include "render/frame_input.h"
-#include "render/plan.h"
 
 namespace brisance::testing {
 

@@ -9,8 +9,8 @@
 #include "core/parallel.h"
 #include "fixtures/media.h"
 #include "fixtures/sets.h"
+#include "forecast/plan.h"
 #include "ray_lights/beam.h"
-#include "render/plan.h"
 #include "render/render_frame.h"
 
 namespace brisance {

@@ -3,7 +3,7 @@
 
 #include "core/error.h"
 #include "fixtures/media.h"
-#include "render/memory_need.h"
+#include "forecast/memory_need.h"
 
 namespace brisance {
 namespace {

@@ -93,6 +93,12 @@ void add_shot_options(CLI::App& command, RenderOptions& options) {
     command.add_option("--method", options.method, "lighting_grid, path or auto: the same as --set method=...")
         ->check(CLI::IsMember({"lighting_grid", "path", "auto"}))
         ->type_name("METHOD");
+    command
+        .add_option("--seconds", options.seconds,
+                    "Wall time for a frame with all but its certificate: the settings of least error that fit, one for "
+                    "all frames; the same as --set seconds=...")
+        ->check(CLI::PositiveNumber)
+        ->type_name("S");
     add_common_options(command, options);
     command.add_flag("--keep-going", options.keep_going, "Renders the remaining frames when one fails");
 }

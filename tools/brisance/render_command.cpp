@@ -18,6 +18,7 @@
 #include "outputs.h"
 #include "render/choose_method.h"
 #include "render/render_frame.h"
+#include "render/time_budget.h"
 #include "shot/write_shot.h"
 #include "volume/vdb_header.h"
 
@@ -35,6 +36,8 @@ Shot load(const RenderOptions& options, Progress& progress) {
     ShotOptions layers{options.preset, options.overrides};
     if (!options.method.empty())
         layers.overrides.insert(layers.overrides.begin(), "method=" + options.method);
+    if (options.seconds > 0.0)
+        layers.overrides.insert(layers.overrides.begin(), fmt::format("seconds={}", options.seconds));
     if (options.certify)
         layers.overrides.emplace_back("certify.enabled=true");
     for (const std::string& pictures : options.debug)
@@ -170,6 +173,7 @@ void write_halves(const RenderedFrame& frame, const FrameOutput& output, Progres
         ImageMetadata metadata = frame.metadata;
         metadata.samples_per_pixel /= 2.0;
         metadata.text.erase("brisance/certificate");
+        metadata.text.erase("brisance/believed_error");
         metadata.text.insert_or_assign("brisance/half", std::string(1, half == 0 ? 'A' : 'B'));
         write_exr(output.halves[half], frame.halves[half], metadata);
         announce(output.halves[half]);
@@ -203,19 +207,12 @@ void write_frame(RenderedFrame& frame, const Shot& shot, const fs::path& volume,
     }
 }
 
-// The forecast's time belongs to the first frame.
-void note_choice(const MethodForecast& forecast, bool first, RenderedFrame& frame) {
-    frame.metadata.text["brisance/method"] = forecast.name();
-    if (!first)
-        return;
-    frame.statistics.stages.insert(frame.statistics.stages.begin(), forecast.cost);
-    frame.statistics.seconds += forecast.cost.seconds;
-}
-
-// method=auto: one method for all frames, by the largest file on disk that can be read, whichever frames this call
-// renders. Nothing where another method is set, or where there is one frame, which chooses for itself.
-std::optional<MethodForecast> one_method(const Shot& shot, Progress& progress) {
-    if (shot.method != RenderMethod::Automatic || volume_pattern(shot).empty())
+// What all frames share, by the largest file on disk that can be read, whichever frames this call renders. `choose`
+// takes a file. Nothing where there is one frame, which chooses for itself.
+template <class Choose>
+auto by_largest_file(const Shot& shot, const char* what, const Choose& choose, Progress& progress)
+    -> std::optional<decltype(choose(FrameFile{}))> {
+    if (volume_pattern(shot).empty())
         return std::nullopt;
     std::vector<FrameFile> all = resolve_frames(shot, std::nullopt);
     if (all.size() < 2)
@@ -223,13 +220,71 @@ std::optional<MethodForecast> one_method(const Shot& shot, Progress& progress) {
     std::ranges::stable_sort(all, std::greater(), [](const FrameFile& f) { return fs::file_size(f.file); });
     for (const FrameFile& frame : all)
         try {
-            return forecast_methods(shot, frame.file, frame.frame, progress);
+            return choose(frame);
         } catch (const Error& error) {
-            progress.warning("method", std::string("not chosen by this frame: ") + error.what());
+            progress.warning(what, std::string("not chosen by this frame: ") + error.what());
         }
-    MethodForecast grid;
-    grid.reason = "method: the lighting grid, since no frame can be read";
-    return grid;
+    return choose(FrameFile{});
+}
+
+// method=auto: one method for all frames.
+std::optional<MethodForecast> one_method(const Shot& shot, Progress& progress) {
+    if (shot.method != RenderMethod::Automatic)
+        return std::nullopt;
+    const auto choose = [&](const FrameFile& frame) {
+        if (!frame.file.empty())
+            return forecast_methods(shot, frame.file, frame.frame, progress);
+        MethodForecast grid;
+        grid.reason = "method: the lighting grid, since no frame can be read";
+        return grid;
+    };
+    return by_largest_file(shot, "method", choose, progress);
+}
+
+// --seconds: one setting for all frames.
+std::optional<TimedSettings> one_setting(const Shot& shot, Progress& progress) {
+    if (!(shot.seconds > 0.0))
+        return std::nullopt;
+    const auto choose = [&](const FrameFile& frame) {
+        if (!frame.file.empty())
+            return settings_for_time(shot, frame.file, frame.frame, progress);
+        TimedSettings as_it_is;
+        as_it_is.shot = shot;
+        as_it_is.shot.seconds = 0.0;
+        return as_it_is;
+    };
+    return by_largest_file(shot, "seconds", choose, progress);
+}
+
+// What was chosen for all frames, before the first.
+struct SharedChoice {
+    std::optional<TimedSettings> timed;
+    std::optional<MethodForecast> method;
+
+    void note(bool first, RenderedFrame& frame) const {
+        if (method)
+            frame.metadata.text["brisance/method"] = method->name();
+        if (!first)
+            return;
+        for (const StageCost* cost : {method ? &method->cost : nullptr, timed ? &timed->cost : nullptr})
+            if (cost) {
+                frame.statistics.stages.insert(frame.statistics.stages.begin(), *cost);
+                frame.statistics.seconds += cost->seconds;
+            }
+    }
+};
+
+SharedChoice choose_for_all(Shot& shot, Progress& progress) {
+    SharedChoice out;
+    out.timed = one_setting(shot, progress);
+    if (out.timed)
+        shot = out.timed->shot;
+    else if (shot.seconds > 0.0)
+        return out;  // its only frame chooses
+    out.method = one_method(shot, progress);
+    if (out.method)
+        shot = with_method(shot, *out.method);
+    return out;
 }
 
 }  // namespace
@@ -248,17 +303,14 @@ int run_render(const RenderOptions& options) {
     const std::vector<FrameOutput> outputs = plan_outputs(shot, options.output, frames, options.input);
     const std::vector<fs::path> checkpoints =
         plan_checkpoints(shot, options.checkpoint, frames, outputs, options.input);
-    const std::optional<MethodForecast> forecast = frames.empty() ? std::nullopt : one_method(shot, progress);
-    if (forecast)
-        shot = with_method(shot, *forecast);
+    const SharedChoice choice = frames.empty() ? SharedChoice{} : choose_for_all(shot, progress);
     PngExposure exposure(shot);
     for (std::size_t i = 0; i < frames.size(); ++i) {
         const FrameFile& frame = frames[i];
         progress.begin_frame(frame.frame, frame.file.string(), i, frames.size());
         const auto work = [&] {
             RenderedFrame rendered = render_frame(shot, frame.file, frame.frame, progress, checkpoints[i]);
-            if (forecast)
-                note_choice(*forecast, i == 0, rendered);
+            choice.note(i == 0, rendered);
             write_frame(rendered, shot, frame.file, outputs[i], exposure, progress);
             if (options.explain)
                 progress.say(without_last_newline(rendered.statistics.explain()));
@@ -282,8 +334,7 @@ int run_plan(const RenderOptions& options) {
     if (frames.empty())
         return static_cast<int>(failures.first);
     const std::vector<FrameOutput> outputs = plan_outputs(shot, options.output, frames, options.input);
-    if (const std::optional<MethodForecast> forecast = one_method(shot, progress))
-        shot = with_method(shot, *forecast);
+    choose_for_all(shot, progress);
     const Statistics plan = plan_frame(shot, frames.front().file, frames.front().frame, progress);
     progress.finish();
     for (std::size_t i = 0; i < frames.size(); ++i)

@@ -15,7 +15,8 @@ struct RenderOptions {
     std::string output;  // -o; empty: the shot's, or by name
     std::string frames;  // -f; empty: those on disk
     std::string preset;
-    std::string method;  // of rendering; empty: the shot's
+    std::string method;    // of rendering; empty: the shot's
+    double seconds = 0.0;  // for a frame; 0: as the shot says
     std::vector<std::string> overrides;
     std::string checkpoint;          // file that keeps the state of a long render, to resume it; empty: none
     std::vector<std::string> debug;  // pictures of how a method works: kDebugVirtualLights

@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "core/stopwatch.h"
-#include "render/plan.h"
+#include "forecast/plan.h"
 
 namespace brisance::stability {
 
@@ -18,6 +18,7 @@ constexpr double kStandardErrors = 4.0;
 RenderedFrame rendered_once(const Scene& scene, const Method& method, int seed) {
     Shot shot = scene.shot;
     method.apply_to(shot, seed);
+    shot.certify.belief = 0.0;  // its samples would count as the method's time
     Progress silent;
     return render_medium(shot, scene.medium, silent, scene.surroundings.get());
 }

@@ -71,7 +71,8 @@ Affects affected_by(const std::string& path) {
     // Shots stored in older pictures: all keys that were renamed so far are of the method.
     if (renamed_key(path))
         return Affects::Method;
-    for (const char* key : {"$schema", "name", "method", "camera.samples_per_axis", "camera.edge_refinement"})
+    for (const char* key :
+         {"$schema", "name", "method", "seconds", "camera.samples_per_axis", "camera.edge_refinement"})
         if (path == key)
             return Affects::Method;
     return Affects::Picture;

@@ -13,6 +13,11 @@ void add_certify_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "certify.seed", "other seeds give certificates from other samples", whole(0, 1 << 30),
         [](Shot & s) -> auto& { return s.certify.seed; }));
+    keys.push_back(make_key(
+        "certify.belief",
+        "share of a frame's forecast time that unbiased samples for its believed error may cost; 0: it is believed "
+        "without samples, from the error model alone",
+        real({0.0, 1.0}), [](Shot & s) -> auto& { return s.certify.belief; }));
 }
 
 }  // namespace brisance

@@ -1,4 +1,4 @@
-#include "render/memory_need.h"
+#include "forecast/memory_need.h"
 
 #include <fmt/format.h>
 

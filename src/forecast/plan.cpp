@@ -1,4 +1,4 @@
-#include "render/plan.h"
+#include "forecast/plan.h"
 
 #include <algorithm>
 #include <cmath>

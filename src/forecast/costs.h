@@ -1,0 +1,35 @@
+// What a frame will cost, forecast from counts and never from a clock: seconds of one core of an AMD EPYC with AVX-512.
+#pragma once
+
+#include "camera/camera.h"
+#include "forecast/plan.h"
+#include "medium/medium.h"
+#include "reference/path_tracer.h"
+#include "shot/shot.h"
+
+namespace brisance {
+
+// Nodes at which light is gathered.
+double lit_nodes(const Medium& medium);
+// That of the lattice on which the orders of scattering are solved, about.
+int forecast_lattice_level(const ScatteringSettings& settings, double nodes);
+
+// A picture by the lighting grid: evaluations of lights at nodes, shadow maps, orders of scattering, and the camera's
+// rays.
+double grid_seconds(const Shot& shot, const Medium& medium, const Plan& plan, const CameraSettings& camera);
+
+// Set-up of the path tracer.
+double tracer_seconds(const Medium& medium);
+
+// The variance and the length of paths.
+struct PathPilot {
+    double square_error = 0.0;   // of a picture of one camera ray per pixel: the square of its relative standard error
+    double segments = 0.0;       // of all paths that one camera ray begins
+    double ray_seconds() const;  // of a camera ray with its paths
+};
+
+// Traces so many pixels, spread evenly over the picture.
+PathPilot trace_pilot(const PathTracer& tracer, const Camera& camera, std::size_t pixels);
+double pilot_seconds(const PathPilot& pilot, std::size_t pixels);
+
+}  // namespace brisance

@@ -1,0 +1,134 @@
+#include "forecast/expected_errors.h"
+
+#include <cmath>
+
+#include "forecast/costs.h"
+#include "gathering/map_layouts.h"
+
+namespace brisance {
+
+namespace {
+
+// Shadow maps of 12^2 texels add 1 % to a picture of dense smoke, and the error falls as the resolution's power 4/3
+// (gathering/map_layouts.cpp).
+constexpr double kErrorOfMaps = 0.01, kResolutionOfMaps = 12.0, kPowerOfMaps = 4.0 / 3.0;
+// Light from and to a voxel errs with the square of its optical depth, and the orders of scattering err with the
+// optical depth of a voxel of their lattice.
+constexpr double kErrorOfVoxels = 0.05, kErrorOfLattice = 0.045;
+// Fire seen directly: the camera's samples, and beyond them voxels that hide what burns in them.
+constexpr double kErrorOfRays = 0.001, kErrorOfBurningVoxels = 0.002;
+// Of light that surfaces send on or receive, and of scattering methods with random samples: not modelled.
+constexpr double kErrorOfSurfaces = 0.02, kErrorOfOtherMethods = 0.05;
+
+// Standard deviations of the logarithm of an error.
+constexpr double kSpread = 0.7, kSpreadOfRest = 1.2;
+
+double square(double x) {
+    return x * x;
+}
+
+// An error is hardly ever more than the light itself.
+double limited(double error) {
+    return error / (1.0 + error);
+}
+
+// A number that a stage noted; 0 where it did not run.
+double noted(const Statistics& statistics, const std::string& stage, const char* key) {
+    for (const StageCost& s : statistics.stages)
+        if (s.name == stage && s.detail.contains(key) && s.detail[key].is_number())
+            return s.detail[key].get<double>();
+    return 0.0;
+}
+
+// Of a voxel, as a collision meets it.
+double voxel_depth(const Medium& medium) {
+    double sum = 0.0, squares = 0.0;
+    for (const float e : medium.extinction) {
+        sum += e;
+        squares += double(e) * e;
+    }
+    return sum > 0.0 ? medium.spacing * squares / sum : 0.0;
+}
+
+class ErrorModel {
+public:
+    ErrorModel(const ModelledFrame& frame, double lattice_level, double remainder)
+        : plan_(frame.plan),
+          interpolation_(tolerated_interpolation(frame.shot.lighting, std::size_t(lit_nodes(frame.medium)))),
+          depth_(voxel_depth(frame.medium)),
+          lattice_(std::exp2(lattice_level)),
+          remainder_(remainder) {
+        const LightingSettings& settings = frame.shot.lighting;
+        if (settings.shadows == ShadowMethod::Maps)
+            maps_ = kErrorOfMaps * std::pow(kResolutionOfMaps / shadow_resolution(settings), kPowerOfMaps);
+    }
+
+    ExpectedError of(const std::string& cell) const {
+        const double gathered = square(maps_) + square(interpolation_);
+        if (cell == "V" || cell == "A")
+            return {cell, limited(kErrorOfRays + kErrorOfBurningVoxels * std::pow(depth_, 3.0)), kSpreadOfRest};
+        if (cell == "MV")
+            return {cell, limited(std::hypot(std::sqrt(gathered), kErrorOfVoxels * square(depth_))), kSpread};
+        if (cell == "MM" && !plan_.scattering_method)
+            return {cell, limited(std::sqrt(gathered + square(kErrorOfLattice * lattice_ * depth_)) + remainder_),
+                    kSpread};
+        if (cell == "MM" || cell == "SM")
+            return {cell, plan_.scattering_method ? kErrorOfOtherMethods : kErrorOfSurfaces, kSpreadOfRest};
+        return {cell, kErrorOfSurfaces, kSpreadOfRest};
+    }
+
+private:
+    const Plan& plan_;
+    double interpolation_, depth_, lattice_, remainder_, maps_ = 0.0;
+};
+
+// The cell that is taken for the picture where nothing is known of their shares.
+const char* brightest(const Plan& plan) {
+    return plan.multiple ? "MM" : plan.single ? "MV" : "V";
+}
+
+double sum_of_squares(const Layer& layer) {
+    double sum = 0.0;
+    const std::size_t n = layer.channels.size();
+    for (std::size_t p = 0; p + 2 < layer.pixels.size(); p += n)
+        for (std::size_t c = 0; c < 3; ++c)
+            if (const double v = layer.pixels[p + c]; std::isfinite(v))
+                sum += v * v;
+    return sum;
+}
+
+}  // namespace
+
+std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFrame& frame,
+                                           const Statistics& statistics) {
+    const std::string series = "orders of scattering on the coarse lattice";
+    const ErrorModel model(frame, noted(statistics, series, "lattice_level"),
+                           noted(statistics, series, "estimated_remainder"));
+    std::vector<ExpectedError> out(1);
+    double errors = 0.0, spreads = 0.0, light = 0.0;
+    for (const std::string& cell : frame.plan.cells())
+        for (const Layer& layer : image.layers)
+            if (const double part = layer.name == cell ? sum_of_squares(layer) : 0.0; part > 0.0) {
+                out.push_back(model.of(cell));
+                errors += part * square(out.back().error);
+                spreads += part * square(out.back().spread);
+                light += part;
+            }
+    // Errors of cells are taken to be independent. A picture without layers of cells errs as its brightest scattering.
+    const double all = sum_of_squares(image.layer(""));
+    if (all > 0.0)
+        out[0] = light > 0.0 ? ExpectedError{"", std::sqrt(errors / all), std::sqrt(spreads / light)}
+                             : model.of(brightest(frame.plan));
+    out[0].cell.clear();
+    return out;
+}
+
+ExpectedError expected_error(const ModelledFrame& frame) {
+    const ScatteringSettings& settings = frame.shot.scattering;
+    const int level = forecast_lattice_level(settings, lit_nodes(frame.medium));
+    ExpectedError out = ErrorModel(frame, level, settings.remainder).of(brightest(frame.plan));
+    out.cell.clear();
+    return out;
+}
+
+}  // namespace brisance

@@ -1,0 +1,33 @@
+// The error model of pictures by many lights: what their errors should be, before any sample says.
+//
+// Each cell's error is the root of a sum of squares. Shadow maps have a measured error that falls with their
+// resolution (gathering/map_layouts.cpp). A voxel is the source and the receiver of light as a whole, which errs with
+// the square of its optical depth, and the orders of scattering err with that of a voxel of the coarser lattice that
+// solves them. What interpolation may add is as the shot allows, and what is left of the series is as the frame
+// measured it. The coefficients are of the built-in explosion and of three volumes of smoke with optical depths of a
+// voxel from 0.6 to 3; other volumes are within a factor of two to three, which `spread` says. Light of surfaces and of
+// scattering methods with random samples is not modelled: its expected error is little more than a guess.
+#pragma once
+
+#include "certificate/believed_error.h"
+#include "film/image.h"
+#include "forecast/plan.h"
+#include "statistics/statistics.h"
+
+namespace brisance {
+
+// By reference.
+struct ModelledFrame {
+    const Shot& shot;
+    const Medium& medium;
+    const Plan& plan;
+};
+
+// Of a finished picture and of its cells, the picture first. A black picture has an expected error of 0.
+std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFrame& frame,
+                                           const Statistics& statistics);
+
+// Of a picture that is not rendered yet.
+ExpectedError expected_error(const ModelledFrame& frame);
+
+}  // namespace brisance
