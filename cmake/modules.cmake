@@ -12,6 +12,9 @@ if(BRISANCE_SANITIZE)
     target_compile_options(brisance_options INTERFACE -fsanitize=${BRISANCE_SANITIZE} -fno-omit-frame-pointer)
     target_link_options(brisance_options INTERFACE -fsanitize=${BRISANCE_SANITIZE})
 endif()
+if(BRISANCE_FUZZ)
+    target_compile_options(brisance_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()
 
 # brisance_module(name SOURCES ... USES modules... WALLS libraries...)
 # WALLS are libraries that must not leak out of the module; include directions are checked by tools/check_includes.py.

@@ -70,8 +70,8 @@ std::optional<std::vector<RampStop>> read_ramp(const Json& json) {
     for (const Json& item : json) {
         if (!item.is_array() || item.size() != 2)
             return std::nullopt;
-        const std::optional<float> value = float_number(item[0], any_number());
-        const std::optional<Rgb> colour = read_rgb(item[1], at_least(0.0));
+        const std::optional<float> value = float_number(item[0], grid_value());
+        const std::optional<Rgb> colour = read_rgb(item[1], tint());
         if (!value || !colour || (!stops.empty() && !(*value > stops.back().value)))
             return std::nullopt;
         stops.push_back({*value, *colour});
@@ -93,6 +93,22 @@ Range above(double low) {
 }
 Range any_number() {
     return {-kInfinity, kInfinity};
+}
+
+Range radiometric() {
+    return {0.0, 1e20};
+}
+Range tint() {
+    return {0.0, 1e6};
+}
+Range grid_value() {
+    return {-1e20, 1e20};
+}
+Range kelvin() {
+    return {0.0, 1e8};
+}
+Range coordinate() {
+    return {-1e15, 1e15};
 }
 
 bool Range::contains(double value) const {
@@ -187,9 +203,9 @@ Codec<Rgb> rgb(const Range& range) {
 }
 
 Codec<dvec3> point() {
-    return {array_schema(number_schema(any_number()), 3), "three numbers [x, y, z]",
+    return {array_schema(number_schema(coordinate()), 3), "three numbers [x, y, z] " + coordinate().words(),
             [](const Json& json) -> std::optional<dvec3> {
-                const auto v = numbers(json, 3, [](const Json& item) { return number(item, any_number()); });
+                const auto v = numbers(json, 3, [](const Json& item) { return number(item, coordinate()); });
                 return v.empty() ? std::nullopt : std::optional<dvec3>(dvec3(v[0], v[1], v[2]));
             },
             [](const dvec3& value) {
@@ -209,9 +225,9 @@ Codec<vec2> pair_of(const Range& range) {
 }
 
 Codec<dmat4> matrix() {
-    return {array_schema(number_schema(any_number()), 16), "16 numbers, row after row",
+    return {array_schema(number_schema(coordinate()), 16), "16 numbers " + coordinate().words() + ", row after row",
             [](const Json& json) -> std::optional<dmat4> {
-                const auto v = numbers(json, 16, [](const Json& item) { return number(item, any_number()); });
+                const auto v = numbers(json, 16, [](const Json& item) { return number(item, coordinate()); });
                 dmat4 m(1.0);
                 for (std::size_t i = 0; i < v.size(); ++i)
                     m[static_cast<int>(i % 4)][static_cast<int>(i / 4)] = v[i];
@@ -238,12 +254,12 @@ Codec<FireModel> fire_model() {
 
 Codec<std::vector<RampStop>> ramp() {
     const Json stop = {{"type", "array"},
-                       {"prefixItems", Json::array({number_schema(any_number()), rgb_schema(at_least(0.0))})},
+                       {"prefixItems", Json::array({number_schema(grid_value()), rgb_schema(tint())})},
                        {"items", false},
                        {"minItems", 2},
                        {"maxItems", 2}};
     return {{{"type", "array"}, {"items", stop}},
-            "a list of [value, [r, g, b]] with rising values and colours of at least 0",
+            "a list of [value, [r, g, b]] with rising values and colours " + tint().words(),
             read_ramp,
             [](const std::vector<RampStop>& stops) {
                 Json list = Json::array();

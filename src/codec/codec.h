@@ -48,6 +48,13 @@ Range at_least(double low);
 Range above(double low);
 Range any_number();
 
+// What light transport multiplies and sums in single precision, which ends at 3.4e38.
+Range radiometric();  // strengths, powers, radiance, extinction: up to 1e20
+Range tint();         // colours that multiply those: up to 1e6
+Range grid_value();   // up to 1e20, of either sign
+Range kelvin();       // up to 1e8
+Range coordinate();   // up to 1e15 m, of either sign
+
 Codec<double> real(const Range& range);
 Codec<float> real_float(const Range& range);
 Codec<int> whole(int low, int high);

@@ -16,6 +16,8 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/input_file.h"
+#include "core/printable.h"
 #include "film/write_image.h"
 
 namespace brisance {
@@ -46,7 +48,8 @@ std::vector<Layer> layers_of(const std::filesystem::path& file, const Imf::Chann
     std::map<std::string, Layer> by_name;  // "" sorts first: the beauty
     for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
         if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1)
-            reject(file, fmt::format("channel {} is subsampled, which is not supported", channel.name()));
+            reject(file, fmt::format("channel {} is subsampled, which is not supported",
+                                     printable(channel.name(), kLongestName)));
         const auto [layer_name, name] = split_channel(channel.name());
         Layer& layer = by_name[layer_name];
         layer.name = layer_name;
@@ -141,11 +144,9 @@ ExrMetadata read_header(const std::filesystem::path& file) {
 // Calls `read` for a file that is there and of a kind that can be read; what OpenEXR throws becomes an Error.
 template <class Read>
 auto read_checked(const std::filesystem::path& file, const Read& read) {
-    std::error_code error;
-    if (!std::filesystem::exists(file, error))
-        throw Error(ExitCode::MissingInput, fmt::format("{}: no such file", file.string()));
+    size_of_input(file);
     bool tiled = false, deep = false, several_parts = false;
-    if (!std::filesystem::is_regular_file(file, error) || !Imf::isOpenExrFile(file.c_str(), tiled, deep, several_parts))
+    if (!Imf::isOpenExrFile(file.c_str(), tiled, deep, several_parts))
         reject(file, "it is not an OpenEXR file");
     if (deep || several_parts)
         reject(file,
@@ -153,7 +154,7 @@ auto read_checked(const std::filesystem::path& file, const Read& read) {
     try {
         return read(file);
     } catch (const Iex::BaseExc& damage) {
-        reject(file, fmt::format("truncated or damaged: {}", damage.what()));
+        reject(file, fmt::format("truncated or damaged: {}", printable(damage.what())));
     }
 }
 

@@ -57,8 +57,13 @@ fs::path folder_of(const fs::path& file) {
     const std::string name = file.string();
     switch (error) {
         case ENOENT:
-            throw Error(ExitCode::CannotCreate,
-                        fmt::format("cannot write {}: the folder {} does not exist; make it first", name, folder));
+            if (std::error_code ignored; fs::exists(folder, ignored))
+                throw Error(
+                    ExitCode::CannotCreate,
+                    fmt::format("cannot write {}: no file can be made in {}; choose another folder", name, folder));
+            throw Error(ExitCode::CannotCreate, fmt::format("cannot write {}: the folder {} does not exist; make it "
+                                                            "first, or give --make-folders",
+                                                            name, folder));
         case ENOTDIR:
             throw Error(ExitCode::CannotCreate, fmt::format("cannot write {}: {} is not a folder", name, folder));
         case EACCES:
@@ -85,8 +90,13 @@ fs::path folder_of(const fs::path& file) {
 fs::path final_name(const fs::path& file) {
     std::error_code error;
     const fs::file_status status = fs::status(file, error);
-    if (!fs::exists(status))
+    if (!fs::exists(status)) {
+        if (fs::is_symlink(fs::symlink_status(file, error)))
+            throw Error(ExitCode::CannotCreate,
+                        fmt::format("cannot write {}: it is a link to {}, which does not exist; remove the link",
+                                    file.string(), fs::read_symlink(file, error).string()));
         return file;
+    }
     if (fs::is_directory(status))
         throw Error(ExitCode::CannotCreate, fmt::format("cannot write {}: it is a folder", file.string()));
     if (!fs::is_regular_file(status))

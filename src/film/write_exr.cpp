@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <half.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -150,9 +151,7 @@ std::vector<half> as_half(const std::vector<float>& pixels, ExrReport& report) {
     std::vector<half> halves(pixels.size());
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         float value = pixels[i];
-        if (!std::isfinite(value)) {
-            ++report.not_finite;
-        } else if (std::abs(value) > kLargestHalf) {
+        if (std::abs(value) > kLargestHalf) {
             ++report.clamped;
             value = std::copysign(kLargestHalf, value);
         }
@@ -161,9 +160,23 @@ std::vector<half> as_half(const std::vector<float>& pixels, ExrReport& report) {
     return halves;
 }
 
-void count_not_finite(const std::vector<float>& pixels, ExrReport& report) {
-    for (const float value : pixels)
-        report.not_finite += std::isfinite(value) ? 0 : 1;
+// A sum that overflowed says nothing: a picture with holes is worse than none.
+void refuse_not_finite(const std::filesystem::path& file, const Image& image) {
+    for (const Layer& layer : image.layers) {
+        const auto odd = [](float value) { return !std::isfinite(value); };
+        const auto first = std::find_if(layer.pixels.begin(), layer.pixels.end(), odd);
+        if (first == layer.pixels.end())
+            continue;
+        const std::size_t pixel = static_cast<std::size_t>(first - layer.pixels.begin()) / layer.channels.size();
+        const auto width = static_cast<std::size_t>(image.width);
+        throw Error(
+            ExitCode::RenderFailed,
+            fmt::format("{}: not written: {} values of {} are NaN or infinite, the first at pixel {} {}; lower "
+                        "fire.strength, the power of lights or the emission of surfaces, or look for damaged "
+                        "values in what is read",
+                        file.string(), std::count_if(layer.pixels.begin(), layer.pixels.end(), odd),
+                        layer.name.empty() ? "the picture" : "layer " + layer.name, pixel % width, pixel / width));
+    }
 }
 
 template <class T>
@@ -188,7 +201,6 @@ void encode_exr(MemoryStream& stream, const Image& image, const ImageMetadata& m
             header.channels().insert(channel_name(layer, channel),
                                      Imf::Channel(layer.full_float ? Imf::FLOAT : Imf::HALF));
         if (layer.full_float) {
-            count_not_finite(layer.pixels, report);
             add_slices(frame, layer, layer.pixels, image.width);
         } else {
             halves[i] = as_half(layer.pixels, report);
@@ -204,16 +216,14 @@ void encode_exr(MemoryStream& stream, const Image& image, const ImageMetadata& m
 }  // namespace
 
 std::string ExrReport::describe() const {
-    std::string text;
-    if (clamped > 0)
-        text = fmt::format("{} values above the largest half, {}, were stored as that", clamped, kLargestHalf);
-    if (not_finite > 0)
-        text += fmt::format("{}{} values are NaN or infinite", text.empty() ? "" : "; ", not_finite);
-    return text;
+    return clamped == 0
+               ? std::string()
+               : fmt::format("{} values above the largest half, {}, were stored as that", clamped, kLargestHalf);
 }
 
 ExrReport write_exr(const std::filesystem::path& file, const Image& image, const ImageMetadata& metadata) {
     check_layers(image);
+    refuse_not_finite(file, image);
     ExrReport report;
     MemoryStream stream;
     try {

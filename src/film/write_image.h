@@ -15,8 +15,7 @@ namespace brisance {
 
 // What could not be stored as it was.
 struct ExrReport {
-    std::uint64_t clamped = 0;     // finite values beyond the largest half (65504), stored as that
-    std::uint64_t not_finite = 0;  // NaN and infinite values, stored unchanged
+    std::uint64_t clamped = 0;     // values beyond the largest half (65504), stored as that
     std::string describe() const;  // one line; empty when there is nothing to report
 };
 
@@ -24,7 +23,8 @@ struct ExrReport {
 // layer named as its channel ("Z") is written bare. Written to a temporary file in the same folder, then renamed.
 // With SOURCE_DATE_EPOCH set, equal images and metadata give equal bytes: the capture date is that time in UTC, and the
 // render time is left out.
-// Throws Error CannotCreate (folder missing or not writable) or OutputFailed (no space left).
+// Throws Error RenderFailed for an image with a NaN or an infinite value: nothing is written then. Throws CannotCreate
+// (folder missing or not writable) or OutputFailed (no space left).
 ExrReport write_exr(const std::filesystem::path& file, const Image& image, const ImageMetadata& metadata);
 
 // 8-bit PNG of the beauty under a view transform at `exposure_stops`; alpha is dropped over black.

@@ -1,5 +1,7 @@
 #include "medium/medium.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -149,6 +151,22 @@ std::uint64_t Medium::bytes() const {
            (source.size() + emission.size() + albedo_nodes.size()) * sizeof(Rgb);
 }
 
+// Light transport sums products of these in single precision.
+void check_range(const Medium& medium) {
+    constexpr float most = 1e25f;
+    const auto check = [&](float value, const char* what, const char* keys) {
+        if (!(value <= most))
+            throw Error(ExitCode::BadData, fmt::format("the {} at a voxel is {:g}, at most {:g} can be rendered: lower "
+                                                       "{}, or look for damaged values with `brisance inspect`",
+                                                       what, value, most, keys));
+    };
+    for (const float extinction : medium.extinction)
+        check(extinction, "extinction", "smoke.extinction_per_metre");
+    for (const auto* field : {&medium.source, &medium.emission})
+        for (const Rgb& c : *field)
+            check(std::max({c.x, c.y, c.z}), "fire's radiance", "fire.strength, fire.colour or fire.ramp");
+}
+
 Medium build_medium(std::span<const MediumPart> parts, Progress& progress) {
     for (const MediumPart& part : parts)
         report_odd_values(part.grids, progress);
@@ -167,6 +185,7 @@ Medium build_medium(std::span<const MediumPart> parts, Progress& progress) {
     trim(medium, lattice, fields);
 
     drop_zero_emission(medium);
+    check_range(medium);
     for (float e : medium.extinction)
         medium.max_extinction = std::max(medium.max_extinction, e);
     // The middle of the bounding box to a multiple of 4096 nodes: local positions are small, do not depend on a frame's

@@ -11,6 +11,7 @@
 #include "camera_rays/picture.h"
 #include "camera_rays/source_field.h"
 #include "core/error.h"
+#include "core/input_file.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "film/whole_file.h"
@@ -82,9 +83,8 @@ public:
 
 private:
     void resume() {
-        std::ifstream in(checkpoint_.file, std::ios::binary);
-        const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-        const std::string trouble = in.bad() ? "cannot be read" : film_.restore(bytes, checkpoint_.key);
+        constexpr std::uint64_t most = std::uint64_t{1} << 40;
+        const std::string trouble = film_.restore(read_input(checkpoint_.file, most), checkpoint_.key);
         if (!trouble.empty())
             throw Error(ExitCode::BadData,
                         checkpoint_.file.string() + ": " + trouble + "; delete it, or name another --checkpoint");

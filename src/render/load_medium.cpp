@@ -32,14 +32,14 @@ std::vector<VolumePart> parts_of(const Shot& shot, const std::filesystem::path& 
     return parts;
 }
 
-MediumGrids read_grids(const VolumePart& part, const GridMapping& mapping, Progress& progress) {
+MediumGrids read_grids(const VolumePart& part, const GridMapping& mapping, VdbReader& reader, Progress& progress) {
     const FireSettings& fire = part.look.fire;
     const bool black_body = fire.model == FireModel::Blackbody || fire.model == FireModel::NormalizedBlackbody;
     const dmat4 world_from_file = placement(part.settings, part.file.string());
     const auto read = [&](const std::optional<GridChoice>& choice, bool used) -> std::optional<BlockGrid> {
         if (!choice || !used)
             return std::nullopt;
-        BlockGrid grid = read_grid(part.file, choice->name, choice->index, kGridMemory);
+        BlockGrid grid = reader.read(choice->name, choice->index, kGridMemory);
         grid.info.world_from_index = world_from_file * grid.info.world_from_index;
         return grid;
     };
@@ -68,11 +68,12 @@ void read_part(VolumePart& part, Statistics& statistics, Progress& progress) {
         return make_box(part);
     progress.stage("reading " + part.file.filename().string());
     const Stopwatch watch;
-    const GridMapping mapping = map_grids(list_grids(part.file), part.settings, part.file.string());
+    VdbReader reader(part.file);
+    const GridMapping mapping = map_grids(reader.grids(), part.settings, part.file.string());
     progress.notice("grids: " + mapping.describe());
     for (const std::string& note : mapping.notes)
         progress.notice(note);
-    part.grids = read_grids(part, mapping, progress);
+    part.grids = read_grids(part, mapping, reader, progress);
     std::uint64_t bytes = 0;
     for (const auto* g : {&part.grids.density, &part.grids.temperature, &part.grids.flame, &part.grids.colour})
         bytes += *g ? (*g)->values.size() * sizeof(float) : 0;

@@ -11,6 +11,8 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/input_file.h"
+#include "core/printable.h"
 #include "scene/srgb.h"
 
 namespace brisance {
@@ -18,16 +20,6 @@ namespace {
 
 [[noreturn]] void reject(const std::string& where, const std::string& why) {
     throw Error(ExitCode::BadData, fmt::format("{}: {}; export or copy the picture again", where, why));
-}
-
-// A library's message as the rest of one line.
-std::string one_line(const std::string& message) {
-    std::string text = message.substr(0, 160);
-    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())))
-        text.pop_back();
-    std::replace_if(
-        text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c); }, ' ');
-    return text;
 }
 
 // glTF's colours are not multiplied by alpha, and PNG's are not either: OpenImageIO would multiply them.
@@ -59,8 +51,18 @@ std::vector<T> read_rgba(OIIO::ImageInput& input, const std::string& where, OIIO
     std::vector<T> pixels(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
                           static_cast<std::size_t>(channels));
     if (!input.read_image(0, 0, 0, channels, type, pixels.data()))
-        reject(where, "truncated or damaged: " + one_line(input.geterror()));
+        reject(where, "truncated or damaged: " + printable(input.geterror()));
     return channels == 4 ? pixels : as_rgba(pixels, channels, opaque);
+}
+
+// Sums over a picture that holds more overflow: only a damaged one does.
+constexpr float kBrightest = 1e20f;
+
+void check_brightest(const std::vector<float>& rgba, const std::string& where) {
+    const auto too_bright = [](float value) { return std::abs(value) > kBrightest && std::isfinite(value); };
+    const auto found = std::find_if(rgba.begin(), rgba.end(), too_bright);
+    if (found != rgba.end())
+        reject(where, fmt::format("damaged: it holds the value {:g}, at most {:g} can be used", *found, kBrightest));
 }
 
 void make_linear(std::vector<float>& rgba, bool srgb) {
@@ -89,6 +91,7 @@ Texture read_opened(OIIO::ImageInput& input, const std::string& where, bool srgb
         texture.bytes = read_rgba<std::uint8_t>(input, where, OIIO::TypeDesc::UINT8, 255);
     } else {
         texture.floats = read_rgba<float>(input, where, OIIO::TypeDesc::FLOAT, 1.0f);
+        check_brightest(texture.floats, where);
         make_linear(texture.floats, srgb);
     }
     return texture;
@@ -125,7 +128,7 @@ Texture read_memory(std::string_view bytes, const std::string& where, bool srgb,
     void* const proxy = &memory;
     config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
     if (!input->open("", spec, config))
-        reject(where, "damaged: " + one_line(input->geterror()));
+        reject(where, "damaged: " + printable(input->geterror()));
     return read_opened(*input, where, srgb, memory_limit);
 }
 
@@ -133,7 +136,7 @@ Texture read_file(const std::filesystem::path& file, bool srgb, std::uint64_t me
     const OIIO::ImageSpec config = as_stored();
     const auto input = OIIO::ImageInput::open(file.string(), &config);
     if (!input)
-        reject(file.string(), "not a picture that can be read: " + one_line(OIIO::geterror()));
+        reject(file.string(), "not a picture that can be read: " + printable(OIIO::geterror()));
     return read_opened(*input, file.string(), srgb, memory_limit);
 }
 
@@ -150,9 +153,7 @@ std::string bytes_of_format(const std::filesystem::path& file) {
 }  // namespace
 
 Texture read_texture(const std::filesystem::path& file, bool srgb, std::uint64_t memory_limit) {
-    std::error_code error;
-    if (!std::filesystem::exists(file, error))
-        throw Error(ExitCode::MissingInput, fmt::format("{}: no such file", file.string()));
+    size_of_input(file);
     const std::string bytes = bytes_of_format(file);
     Texture texture =
         bytes.empty() ? read_file(file, srgb, memory_limit) : read_memory(bytes, file.string(), srgb, memory_limit);

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
+#include <algorithm>
 #include <iterator>
+#include <stdexcept>
 #include <vector>
 
 #include "core/error.h"
+#include "core/printable.h"
 
 namespace brisance {
 namespace {
@@ -41,7 +43,10 @@ private:
     int* line_;
 };
 
-// Follows the parser through objects and notes where each key stands.
+constexpr int kDeepest = 256;              // JSON is copied and written by recursion
+constexpr std::size_t kLongestPath = 200;  // no key of a shot has a longer one
+
+// Follows the parser through objects and lists, and notes where each key stands.
 class KeyLines {
 public:
     KeyLines(const std::string& source, const int& line, std::map<std::string, int>& line_of_key)
@@ -49,29 +54,46 @@ public:
 
     bool operator()(int depth, Json::parse_event_t event, const Json& parsed) {
         using Event = Json::parse_event_t;
-        if (event == Event::array_start || event == Event::array_end)
-            arrays_ += event == Event::array_start ? 1 : -1;
-        if (event == Event::key && arrays_ == 0)
-            note(static_cast<std::size_t>(depth), parsed.get<std::string>());
+        if (event == Event::object_start || event == Event::array_start) {
+            if (depth >= kDeepest)
+                throw Error(ExitCode::Usage, fmt::format("{}:{}: nested more than {} levels deep; a shot needs six",
+                                                         source_, line_, kDeepest));
+            levels_.push_back({event == Event::array_start, path_.size(), {}});
+        } else if (event == Event::object_end || event == Event::array_end) {
+            path_.resize(levels_.back().path_begin);
+            levels_.pop_back();
+        } else if (event == Event::key) {
+            note(parsed.get_ref<const std::string&>());
+        }
         return true;
     }
 
 private:
-    void note(std::size_t depth, const std::string& key) {
-        path_.resize(depth);
-        path_.back() = key;
-        const std::string dotted = fmt::format("{}", fmt::join(path_, "."));
-        const auto [entry, first] = line_of_key_.emplace(dotted, line_);
+    struct Level {
+        bool is_list;
+        std::size_t path_begin;  // length of the path that leads here
+        std::map<std::string, int> line_of;
+    };
+
+    void note(const std::string& key) {
+        Level& level = levels_.back();
+        path_.resize(level.path_begin);
+        if (path_.size() <= kLongestPath)
+            path_ += (path_.empty() ? "" : ".") + key.substr(0, kLongestPath);
+        const auto [entry, first] = level.line_of.emplace(key, line_);
         if (!first)
             throw Error(ExitCode::Usage, fmt::format("{}:{}: {} is given twice; it was given first on line {}", source_,
-                                                     line_, dotted, entry->second));
+                                                     line_, printable(path_), entry->second));
+        const bool in_list = std::any_of(levels_.begin(), levels_.end(), [](const Level& l) { return l.is_list; });
+        if (!in_list && path_.size() <= kLongestPath)
+            line_of_key_.emplace(path_, line_);
     }
 
     const std::string& source_;
     const int& line_;
     std::map<std::string, int>& line_of_key_;
-    std::vector<std::string> path_;
-    int arrays_ = 0;
+    std::string path_;
+    std::vector<Level> levels_;
 };
 
 // The library's message without its own name and position.
@@ -83,6 +105,20 @@ std::string syntax_message(const std::string& what) {
 
 }  // namespace
 
+std::optional<Json> parse_json_value(const std::string& text) {
+    const auto shallow = [](int depth, Json::parse_event_t, const Json&) {
+        if (depth > kDeepest)
+            throw std::length_error("nested too deeply");
+        return true;
+    };
+    try {
+        Json value = Json::parse(text, shallow, false);
+        return value.is_discarded() ? std::nullopt : std::optional(std::move(value));
+    } catch (const std::length_error&) {
+        return std::nullopt;
+    }
+}
+
 JsonText parse_json_text(const std::string& text, const std::string& source) {
     JsonText result;
     int line = 1;
@@ -91,7 +127,7 @@ JsonText parse_json_text(const std::string& text, const std::string& source) {
         result.value = Json::parse(LineCounter(text.data(), &line), LineCounter(end, &line),
                                    KeyLines(source, line, result.line_of_key), true, true);
     } catch (const Json::exception& error) {
-        throw Error(ExitCode::Usage, fmt::format("{}:{}: {}", source, line, syntax_message(error.what())));
+        throw Error(ExitCode::Usage, fmt::format("{}:{}: {}", source, line, printable(syntax_message(error.what()))));
     }
     return result;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 #include "codec/codec.h"
@@ -13,7 +14,11 @@ struct JsonText {
     std::map<std::string, int> line_of_key;  // by dotted path, lines from 1
 };
 
-// Throws Error Usage "source:line: ..." for text that is no JSON, and for a key that is there twice.
+// Throws Error Usage "source:line: ..." for text that is no JSON, for a key that is there twice, and for values nested
+// more than 256 levels deep.
 JsonText parse_json_text(const std::string& text, const std::string& source);
+
+// Nothing where the text is no JSON, or nested more than 256 levels deep.
+std::optional<Json> parse_json_value(const std::string& text);
 
 }  // namespace brisance

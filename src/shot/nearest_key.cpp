@@ -6,6 +6,8 @@
 namespace brisance {
 namespace {
 
+constexpr std::size_t kLongestKey = 200;
+
 std::string last_part(const std::string& path) {
     return path.substr(path.rfind('.') + 1);
 }
@@ -30,7 +32,8 @@ int edit_distance(const std::string& a, const std::string& b) {
     return old[b.size()];
 }
 
-std::string nearest_key(const std::string& path, const std::vector<std::string>& known) {
+std::string nearest_key(const std::string& given, const std::vector<std::string>& known) {
+    const std::string path = given.substr(0, kLongestKey);  // the time goes with its length
     std::string nearest;
     int least = std::numeric_limits<int>::max();
     for (const std::string& candidate : known) {

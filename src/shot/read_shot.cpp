@@ -2,13 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
 #include <map>
-#include <sstream>
-#include <system_error>
 
 #include "core/error.h"
+#include "core/input_file.h"
+#include "core/printable.h"
 #include "shot/check_shot.h"
 #include "shot/json_text.h"
 #include "shot/keys/keys.h"
@@ -19,6 +17,8 @@ namespace brisance {
 namespace {
 
 using Where = std::function<std::string(const std::string& path)>;  // "shot.json:12", "--set smoke.albedo=2"
+
+constexpr std::uint64_t kLargestShot = std::uint64_t{16} << 20;
 
 struct Preset {
     std::string name;
@@ -47,8 +47,7 @@ std::string kind_of(const Json& value) {
 
 std::string shortened(const Json& value) {
     constexpr std::size_t most = 60;
-    const std::string text = value.dump(-1, ' ', true, Json::error_handler_t::replace);
-    return text.size() <= most ? text : text.substr(0, most) + "...";
+    return printable(value.dump(-1, ' ', true, Json::error_handler_t::replace), most);
 }
 
 [[noreturn]] void reject_value(const std::string& where, const std::string& path, const std::string& expected,
@@ -84,13 +83,14 @@ bool is_section(const std::string& path) {
 [[noreturn]] void reject_key(const std::string& where, const std::string& path) {
     if (const std::optional<std::string> renamed = renamed_key(path))
         throw Error(ExitCode::Usage, fmt::format("{}: {}", where, *renamed));
+    const std::string shown = printable(path, kLongestName);
     std::vector<std::string> known;
     for (const Key& key : shot_keys())
         known.push_back(key.path);
     for (const auto& [name, help] : shot_sections())
         known.push_back(name);
     throw Error(ExitCode::Usage,
-                fmt::format("{}: unknown key {}; did you mean {}?", where, path, nearest_key(path, known)));
+                fmt::format("{}: unknown key {}; did you mean {}?", where, shown, nearest_key(shown, known)));
 }
 
 // Lays JSON over a shot and remembers where each key was given.
@@ -121,9 +121,7 @@ public:
         const std::string path = setting.substr(0, equals);
         const std::string text = setting.substr(equals + 1);
         const Where where = [&](const std::string&) { return origin; };
-        Json value = Json::parse(text, nullptr, false);
-        if (value.is_discarded())
-            value = text;
+        Json value = parse_json_value(text).value_or(Json(text));
         // Text may look like JSON: name=2024 means "2024".
         if (const Key* key = find_key(path);
             key && !value.is_string() && !key->set(shot_, value) && key->set(shot_, text))
@@ -152,19 +150,6 @@ void apply_preset(const std::string& name, Layering& layering) {
                 fmt::format("unknown preset {}; there are {}", name, fmt::join(shot_presets(), " and ")));
 }
 
-std::string read_text(const std::filesystem::path& file) {
-    std::error_code error;
-    if (!std::filesystem::exists(file, error))
-        throw Error(ExitCode::MissingInput, fmt::format("{}: no such file", file.string()));
-    if (std::filesystem::is_directory(file, error))
-        throw Error(ExitCode::Usage, fmt::format("{}: is a folder, not a shot", file.string()));
-    std::ifstream stream(file, std::ios::binary);
-    std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-    if (!stream.good() && !stream.eof())
-        throw Error(ExitCode::MissingInput, fmt::format("{}: cannot be read", file.string()));
-    return text;
-}
-
 }  // namespace
 
 const std::vector<std::string>& shot_presets() {
@@ -178,7 +163,7 @@ const std::vector<std::string>& shot_presets() {
 }
 
 Shot read_shot(const std::filesystem::path& file, const ShotOptions& options) {
-    Shot shot = parse_shot(read_text(file), file.string(), file.parent_path(), options);
+    Shot shot = parse_shot(read_input(file, kLargestShot, ExitCode::Usage), file.string(), file.parent_path(), options);
     if (shot.name.empty())
         shot.name = file.stem().string();
     return shot;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "shot/json_text.h"
 #include "shot/keys/keys.h"
 
 namespace brisance {
@@ -24,11 +25,11 @@ void collect_values(const Json& json, const std::string& path, Values& values) {
 }
 
 Values values_of(const std::string& shot_json) {
-    const Json json = Json::parse(shot_json, nullptr, false);
-    if (!json.is_object())
+    const std::optional<Json> parsed = parse_json_value(shot_json);
+    if (!parsed || !parsed->is_object())
         throw Error(ExitCode::BadData, "the shot stored with an image is damaged: it is no JSON object");
     Values values;
-    collect_values(json, "", values);
+    collect_values(*parsed, "", values);
     return values;
 }
 

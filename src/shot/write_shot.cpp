@@ -79,6 +79,41 @@ std::string printed(const Json& json) {
     return text + "\n";
 }
 
+// What a schema accepts, in a few words.
+std::string words_of(const Json& schema) {
+    if (const auto any = schema.find("anyOf"); any != schema.end()) {
+        std::string words;
+        for (const Json& option : *any)
+            words += (words.empty() ? "" : " or ") + words_of(option);
+        return words;
+    }
+    if (schema.contains("enum"))
+        return fmt::format("one of {}", dumped(schema["enum"], -1));
+    if (schema.contains("const"))
+        return dumped(schema["const"], -1);
+    const std::string type = schema.contains("type") && schema["type"].is_string() ? schema["type"] : "value";
+    if (type == "array" && schema.contains("items") && schema["items"].is_object())
+        return fmt::format("a list of {}{}", schema.contains("minItems") ? dumped(schema["minItems"], -1) + " x " : "",
+                           words_of(schema["items"]));
+    std::string words = type == "number" || type == "integer" ? "a number" : type == "boolean" ? "true or false" : type;
+    for (const auto& [bound, sign] : {std::pair("minimum", ">="), std::pair("exclusiveMinimum", ">"),
+                                      std::pair("maximum", "<="), std::pair("exclusiveMaximum", "<")})
+        if (schema.contains(bound))
+            words += fmt::format(" {} {}", sign, dumped(schema[bound], -1));
+    return words == "string" ? "text" : words;
+}
+
+// The keys of the objects of a list, each on a line.
+void append_members(const std::string& path, const Json& object, std::string& text) {
+    for (const auto& [name, schema] : object["properties"].items()) {
+        const Json required = object.value("required", Json::array());
+        const bool needed = std::find(required.begin(), required.end(), Json(name)) != required.end();
+        text += fmt::format("    {}.{}: {}{}\n", path, name, words_of(schema), needed ? "; required" : "");
+        if (schema.contains("properties"))
+            append_members(path + "." + name, schema, text);
+    }
+}
+
 }  // namespace
 
 std::string to_json(const Shot& shot) {
@@ -131,6 +166,9 @@ std::string shot_keys_text() {
         const std::optional<Json> value = key.get(defaults);
         text += fmt::format("{}\n    {}\n    {}{}\n", key.path, key.help, key.expected,
                             value ? "; default " + dumped(*value, -1) : "");
+        const auto items = key.schema.find("items");
+        if (items != key.schema.end() && items->contains("properties"))
+            append_members(key.path + "[]", *items, text);
     }
     return text;
 }

@@ -12,6 +12,7 @@
 namespace brisance {
 namespace {
 
+constexpr std::size_t kLongestItem = 64;
 constexpr std::size_t kMostFrames = 1'000'000;  // more must be a typing mistake
 
 [[noreturn]] void reject(const std::string& list, const std::string& why) {
@@ -36,6 +37,9 @@ std::vector<int> parse_frames(const std::string& list) {
     std::unordered_set<int> seen;
     std::istringstream items(list + ",");
     for (std::string item; std::getline(items, item, ',');) {
+        // The standard library follows an expression by recursion.
+        if (item.size() > kLongestItem)
+            reject(list.substr(0, kLongestItem) + "...", "a number has at most ten digits");
         std::smatch match;
         if (!std::regex_match(item, match, item_form))
             reject(list, fmt::format("cannot read \"{}\"; write whole frames like 1001-1100x2,1200 or 1..10", item));

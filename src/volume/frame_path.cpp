@@ -136,6 +136,10 @@ bool has_frame_token(const std::string& pattern) {
 }
 
 std::string expand(const std::string& pattern, int frame) {
+    constexpr std::size_t longest = 4096;  // of a path of the system
+    if (pattern.size() > longest)
+        throw Error(ExitCode::Usage, fmt::format("{}...: a path has at most {} characters, this has {}",
+                                                 pattern.substr(0, 60), longest, pattern.size()));
     std::string result;
     for (std::size_t at = 0; at <= pattern.size();) {
         const std::size_t slash = std::min(pattern.find('/', at), pattern.size());

@@ -8,6 +8,7 @@
 #include <charconv>
 
 #include "core/error.h"
+#include "core/printable.h"
 
 namespace brisance {
 namespace {
@@ -70,7 +71,8 @@ std::size_t count_named(const std::vector<GridInfo>& grids, const std::string& n
 // As a shot would write it: "name", or "name[index]" where the name alone does not say which.
 std::string shot_name(const std::vector<GridInfo>& grids, const GridInfo& grid) {
     const bool bare = !grid.name.empty() && count_named(grids, grid.name) == 1;
-    return bare ? fmt::format("\"{}\"", grid.name) : fmt::format("\"{}[{}]\"", grid.name, grid.index);
+    const std::string name = printable(grid.name, kLongestName);
+    return bare ? fmt::format("\"{}\"", name) : fmt::format("\"{}[{}]\"", name, grid.index);
 }
 
 std::string list_names(const std::vector<GridInfo>& grids) {
@@ -185,7 +187,7 @@ void choose_only_grid(const std::vector<GridInfo>& grids, GridMapping& mapping) 
         std::string reason = why_not(grid, Density);
         if (reason.empty())
             reason = "has no known name; name it in the shot's volume.grids";
-        reasons += fmt::format("\n  {}{} {}", shot_name(grids, grid), grid.name.empty() ? " (unnamed)" : "", reason);
+        reasons += fmt::format(" {}{} {};", shot_name(grids, grid), grid.name.empty() ? " (unnamed)" : "", reason);
     }
     throw Error(ExitCode::BadData,
                 fmt::format("{}: no grid can serve as density, flame or temperature:{}", file, reasons));
@@ -224,9 +226,9 @@ std::string GridMapping::describe() const {
         if (!choice)
             line += "none";
         else if (choice->index > 0 || choice->name.empty())
-            line += fmt::format("\"{}[{}]\"", choice->name, choice->index);
+            line += fmt::format("\"{}[{}]\"", printable(choice->name, kLongestName), choice->index);
         else
-            line += fmt::format("\"{}\"", choice->name);
+            line += fmt::format("\"{}\"", printable(choice->name, kLongestName));
     }
     return line;
 }

@@ -1,9 +1,8 @@
-// A grid's voxels as they lie in memory after loading, and functions that count and copy them. No OpenVDB type appears
-// here: read_vdb.cpp passes plain pointers.
+// A grid's voxels as they come from the file, and functions that count and copy them. No OpenVDB type appears here.
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <functional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -13,11 +12,9 @@
 
 namespace brisance {
 
-// 512 voxels with x slowest and z fastest, `channels` interleaved values each.
-template <class T>
+// 8^3 voxels with x slowest and z fastest.
 struct RawLeaf {
-    ivec3 origin;
-    const T* values;
+    ivec3 origin;             // multiples of 8
     std::uint64_t active[8];  // bit (y * 8 + z) of word x
 };
 
@@ -29,15 +26,23 @@ struct RawTile {
     T value[3];
 };
 
+// The values of `count` leaves from `first` on: 512 voxels each, channels interleaved.
+template <class T>
+using VisitLeaves = std::function<void(std::size_t first, std::size_t count, const T* values)>;
+
 template <class T>
 struct RawGrid {
+    using Value = T;
     int channels = 1;
-    std::vector<RawLeaf<T>> leaves;
-    std::vector<RawTile<T>> tiles;
-    std::shared_ptr<const void> owner;  // keeps the values alive
+    std::vector<RawLeaf> leaves;    // sorted by origin: x, then y, then z
+    std::vector<RawTile<T>> tiles;  // all outside of the leaves
+    // Visits all leaves, in their order, a few at a time: their values are gone after each visit.
+    std::function<void(const VisitLeaves<T>& visit)> visit_leaves;
 };
 
 using AnyRawGrid = std::variant<RawGrid<float>, RawGrid<double>, RawGrid<std::int32_t>, RawGrid<std::int64_t>>;
+
+bool comes_before(const ivec3& a, const ivec3& b);  // in the order of leaves and blocks
 
 // Counts and, with bins > 0, a histogram. Tiles are not expanded.
 GridCensus count_voxels(const AnyRawGrid& grid, int bins);

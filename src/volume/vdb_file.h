@@ -1,8 +1,10 @@
-// One .vdb file as plain data. No OpenVDB type crosses this header: read_vdb.cpp is the wall.
+// One .vdb file as plain data. No OpenVDB type crosses this header: read_vdb.cpp is the wall, and runs in
+// a process of its own.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -53,16 +55,38 @@ struct BlockGrid {
     bool empty() const { return block_origin.empty(); }
 };
 
-// The grids of one file, without voxels.
-// Throws Error: MissingInput (no such file), BadData (not a VDB, truncated, a Git LFS pointer, no grid at all...).
-std::vector<GridInfo> list_grids(const std::filesystem::path& file);
+// Reads one file in a child process, which OpenVDB cannot leave: a damaged file makes it overwrite memory, run for ever
+// or take all memory. The child may take 256 MiB and 100 bytes for each byte of the file, 5 s of processor time and 1 s
+// for each MiB; beyond that, and where it crashes, the file is damaged.
+// Throws Error: MissingInput (no such file), BadData (not a VDB, truncated, damaged, a Git LFS pointer, no grid...),
+// Temporary (no process, or no memory, for the child).
+class VdbReader {
+public:
+    explicit VdbReader(const std::filesystem::path& file);
+    ~VdbReader();
 
-// Reads one grid by name and index. Throws Error BadData when it is absent (naming those that are there), unusable,
-// has a singular or frustum transform, an absurd bounding box, or would need more than `memory_limit_bytes`.
+    // Without voxels, in the order of the file.
+    const std::vector<GridInfo>& grids() const;
+
+    // One grid by name and index. Throws Error BadData when it is absent (naming those that are there), unusable, has a
+    // singular or frustum transform, an absurd bounding box, or would need more than `memory_limit_bytes`.
+    BlockGrid read(const std::string& name, int index, std::uint64_t memory_limit_bytes);
+
+    // A census with a histogram for `inspect`, made without expanding tiles.
+    GridCensus census(const std::string& name, int index, int bins);
+
+private:
+    class Session;
+    void start_again_if_ended();
+
+    std::filesystem::path file_;
+    std::unique_ptr<Session> session_;
+};
+
+// The same for a single question.
+std::vector<GridInfo> list_grids(const std::filesystem::path& file);
 BlockGrid read_grid(const std::filesystem::path& file, const std::string& name, int index,
                     std::uint64_t memory_limit_bytes);
-
-// A census with a histogram for `inspect`, made without expanding tiles.
 GridCensus census_of_grid(const std::filesystem::path& file, const std::string& name, int index, int bins);
 
 }  // namespace brisance

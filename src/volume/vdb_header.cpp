@@ -9,9 +9,10 @@
 #include <cctype>
 #include <fstream>
 #include <string_view>
-#include <system_error>
 
 #include "core/error.h"
+#include "core/input_file.h"
+#include "core/printable.h"
 
 namespace brisance {
 namespace {
@@ -88,25 +89,6 @@ private:
     std::uint64_t offset_ = 0;
 };
 
-std::uint64_t size_of_readable_file(const std::filesystem::path& file) {
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(file, error);
-    if (!std::filesystem::exists(status)) {
-        const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
-        const bool folder_missing = !std::filesystem::exists(folder, error);
-        throw Error(ExitCode::MissingInput,
-                    fmt::format("{}: no such file{}", file.string(),
-                                folder_missing ? fmt::format("; its folder {} does not exist either", folder.string())
-                                               : std::string()));
-    }
-    if (std::filesystem::is_directory(status))
-        throw Error(ExitCode::BadData, fmt::format("{}: is a folder; name a .vdb file in it", file.string()));
-    const std::uintmax_t size = std::filesystem::file_size(file, error);
-    if (error)
-        throw Error(ExitCode::BadData, fmt::format("{}: {}", file.string(), error.message()));
-    return size;
-}
-
 std::string first_bytes_of(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     std::string bytes(512, '\0');
@@ -157,7 +139,7 @@ void read_descriptors(ByteReader& reader, VdbHeader& header) {
         const auto begin = reader.number<std::uint64_t>();
         reader.skip(sizeof(std::uint64_t));
         const auto end = reader.number<std::uint64_t>();
-        const std::string shown = name.substr(0, name.find('\x1e'));
+        const std::string shown = printable(name.substr(0, name.find('\x1e')), kLongestName);
         if (end > header.file_bytes)
             reader.throw_truncated(fmt::format("grid \"{}\" ({} of {}) ends at byte {}", shown, i + 1, count, end));
         if (begin < reader.offset() || end < begin)
@@ -211,7 +193,7 @@ std::string describe_foreign_file(const std::string& bytes) {
 
 VdbHeader read_vdb_header(const std::filesystem::path& file) {
     VdbHeader header;
-    header.file_bytes = size_of_readable_file(file);
+    header.file_bytes = size_of_input(file);
     const std::string first = first_bytes_of(file);
     if (!begins_with_magic(first))
         throw Error(ExitCode::BadData,

@@ -111,6 +111,21 @@ class CommandLine(Case):
                           ["compare", "a.exr", "b.exr", "--pixels-per-degree", "0"]):
             self.expect(2, *arguments)
 
+    def test_without_arguments_help_is_shown(self):
+        self.assertIn("render", self.expect(2).stdout)
+
+    def test_unknown_commands_and_options_suggest_the_nearest(self):
+        self.expect(2, "rendr", "a.json", says="brisance: error: unknown command rendr; did you mean render?")
+        self.expect(2, "render", "a.json", "--frmes", "1",
+                    says="brisance: error: unknown option --frmes; did you mean --frames?")
+        done = self.expect(2, "\x1b[31m\xff", says="unknown command")
+        self.assertNotIn("\x1b", done.stderr)
+
+    def test_keys_of_lists_are_listed(self):
+        text = self.expect(0, "schema", "--keys").stdout
+        for key in ("scene.lights[].power", "scene.quads[].corners", "scene.spheres[].radius", "volumes[].file"):
+            self.assertIn(f"    {key}: ", text)
+
     def test_schema_is_the_committed_one(self):
         committed = (SOURCE / "shots" / "shot.schema.json").read_text(encoding="utf-8")
         self.assertEqual(self.expect(0, "schema").stdout, committed)
@@ -183,6 +198,22 @@ class Volumes(Case):
                                          "volumes": [{"file": "dust_####.vdb"}]}))
         self.expect(66, "render", "a.json", "-f", "1-2", says="dust_0001.vdb")
         self.assertEqual(self.names(), ["a.json"])
+
+    def test_damaged_volume_is_one_line(self):
+        candle = bytearray((SOURCE / "volumes" / "candle.vdb").read_bytes())
+        candle[862:866] = b"\xff\xff\xff\x7f"  # the root's number of tiles: OpenVDB reads on and on
+        (self.folder / "damaged.vdb").write_bytes(candle)
+        done = self.expect(65, "render", "damaged.vdb", *SMALL, says="damaged.vdb: damaged VDB: ")
+        self.assertEqual(done.stderr.count("error"), 1, done.stderr)
+
+    def test_pipes_and_devices_are_no_inputs(self):
+        os.mkfifo(self.folder / "pipe.vdb")
+        os.mkfifo(self.folder / "pipe.json")
+        self.expect(65, "render", "pipe.vdb", says="pipe.vdb: is a pipe", timeout=60)
+        self.expect(2, "render", "pipe.json", says="pipe.json: is a pipe", timeout=60)
+        self.expect(2, "render", "/dev/zero", says="/dev/zero: is a device", timeout=60)
+        (self.folder / "zero.gltf").symlink_to("/dev/zero")
+        self.expect(65, "render", "zero.gltf", says="is a device", timeout=60)
 
     def test_folder_instead_of_a_volume(self):
         (self.folder / "a.vdb").mkdir()
@@ -259,6 +290,23 @@ class Rendering(VolumeCase):
         self.expect(73, "render", self.volume, "--set", "camera.width=16384", "--set", "camera.height=16384", "-o",
                     "absent/a.exr", says=["absent", "does not exist"])
         self.assertLess(time.monotonic() - start, 60.0)
+
+    def test_folders_are_made_on_request(self):
+        self.expect(0, "render", self.volume, *SMALL, "-o", self.out / "new" / "deep" / "a.exr", "--make-folders")
+        self.assertTrue((self.out / "new" / "deep" / "a.exr").exists())
+
+    def test_a_link_to_nothing_is_no_output_and_stays(self):
+        (self.out / "a.exr").symlink_to(self.out / "gone.exr")
+        self.expect(73, "render", self.volume, *SMALL, "-o", self.out / "a.exr", says="is a link to")
+        self.assertTrue((self.out / "a.exr").is_symlink())
+        self.assertEqual(self.outputs(), ["a.exr"])
+
+    def test_a_folder_that_takes_no_file_is_not_called_missing(self):
+        done = self.expect(73, "render", self.volume, *SMALL, "-o", "/proc/a.exr", says="/proc")
+        self.assertNotIn("does not exist", done.stderr)
+
+    def test_sequences_are_inspected(self):
+        self.assertIn("density", self.expect(0, "inspect", self.make_sequence([3, 4])).stdout)
 
     def test_unwritable_folder(self):
         self.out.chmod(0o555)

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/error.h"
 #include "core/rng.h"
 #include "fixtures/media.h"
 
@@ -42,6 +43,20 @@ Recipe linear_smoke(const dmat4& world_from_index) {
 
 float extinction_at_world(const ExtinctionPyramid& pyramid, const dvec3& world) {
     return pyramid.extinction_at(pyramid.medium().local_of_world(world));
+}
+
+// A product that single precision cannot sum names the keys that may lower it.
+TEST(BuildMedium, WhatWouldOverflowIsAnErrorThatNamesItsKey) {
+    Recipe r = linear_smoke(cubic(1.0));
+    r.density = [](const ivec3&) { return 1e10f; };
+    r.settings.smoke.extinction_per_metre = 1e20f;
+    try {
+        make_medium(r);
+        ADD_FAILURE() << "an extinction of 1e30 is rendered";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::BadData);
+        EXPECT_NE(std::string(error.what()).find("smoke.extinction_per_metre"), std::string::npos) << error.what();
+    }
 }
 
 TEST(BuildMedium, ALinearFieldIsKeptUnderAnyAffineTransform) {

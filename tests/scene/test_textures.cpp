@@ -1,9 +1,14 @@
 // Looking up textures, and decoding pictures.
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 
+#include "core/error.h"
 #include "gltf_fixture.h"
 #include "scene/read_texture.h"
 
@@ -24,6 +29,35 @@ Texture numbered(int width, int height) {
 
 std::span<const unsigned char> as_bytes(const std::string& text) {
     return {reinterpret_cast<const unsigned char*>(text.data()), text.size()};
+}
+
+// The message of the Error of reading a picture; "" without one.
+std::string trouble_with(const std::filesystem::path& file) {
+    try {
+        read_texture(file, false, std::uint64_t{1} << 30);
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::BadData);
+        return error.what();
+    }
+    return "";
+}
+
+TEST(TextureFile, IsNoPipeAndNoDevice) {
+    const std::filesystem::path pipe = std::filesystem::path(::testing::TempDir()) / "brisance_texture_pipe";
+    std::filesystem::remove(pipe);
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_NE(trouble_with(pipe).find("is a pipe"), std::string::npos);
+    EXPECT_NE(trouble_with("/dev/zero").find("is a device"), std::string::npos);
+    std::filesystem::remove(pipe);
+}
+
+// One pixel of a Radiance picture whose exponent byte is damaged.
+TEST(TextureFile, ThatHoldsAbsurdValuesIsDamaged) {
+    const std::filesystem::path file = std::filesystem::path(::testing::TempDir()) / "brisance_bright.hdr";
+    std::ofstream(file, std::ios::binary) << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1\n"
+                                          << std::string("\x80\x80\x80\xf0", 4);
+    EXPECT_NE(trouble_with(file).find("holds the value"), std::string::npos) << trouble_with(file);
+    std::filesystem::remove(file);
 }
 
 TEST(TextureLookup, TexelCentresGiveTheirTexel) {

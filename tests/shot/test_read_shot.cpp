@@ -39,6 +39,56 @@ TEST(ReadShot, FurtherVolumesSayWhatIsOtherThanTheShot) {
     EXPECT_EQ(parsed(to_json(shot)).volumes[0].changes.albedo, Rgb(0.9f)) << "survives writing";
 }
 
+TEST(ReadShot, DeepNestingIsAnError) {
+    const std::string deep(100000, '[');
+    EXPECT_EQ(error_message(deep), "a.json:1: nested more than 256 levels deep; a shot needs six");
+    EXPECT_NE(error_message("{\"smoke\":" + std::string(300, '[') + std::string(300, ']') + "}").find("nested more"),
+              std::string::npos);
+    std::string objects;
+    for (int i = 0; i < 100000; ++i)
+        objects += "{\"a\":";
+    EXPECT_NE(error_message(objects).find("nested more"), std::string::npos);
+    EXPECT_NE(message_of_overrides({"smoke.albedo=" + std::string(100000, '[') + std::string(100000, ']')}), "");
+}
+
+// Each would take minutes if a path were joined, or compared with all keys, for each of them.
+TEST(ReadShot, LongKeysAndManyKeysTakeNoTime) {
+    const std::string message = error_message("{\"" + std::string(4000000, 'k') + "\": 1}");
+    EXPECT_LT(message.size(), 300u);
+    std::string many = "{\"" + std::string(1000000, 'k') + "\": {";
+    for (int i = 0; i < 100000; ++i)
+        many += "\"" + std::to_string(i) + "\": 0, ";
+    EXPECT_NE(error_message(many + "\"last\": 0}}"), "");
+}
+
+TEST(ReadShot, AKeyThatIsGivenTwiceWithinAListIsAnError) {
+    EXPECT_EQ(error_message("{\"scene\": {\"lights\": [\n{\"kind\": \"point\",\n\"kind\": \"sun\"}]}}"),
+              "a.json:3: scene.lights.kind is given twice; it was given first on line 2");
+    EXPECT_EQ(error_message(R"({"volume": {"file": "a.vdb"}, "scene": {"lights": [{"kind": "point", "power": 1},
+                                                                              {"kind": "sun", "power": 1}]}})"),
+              "");
+}
+
+TEST(ReadShot, WhatSinglePrecisionCannotSumIsOutOfRange) {
+    for (const char* const setting :
+         {"fire.strength=1e36", "fire.colour=1e7", "fire.colour=[0,0,1e38]", "smoke.extinction_per_metre=3.4e38",
+          "fire.ramp=[[0,[1e38,0,0]]]", "fire.temperature_kelvin=[0,1e38]", "camera.eye=[1e38,0,0]",
+          "scene.lights=[{\"kind\":\"point\",\"power\":1e38}]",
+          "scene.spheres=[{\"centre\":[0,0,0],\"radius\":1,\"emission\":1e38}]"}) {
+        const std::string message = message_of_overrides({setting});
+        const std::string key = std::string(setting).substr(0, std::string(setting).find('='));
+        EXPECT_NE(message.find(key), std::string::npos) << setting << ": " << message;
+        EXPECT_NE(message.find("in ["), std::string::npos) << setting << ": " << message;
+    }
+    EXPECT_EQ(message_of_overrides({"fire.strength=1e20", "smoke.extinction_per_metre=1e20"}), "");
+}
+
+TEST(ReadShot, ForeignTextInAMessageIsPrintable) {
+    EXPECT_EQ(error_message("{\"smo\xff\\nke\": 1}").find('\n'), std::string::npos);
+    const std::string message = error_message("{\"smoke\": {\"alb\\u001b[31mdo\": 1}}");
+    EXPECT_EQ(message.find('\x1b'), std::string::npos) << message;
+}
+
 TEST(ReadShot, EveryKindOfValueArrives) {
     const Shot shot = parsed(R"({
         // a comment

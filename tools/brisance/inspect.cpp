@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/printable.h"
 #include "volume/frame_path.h"
 
 namespace brisance {
@@ -41,7 +42,7 @@ std::string dump_line(const Json& json) {
 }
 
 std::string shown_name(const GridInfo& info) {
-    return fmt::format("{}[{}]", info.name, info.index);
+    return fmt::format("{}[{}]", printable(info.name, kLongestName), info.index);
 }
 
 ivec3 size_of(const GridInfo& info) {
@@ -270,16 +271,33 @@ double rough_bytes_of_mapped(const Inspection& inspection) {
 
 }  // namespace
 
+std::filesystem::path telling_file(const std::string& pattern) {
+    if (!has_frame_token(pattern))
+        return pattern;
+    std::filesystem::path largest;
+    std::uintmax_t most = 0;
+    for (const FrameFile& frame : resolve_sequence(pattern, std::nullopt)) {
+        std::error_code error;
+        const std::uintmax_t size = std::filesystem::file_size(frame.file, error);
+        if (!error && (largest.empty() || size > most)) {
+            largest = frame.file;
+            most = size;
+        }
+    }
+    return largest;
+}
+
 Inspection inspect_file(const std::filesystem::path& file) {
     Inspection result;
-    std::vector<GridInfo> infos = list_grids(file);
+    VdbReader reader(file);
+    std::vector<GridInfo> infos = reader.grids();
     result.file = std::filesystem::absolute(file).lexically_normal();
     result.file_bytes = std::filesystem::file_size(file);
     for (GridInfo& info : infos) {
         InspectedGrid grid{info, {}, {}};
         if (info.value_type != "unknown") {
             try {
-                grid.census = census_of_grid(file, info.name, info.index, kBins);
+                grid.census = reader.census(info.name, info.index, kBins);
             } catch (const Error& error) {
                 grid.problem = error.what();
                 info.usable = false;
@@ -355,8 +373,8 @@ std::string inspection_json(const Inspection& inspection) {
     return dump(json, 2) + "\n";
 }
 
-int run_inspect(const std::filesystem::path& file, bool as_json) {
-    const Inspection inspection = inspect_file(file);
+int run_inspect(const std::string& pattern, bool as_json) {
+    const Inspection inspection = inspect_file(telling_file(pattern));
     const std::string text = as_json ? inspection_json(inspection) : inspection_text(inspection);
     std::fputs(text.c_str(), stdout);
     return static_cast<int>(inspection.mapping ? ExitCode::Success : ExitCode::BadData);

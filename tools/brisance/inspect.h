@@ -29,6 +29,10 @@ struct Inspection {
     std::vector<int> frames;  // of that sequence, on disk
 };
 
+// The file that says most about a sequence: the largest, since the first frame of an explosion is often empty. A
+// pattern without frame token is the file itself. Throws Error MissingInput when there is none.
+std::filesystem::path telling_file(const std::string& pattern);
+
 // Throws Error MissingInput or BadData when the file as a whole cannot be read.
 Inspection inspect_file(const std::filesystem::path& file);
 
@@ -38,8 +42,8 @@ std::string inspection_json(const Inspection& inspection);
 // A shot in JSON made of the suggestions; empty when nothing in the file can be rendered.
 std::string suggested_shot(const Inspection& inspection);
 
-// Prints to standard output. Returns the exit code: 0, or that of BadData when nothing in the file can be rendered.
-// Throws as inspect_file.
-int run_inspect(const std::filesystem::path& file, bool as_json);
+// Prints to standard output; of a sequence, the file that says most. Returns the exit code: 0, or that of BadData when
+// nothing in the file can be rendered. Throws as inspect_file.
+int run_inspect(const std::string& pattern, bool as_json);
 
 }  // namespace brisance

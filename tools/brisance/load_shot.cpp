@@ -37,23 +37,6 @@ Shot shot_of_scene(const std::string& input, const ShotOptions& options) {
     return parse_shot(shot.dump(), "shot made for " + input, {}, options);
 }
 
-// The first frame of an explosion is often empty: the largest file says most about the sequence.
-fs::path telling_file(const std::string& pattern) {
-    if (!has_frame_token(pattern))
-        return pattern;
-    fs::path largest;
-    std::uintmax_t most = 0;
-    for (const FrameFile& frame : resolve_sequence(pattern, std::nullopt)) {
-        std::error_code error;
-        const std::uintmax_t size = fs::file_size(frame.file, error);
-        if (!error && (largest.empty() || size > most)) {
-            largest = frame.file;
-            most = size;
-        }
-    }
-    return largest;
-}
-
 Shot suggested(const std::string& input, const ShotOptions& options, Progress& progress) {
     const fs::path file = telling_file(input);
     progress.stage("looking at " + file.filename().string());

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <functional>
@@ -16,9 +17,11 @@
 #include "compare_command.h"
 #include "compare_report.h"
 #include "core/error.h"
+#include "core/printable.h"
 #include "film/whole_file.h"
 #include "inspect.h"
 #include "render_command.h"
+#include "shot/nearest_key.h"
 #include "shot/read_shot.h"
 #include "shot/write_shot.h"
 #include "stability_command.h"
@@ -100,6 +103,7 @@ void add_shot_options(CLI::App& command, RenderOptions& options) {
         ->check(CLI::PositiveNumber)
         ->type_name("S");
     add_common_options(command, options);
+    command.add_flag("--make-folders", options.make_folders, "Makes the folders of the outputs where they are missing");
     command.add_flag("--keep-going", options.keep_going, "Renders the remaining frames when one fails");
 }
 
@@ -224,10 +228,17 @@ public:
     }
 
     int run() {
+        if (argc_ == 1) {
+            std::fputs(app_.help().c_str(), stdout);
+            return static_cast<int>(ExitCode::Usage);
+        }
+        check_command(argv_[1]);
         try {
             app_.parse(argc_, argv_);
         } catch (const CLI::ParseError& error) {
-            return app_.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::Usage);
+            if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success))
+                return app_.exit(error);  // help, or the version
+            throw Error(ExitCode::Usage, in_our_words(error));
         }
         for (const auto& [command, run] : commands_)
             if (command->parsed())
@@ -236,6 +247,43 @@ public:
     }
 
 private:
+    void check_command(const std::string& given) const {
+        std::vector<std::string> names;
+        for (const auto& [command, run] : commands_)
+            names.push_back(command->get_name());
+        if (!given.starts_with('-') && std::find(names.begin(), names.end(), given) == names.end())
+            throw Error(ExitCode::Usage, fmt::format("unknown command {}; did you mean {}?",
+                                                     printable(given, kLongestName), nearest_key(given, names)));
+    }
+
+    // The command that was given, or the program.
+    const CLI::App& parsed_app() const {
+        for (const auto& [command, run] : commands_)
+            if (command->get_name() == argv_[1])
+                return *command;
+        return app_;
+    }
+
+    // Names the nearest option where one is unknown.
+    std::string in_our_words(const CLI::ParseError& error) const {
+        const CLI::App& app = parsed_app();
+        const std::string help =
+            fmt::format("`brisance {}--help` lists all options", &app == &app_ ? "" : app.get_name() + " ");
+        if (error.get_name() != "ExtrasError")
+            return fmt::format("{}; {}", printable(error.what()), help);
+        std::vector<std::string> known;
+        for (const CLI::Option* const option : app.get_options())
+            for (const std::string& name : option->get_lnames())
+                known.push_back("--" + name);
+        for (int i = 2; i < argc_; ++i) {
+            const std::string name = std::string(argv_[i]).substr(0, std::string(argv_[i]).find('='));
+            if (name.starts_with("--") && std::find(known.begin(), known.end(), name) == known.end())
+                return fmt::format("unknown option {}; did you mean {}? {}", printable(name, kLongestName),
+                                   nearest_key(name, known), help);
+        }
+        return fmt::format("{}; {}", printable(error.what()), help);
+    }
+
     CLI::App& add(const char* name, const char* help, const std::function<int()>& run) {
         CLI::App* const command = app_.add_subcommand(name, help);
         commands_.emplace_back(command, run);
@@ -252,7 +300,7 @@ private:
             options_);
         CLI::App& inspect = add("inspect", "Prints a .vdb file's grids and suggests a shot",
                                 [this] { return run_inspect(file_, as_json_); });
-        inspect.add_option("FILE", file_, "The .vdb file")->required();
+        inspect.add_option("FILE", file_, "The .vdb file; of a sequence (####), the largest")->required();
         inspect.add_flag("--json", as_json_, "As JSON");
     }
 
@@ -306,7 +354,7 @@ private:
 };
 
 int fail(ExitCode code, const std::string& line) {
-    fmt::print(stderr, "brisance: error: {}\n", line);
+    fmt::print(stderr, "brisance: error: {}\n", printable_line(line));
     return static_cast<int>(code);
 }
 

@@ -56,10 +56,19 @@ void refuse_overwriting(const FrameOutput& output, const fs::path& input) {
     }
 }
 
+void make_folder_of(const fs::path& file) {
+    std::error_code error;
+    if (file.has_parent_path())
+        fs::create_directories(file.parent_path(), error);
+    if (error)
+        throw Error(ExitCode::CannotCreate, fmt::format("cannot make the folder {}: {}; choose another -o",
+                                                        file.parent_path().string(), error.message()));
+}
+
 }  // namespace
 
 std::vector<FrameOutput> plan_outputs(const Shot& shot, const std::string& requested,
-                                      const std::vector<FrameFile>& frames, const fs::path& input) {
+                                      const std::vector<FrameFile>& frames, const fs::path& input, bool make_folders) {
     const std::string pattern = output_pattern(shot, requested, frames.size() > 1);
     std::vector<FrameOutput> outputs;
     std::map<fs::path, int> frame_of;
@@ -80,6 +89,8 @@ std::vector<FrameOutput> plan_outputs(const Shot& shot, const std::string& reque
             throw Error(ExitCode::Usage, fmt::format("frames {} and {} would both be written to {}", other->second,
                                                      frame.frame, output.exr.string()));
         refuse_overwriting(output, input);
+        if (make_folders)
+            make_folder_of(output.exr);
         for (const fs::path& file : files_of(output))
             check_writable(file);
         outputs.push_back(output);

@@ -24,8 +24,10 @@ struct FrameOutput {
 // folder; empty: the shot's, relative to the shot's folder; if that is empty too, the shot's name in the current
 // folder. `inputs` are never overwritten. Throws Error Usage (no .exr; several frames would get one name; an input
 // would be overwritten), CannotCreate or OutputFailed when a folder is missing or cannot be written into.
+// `make_folders` makes those that are missing.
 std::vector<FrameOutput> plan_outputs(const Shot& shot, const std::string& requested,
-                                      const std::vector<FrameFile>& frames, const std::filesystem::path& input);
+                                      const std::vector<FrameFile>& frames, const std::filesystem::path& input,
+                                      bool make_folders);
 
 // One checkpoint for each frame: `requested` with the frame's number in it, or nothing for all when it is empty. Throws
 // Error Usage (no frame token for several frames; the method keeps none; it is a file that is read or written as

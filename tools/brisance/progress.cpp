@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/printable.h"
+
 namespace brisance {
 namespace {
 
@@ -78,12 +80,12 @@ void TextProgress::fraction(double done) {
 void TextProgress::notice(const std::string& line) {
     const std::lock_guard lock(mutex_);
     if (notices_[line]++ == 0)
-        print_line(line);
+        print_line(printable_line(line));
 }
 
 void TextProgress::warning(const std::string& code, const std::string& line) {
     const std::lock_guard lock(mutex_);
-    const std::string whole = fmt::format("warning: {} [{}]", line, code);
+    const std::string whole = printable_line(fmt::format("warning: {} [{}]", line, code));
     if (warnings_[whole]++ == 0)
         print_line(whole);
 }

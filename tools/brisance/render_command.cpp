@@ -300,7 +300,8 @@ int run_render(const RenderOptions& options) {
     }
     Failures failures;
     const std::vector<FrameFile> frames = usable_frames(shot, options, progress, failures);
-    const std::vector<FrameOutput> outputs = plan_outputs(shot, options.output, frames, options.input);
+    const std::vector<FrameOutput> outputs =
+        plan_outputs(shot, options.output, frames, options.input, options.make_folders);
     const std::vector<fs::path> checkpoints =
         plan_checkpoints(shot, options.checkpoint, frames, outputs, options.input);
     const SharedChoice choice = frames.empty() ? SharedChoice{} : choose_for_all(shot, progress);
@@ -333,7 +334,8 @@ int run_plan(const RenderOptions& options) {
     const std::vector<FrameFile> frames = usable_frames(shot, options, progress, failures);
     if (frames.empty())
         return static_cast<int>(failures.first);
-    const std::vector<FrameOutput> outputs = plan_outputs(shot, options.output, frames, options.input);
+    const std::vector<FrameOutput> outputs =
+        plan_outputs(shot, options.output, frames, options.input, options.make_folders);
     choose_for_all(shot, progress);
     const Statistics plan = plan_frame(shot, frames.front().file, frames.front().frame, progress);
     progress.finish();

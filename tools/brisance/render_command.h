@@ -25,6 +25,7 @@ struct RenderOptions {
     bool explain = false;
     bool print_config = false;
     bool keep_going = false;
+    bool make_folders = false;
     ProgressStyle progress = ProgressStyle::Automatic;
 };
 

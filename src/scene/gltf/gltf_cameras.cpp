@@ -58,13 +58,14 @@ LightSettings light_settings(const GltfFile& file, const tinygltf::Light& light,
         settings.kind = LightKind::Spot;
     else if (light.type != "point")
         file.reject(fmt::format("light {} is of a kind that KHR_lights_punctual does not know", name));
+    constexpr float kMostPower = 1e20f;  // sums of more overflow
     Rgb colour(1.0f);
     for (std::size_t c = 0; c < 3 && light.color.size() == 3; ++c)
         colour[static_cast<int>(c)] = static_cast<float>(light.color[c]);
     settings.power = colour * static_cast<float>(light.intensity);
     for (int c = 0; c < 3; ++c)
-        if (!(settings.power[c] >= 0.0f) || !std::isfinite(settings.power[c]))
-            file.reject(fmt::format("light {}: colour times intensity is not a finite number from 0 on", name));
+        if (!(settings.power[c] >= 0.0f && settings.power[c] <= kMostPower))
+            file.reject(fmt::format("light {}: colour times intensity is not a number in [0, {}]", name, kMostPower));
     constexpr double kDegrees = 180.0 / 3.14159265358979323846;
     if (settings.kind == LightKind::Spot) {
         settings.inner_degrees = light.spot.innerConeAngle * kDegrees;

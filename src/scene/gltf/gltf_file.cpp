@@ -14,6 +14,8 @@
 #include <span>
 
 #include "core/error.h"
+#include "core/input_file.h"
+#include "core/printable.h"
 
 namespace brisance {
 namespace {
@@ -27,23 +29,8 @@ constexpr std::size_t kBeyond = 8;  // bytes that tinygltf may read after the en
 
 using Bytes = std::vector<unsigned char>;
 
-// At most `longest` characters of text that a file or a library gave, as part of one line.
-std::string printable(const std::string& text, std::size_t longest) {
-    std::string result;
-    for (const char c : text.substr(0, longest))
-        result += std::iscntrl(static_cast<unsigned char>(c)) ? ' ' : c;
-    while (result.ends_with(' '))
-        result.pop_back();
-    return result;
-}
-
 Bytes read_bytes(const std::filesystem::path& path, const std::string& whose, MemoryBudget& budget) {
-    std::error_code error;
-    if (!std::filesystem::exists(path, error))
-        throw Error(ExitCode::MissingInput, fmt::format("{}: {}", path.string(), whose));
-    const auto size = std::filesystem::file_size(path, error);
-    if (error)
-        throw Error(ExitCode::BadData, fmt::format("{}: it is no file that can be read", path.string()));
+    const std::uint64_t size = size_of_input(path, ExitCode::BadData, whose);
     budget.claim(path.string(), static_cast<double>(size));
     Bytes bytes;
     bytes.reserve(size + kBeyond);
@@ -51,7 +38,8 @@ Bytes read_bytes(const std::filesystem::path& path, const std::string& whose, Me
     std::ifstream in(path, std::ios::binary);
     in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
     if (!in)
-        throw Error(ExitCode::BadData, fmt::format("{}: it cannot be read; may you read it?", path.string()));
+        throw Error(ExitCode::BadData,
+                    fmt::format("{}: it cannot be read; check the disk and copy it again", path.string()));
     return bytes;
 }
 
@@ -129,7 +117,7 @@ bool read_buffer(Bytes* bytes, std::string*, const std::string& name, void* user
             "a buffer is a data: URI of a kind that is not known (application/octet-stream in base64 "
             "is)");
     *bytes = read_bytes(found(reading.file.path.parent_path() / name),
-                        "no such file, it is a buffer of " + reading.file.path.string(), reading.budget);
+                        "it is a buffer of " + reading.file.path.string(), reading.budget);
     return true;
 }
 
@@ -207,7 +195,7 @@ std::filesystem::path GltfFile::resolved(const std::string& uri) const {
 GltfFile read_gltf(const std::filesystem::path& path, MemoryBudget& budget, Progress& progress) {
     GltfFile file{path, {}};
     try {
-        Bytes bytes = read_bytes(path, "no such file", budget);
+        Bytes bytes = read_bytes(path, "", budget);
         if (bytes.size() > 0xfffffff0u)
             file.reject("it is larger than 4 GiB", "keep its buffers in files of their own");
         check_depth(file, is_binary(bytes) ? json_of_binary(file, bytes) : std::span<const unsigned char>(bytes));

@@ -14,7 +14,7 @@ namespace {
 
 using tinygltf::Value;
 
-constexpr double kMost = 1e30;  // of what has no upper limit
+constexpr double kMost = 1e20;  // of what has no upper limit
 
 const Value* extension(const tinygltf::Material& material, const char* name) {
     const auto found = material.extensions.find(name);

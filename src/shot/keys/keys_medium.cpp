@@ -5,7 +5,7 @@ namespace {
 
 void add_smoke_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
-        "smoke.extinction_per_metre", "extinction coefficient where density is 1 [1/m]", real_float(at_least(0.0)),
+        "smoke.extinction_per_metre", "extinction coefficient where density is 1 [1/m]", real_float(radiometric()),
         [](Shot & s) -> auto& { return s.medium.smoke.extinction_per_metre; }));
     keys.push_back(make_key(
         "smoke.albedo", "share of the extinguished light that is scattered, linear Rec. 709", rgb({0.0, 1.0}),
@@ -26,13 +26,13 @@ void add_fire_keys(std::vector<Key>& keys) {
             {{"times_absorption", EmissionConvention::TimesAbsorption}, {"direct", EmissionConvention::Direct}}),
         [](Shot & s) -> auto& { return s.medium.fire.convention; }));
     keys.push_back(make_key(
-        "fire.strength", "multiplies the emission", real_float(at_least(0.0)),
+        "fire.strength", "multiplies the emission", real_float(radiometric()),
         [](Shot & s) -> auto& { return s.medium.fire.strength; }));
     keys.push_back(make_key(
-        "fire.threshold", "subtracted from the emitting grid's values, before interpolation", real_float(at_least(0.0)),
+        "fire.threshold", "subtracted from the emitting grid's values, before interpolation", real_float(radiometric()),
         [](Shot & s) -> auto& { return s.medium.fire.threshold; }));
     keys.push_back(make_key(
-        "fire.colour", "multiplies the emission, linear Rec. 709", rgb(at_least(0.0)),
+        "fire.colour", "multiplies the emission, linear Rec. 709", rgb(tint()),
         [](Shot & s) -> auto& { return s.medium.fire.colour; }));
     keys.push_back(make_key(
         "fire.ramp", "colour over the flame grid's values, linear in between; empty: white", ramp(),
@@ -41,11 +41,11 @@ void add_fire_keys(std::vector<Key>& keys) {
         "fire.modulate_by_flame", "multiplies black-body emission by the flame grid", flag(),
         [](Shot & s) -> auto& { return s.medium.fire.modulate_by_flame; }));
     keys.push_back(make_key(
-        "fire.temperature_in", "two values of the temperature grid ...", pair_of(any_number()),
+        "fire.temperature_in", "two values of the temperature grid ...", pair_of(grid_value()),
         [](Shot & s) -> auto& { return s.medium.fire.temperature_in; }));
     keys.push_back(make_key(
-        "fire.temperature_kelvin", "... and the temperatures they stand for [K]; linear beyond them",
-        pair_of(at_least(0.0)), [](Shot & s) -> auto& { return s.medium.fire.temperature_kelvin; }));
+        "fire.temperature_kelvin", "... and the temperatures they stand for [K]; linear beyond them", pair_of(kelvin()),
+        [](Shot & s) -> auto& { return s.medium.fire.temperature_kelvin; }));
 }
 
 }  // namespace

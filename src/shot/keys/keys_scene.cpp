@@ -48,7 +48,7 @@ void add_material(std::vector<Member<T>>& m) {
     m.push_back(member<T>(
         "transmission", real_float(kUnit), [](T & t) -> auto& { return t.material.transmission; }));
     m.push_back(member<T>(
-        "emission", rgb(at_least(0.0)), [](T & t) -> auto& { return t.material.emission; }));
+        "emission", rgb(radiometric()), [](T & t) -> auto& { return t.material.emission; }));
 }
 
 Codec<SceneFile> file_codec() {
@@ -75,7 +75,7 @@ Codec<QuickSphere> sphere_codec() {
     std::vector<Member<T>> m = {member<T>(
                                     "centre", point(), [](T & t) -> auto& { return t.centre; }, true),
                                 member<T>(
-                                    "radius", real(above(0.0)), [](T & t) -> auto& { return t.radius; }, true)};
+                                    "radius", real({0.0, 1e15, true}), [](T & t) -> auto& { return t.radius; }, true)};
     add_material(m);
     return object_of<T>("a sphere {\"centre\": ..., \"radius\": ..., \"colour\": ...}", m);
 }
@@ -97,7 +97,7 @@ Codec<LightSettings> light_codec() {
                          member<T>(
                              "direction", point(), [](T & t) -> auto& { return t.direction; }),
                          member<T>(
-                             "power", rgb(at_least(0.0)), [](T & t) -> auto& { return t.power; }),
+                             "power", rgb(radiometric()), [](T & t) -> auto& { return t.power; }),
                          member<T>(
                              "inner_degrees", real({0.0, 180.0}), [](T & t) -> auto& { return t.inner_degrees; }),
                          member<T>(

@@ -33,7 +33,7 @@ Codec<FogBox> fog_box() {
                          member<T>(
                              "high", point(), [](T & t) -> auto& { return t.high; }, true),
                          member<T>(
-                             "voxel_metres", real(at_least(0.0)), [](T & t) -> auto& { return t.voxel_metres; })});
+                             "voxel_metres", real({0.0, 1e15}), [](T & t) -> auto& { return t.voxel_metres; })});
 }
 
 Codec<FurtherVolume> further_volume() {
@@ -55,18 +55,18 @@ Codec<FurtherVolume> further_volume() {
          member<T>(
              "world_from_file", matrix(), [](T & t) -> auto& { return t.volume.world_from_file; }),
          member<T>(
-             "extinction_per_metre", if_given(real_float(at_least(0.0))),
+             "extinction_per_metre", if_given(real_float(radiometric())),
              [](T & t) -> auto& { return t.changes.extinction_per_metre; }),
          member<T>(
              "albedo", if_given(rgb({0.0, 1.0})), [](T & t) -> auto& { return t.changes.albedo; }),
          member<T>(
              "fire_model", if_given(fire_model()), [](T & t) -> auto& { return t.changes.model; }),
          member<T>(
-             "fire_strength", if_given(real_float(at_least(0.0))), [](T & t) -> auto& { return t.changes.strength; }),
+             "fire_strength", if_given(real_float(radiometric())), [](T & t) -> auto& { return t.changes.strength; }),
          member<T>(
-             "fire_threshold", if_given(real_float(at_least(0.0))), [](T & t) -> auto& { return t.changes.threshold; }),
+             "fire_threshold", if_given(real_float(radiometric())), [](T & t) -> auto& { return t.changes.threshold; }),
          member<T>(
-             "fire_colour", if_given(rgb(at_least(0.0))), [](T & t) -> auto& { return t.changes.colour; }),
+             "fire_colour", if_given(rgb(tint())), [](T & t) -> auto& { return t.changes.colour; }),
          member<T>(
              "fire_ramp", if_given(ramp()), [](T & t) -> auto& { return t.changes.ramp; })});
 }

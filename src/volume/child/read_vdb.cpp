@@ -1,4 +1,4 @@
-// The only file that includes OpenVDB. It turns files and trees into plain data.
+// The only file that includes OpenVDB. It turns files and trees into plain data, in a child process.
 #include <fmt/format.h>
 #include <openvdb/io/File.h>
 #include <openvdb/io/GridDescriptor.h>
@@ -14,22 +14,15 @@
 #include <stdexcept>
 
 #include "core/error.h"
+#include "core/printable.h"
+#include "volume/child/read_vdb.h"
 #include "volume/raw_grid.h"
-#include "volume/vdb_file.h"
 #include "volume/vdb_header.h"
 
 namespace brisance {
 namespace {
 
 using openvdb::GridBase;
-
-// Text of a library's exception, short and printable.
-std::string clean(const std::string& text) {
-    std::string result;
-    for (const char c : text.substr(0, 160))
-        result += std::isprint(static_cast<unsigned char>(c)) ? c : ' ';
-    return result;
-}
 
 // Runs `body` and turns any exception of OpenVDB, damaged files included, into an Error with one line about `where`.
 template <class Body>
@@ -45,7 +38,7 @@ auto guarded(const std::string& where, const Body& body) {
                                 "machine; {} or try where there is more memory",
                                 where, remedy));
     } catch (const std::exception& error) {
-        const std::string text = clean(error.what());
+        const std::string text = printable(error.what());
         const bool codec = text.find("ompress") != std::string::npos || text.find("osc") != std::string::npos;
         throw Error(ExitCode::BadData,
                     fmt::format("{}: {}: {}; {}", where,
@@ -126,41 +119,60 @@ void take_bounds(const openvdb::CoordBBox& box, GridInfo& info) {
     info.active_max = none ? ivec3(-1) : ivec3(box.max().x(), box.max().y(), box.max().z());
 }
 
-// Copies leaves' addresses and tiles out of a tree; false when the grid is of another type.
-template <class GridType, class T, int Channels>
-bool take_voxels(const GridBase::ConstPtr& base, std::optional<AnyRawGrid>& result) {
-    if (!base->isType<GridType>())
-        return false;
-    const auto grid = openvdb::gridConstPtrCast<GridType>(base);
-    using Tree = typename GridType::TreeType;
-    static_assert(Tree::LeafNodeType::DIM == BlockGrid::kBlock);
-    static_assert(sizeof(typename Tree::ValueType) == sizeof(T) * Channels);
-    RawGrid<T> raw;
-    raw.channels = Channels;
-    raw.owner = grid;
-    raw.leaves.reserve(grid->tree().leafCount());
-    for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf) {
-        const openvdb::Coord& at = leaf->origin();
-        RawLeaf<T> out{{at.x(), at.y(), at.z()}, reinterpret_cast<const T*>(leaf->buffer().data()), {}};
-        for (openvdb::Index word = 0; word < 8; ++word)
-            out.active[word] = leaf->valueMask().template getWord<std::uint64_t>(word);
-        raw.leaves.push_back(out);
-    }
-    auto tile = grid->tree().cbeginValueOn();
+template <class LeafPointer>
+bool leaf_comes_before(const LeafPointer& a, const LeafPointer& b) {
+    return a->origin() < b->origin();
+}
+
+RawLeaf shape_of(const openvdb::Coord& origin, const openvdb::util::NodeMask<3>& mask) {
+    RawLeaf leaf{{origin.x(), origin.y(), origin.z()}, {}};
+    for (openvdb::Index word = 0; word < 8; ++word)
+        leaf.active[word] = mask.getWord<std::uint64_t>(word);
+    return leaf;
+}
+
+template <class Tree, class T>
+void take_tiles(const Tree& tree, std::vector<RawTile<T>>& tiles) {
+    auto tile = tree.cbeginValueOn();
     tile.setMaxDepth(Tree::ValueOnCIter::LEAF_DEPTH - 1);
     for (; tile; ++tile) {
         const openvdb::CoordBBox box = tile.getBoundingBox();
         RawTile<T> out{{box.min().x(), box.min().y(), box.min().z()}, box.max().x() - box.min().x() + 1, {}};
         const typename Tree::ValueType value = tile.getValue();
         std::memcpy(out.value, &value, sizeof(value));
-        raw.tiles.push_back(out);
+        tiles.push_back(out);
     }
-    result = std::move(raw);
+}
+
+// Copies leaves' shapes, the addresses of their values, and tiles out of a tree; false when the grid is of another
+// type.
+template <class GridType, class T, int Channels>
+bool take_voxels(const GridBase::ConstPtr& base, std::optional<AnyLoadedVoxels>& result) {
+    if (!base->isType<GridType>())
+        return false;
+    const auto grid = openvdb::gridConstPtrCast<GridType>(base);
+    using Tree = typename GridType::TreeType;
+    static_assert(Tree::LeafNodeType::DIM == BlockGrid::kBlock);
+    static_assert(sizeof(typename Tree::ValueType) == sizeof(T) * Channels);
+    std::vector<const typename Tree::LeafNodeType*> leaves;
+    grid->tree().getNodes(leaves);
+    std::sort(leaves.begin(), leaves.end(), leaf_comes_before<const typename Tree::LeafNodeType*>);
+    LoadedVoxels<T> loaded;
+    loaded.channels = Channels;
+    loaded.owner = grid;
+    loaded.leaves.reserve(leaves.size());
+    loaded.values.reserve(leaves.size());
+    for (const auto* const leaf : leaves) {
+        loaded.leaves.push_back(shape_of(leaf->origin(), leaf->valueMask()));
+        loaded.values.push_back(reinterpret_cast<const T*>(leaf->buffer().data()));
+    }
+    take_tiles(grid->tree(), loaded.tiles);
+    result = std::move(loaded);
     return true;
 }
 
-std::optional<AnyRawGrid> raw_grid_from(const GridBase::ConstPtr& grid) {
-    std::optional<AnyRawGrid> result;
+std::optional<AnyLoadedVoxels> voxels_of(const GridBase::ConstPtr& grid) {
+    std::optional<AnyLoadedVoxels> result;
     take_voxels<openvdb::FloatGrid, float, 1>(grid, result) ||
         take_voxels<openvdb::DoubleGrid, double, 1>(grid, result) ||
         take_voxels<openvdb::Int32Grid, std::int32_t, 1>(grid, result) ||
@@ -171,13 +183,12 @@ std::optional<AnyRawGrid> raw_grid_from(const GridBase::ConstPtr& grid) {
 }
 
 // One file, opened and checked.
-class OpenFile {
+class OpenFile : public OpenVdb {
 public:
     explicit OpenFile(const std::filesystem::path& path)
         : path_(path.string()), header_(read_vdb_header(path)), file_(path.string()) {
         guarded(path_, [&] {
-            openvdb::initialize();
-            openvdb::logging::setLevel(openvdb::logging::Level::Fatal);  // what matters is in our own messages
+            initialize_openvdb();
             constexpr bool delayed = false;  // loads wholly: delayed loading is slow over networks
             file_.open(delayed);
             stored_ = header_.grid_names;
@@ -189,7 +200,28 @@ public:
             throw Error(ExitCode::BadData, path_ + ": holds no grid at all; write it again with at least one");
     }
 
-    std::size_t size() const { return stored_.size(); }
+    std::vector<GridInfo> grids() override {
+        std::vector<GridInfo> grids;
+        for (std::size_t k = 0; k < stored_.size(); ++k)
+            grids.push_back(describe(k));
+        return grids;
+    }
+
+    LoadedGrid load(std::size_t k, std::uint64_t memory_limit_bytes) override {
+        check_claim(k, memory_limit_bytes);
+        const GridBase::ConstPtr grid = read(k);
+        return guarded(where(k), [&] {
+            LoadedGrid loaded;
+            loaded.voxels = voxels_of(grid);
+            if (!loaded.voxels) {
+                loaded.active_voxels = grid->activeVoxelCount();
+                loaded.active_tiles = grid->constBaseTree().activeTileCount();
+            }
+            return loaded;
+        });
+    }
+
+private:
     std::string name(std::size_t k) const { return openvdb::io::GridDescriptor::stripSuffix(stored_[k]); }
 
     int index_of(std::size_t k) const {
@@ -214,14 +246,25 @@ public:
             info.why_unusable = fmt::format(
                 "cannot be read ({}); write it again as a float or vec3s grid with an "
                 "invertible transform",
-                clean(error.what()));
+                printable(error.what()));
         }
         info.usable = info.why_unusable.empty();
         return info;
     }
 
-    GridBase::Ptr load(std::size_t k) {
+    GridBase::Ptr read(std::size_t k) {
         return guarded(where(k), [&] { return file_.readGrid(readable_name(k)); });
+    }
+
+    // Blocks of zeros are dropped after loading and may save much, but not the memory to load them.
+    void check_claim(std::size_t k, std::uint64_t memory_limit_bytes) {
+        const std::uint64_t claimed = claimed_bytes(k);
+        if (claimed / 2 > memory_limit_bytes)
+            throw Error(ExitCode::BadData,
+                        fmt::format("{}: says that it takes {:.1f} MiB in memory, the limit is {:.1f} MiB; write it "
+                                    "with larger voxels or raise the limit",
+                                    where(k), static_cast<double>(claimed) / 1048576.0,
+                                    static_cast<double>(memory_limit_bytes) / 1048576.0));
     }
 
     // Bytes of the whole tree in memory, as the writer noted them; 0 where it did not.
@@ -233,20 +276,10 @@ public:
         });
     }
 
-    std::string where(std::size_t k) const { return fmt::format("{}: grid \"{}[{}]\"", path_, name(k), index_of(k)); }
-
-    std::size_t find(const std::string& wanted, int index) const {
-        std::string present;
-        for (std::size_t k = 0; k < size(); ++k) {
-            if (name(k) == wanted && index_of(k) == index)
-                return k;
-            present += fmt::format("{}\"{}[{}]\"", k > 0 ? ", " : "", name(k), index_of(k));
-        }
-        throw Error(ExitCode::BadData,
-                    fmt::format("{}: no grid \"{}[{}]\"; name one of {}", path_, wanted, index, present));
+    std::string where(std::size_t k) const {
+        return fmt::format("{}: grid \"{}[{}]\"", path_, printable(name(k), kLongestName), index_of(k));
     }
 
-private:
     std::string readable_name(std::size_t k) const { return openvdb::io::GridDescriptor::nameAsString(stored_[k]); }
 
     void fill_info(std::size_t k, const GridBase& grid, GridInfo& info) {
@@ -262,17 +295,17 @@ private:
         if (low && high)
             take_bounds({openvdb::Coord(low->value()), openvdb::Coord(high->value())}, info);
         else if (info.why_unusable.empty())  // written without statistics
-            take_bounds(load(k)->evalActiveVoxelBoundingBox(), info);
+            take_bounds(read(k)->evalActiveVoxelBoundingBox(), info);
     }
 
     std::string creator_of(const GridBase& grid) const {
-        std::string creator = clean(grid.getCreator());
+        std::string creator = printable(grid.getCreator());
         const openvdb::MetaMap::Ptr of_file = file_.getMetadata();
         if (creator.empty() && of_file)
             if (const auto text = of_file->getMetadata<openvdb::StringMetadata>("creator"))
-                creator = clean(text->value());
+                creator = printable(text->value());
         if (creator.empty() && grid["embergen_version"])
-            creator = "EmberGen " + clean(grid["embergen_version"]->str());
+            creator = "EmberGen " + printable(grid["embergen_version"]->str());
         return creator;
     }
 
@@ -284,56 +317,13 @@ private:
 
 }  // namespace
 
-double GridInfo::voxel_volume() const {
-    return std::abs(glm::determinant(dmat3(world_from_index)));
+std::unique_ptr<OpenVdb> open_vdb(const std::filesystem::path& file) {
+    return std::make_unique<OpenFile>(file);
 }
 
-std::vector<GridInfo> list_grids(const std::filesystem::path& file) {
-    OpenFile open(file);
-    std::vector<GridInfo> grids;
-    for (std::size_t k = 0; k < open.size(); ++k)
-        grids.push_back(open.describe(k));
-    return grids;
-}
-
-BlockGrid read_grid(const std::filesystem::path& file, const std::string& name, int index,
-                    std::uint64_t memory_limit_bytes) {
-    OpenFile open(file);
-    const std::size_t k = open.find(name, index);
-    const GridInfo info = open.describe(k);
-    if (!info.usable)
-        throw Error(ExitCode::BadData, fmt::format("{} {}", open.where(k), info.why_unusable));
-    // Zero blocks are dropped after loading and may save much, but not the memory to load them.
-    const std::uint64_t claimed = open.claimed_bytes(k);
-    if (claimed / 2 > memory_limit_bytes)
-        throw Error(ExitCode::BadData,
-                    fmt::format("{}: says that it takes {:.1f} MiB in memory, the limit is {:.1f} MiB; write it with "
-                                "larger voxels or raise the limit",
-                                open.where(k), static_cast<double>(claimed) / 1048576.0,
-                                static_cast<double>(memory_limit_bytes) / 1048576.0));
-    const GridBase::ConstPtr grid = open.load(k);
-    return guarded(open.where(k), [&] {
-        const std::optional<AnyRawGrid> raw = raw_grid_from(grid);
-        if (!raw)
-            throw Error(ExitCode::BadData, fmt::format("{}: its tree is not of the standard shape; write it again with "
-                                                       "OpenVDB's default tree",
-                                                       open.where(k)));
-        return expand_blocks(*raw, info, memory_limit_bytes, open.where(k));
-    });
-}
-
-GridCensus census_of_grid(const std::filesystem::path& file, const std::string& name, int index, int bins) {
-    OpenFile open(file);
-    const std::size_t k = open.find(name, index);
-    const GridBase::ConstPtr grid = open.load(k);
-    return guarded(open.where(k), [&] {
-        if (const std::optional<AnyRawGrid> raw = raw_grid_from(grid))
-            return count_voxels(*raw, bins);
-        GridCensus census;  // points and flags can be counted, no more
-        census.active_voxels = grid->activeVoxelCount();
-        census.active_tiles = grid->constBaseTree().activeTileCount();
-        return census;
-    });
+void initialize_openvdb() {
+    openvdb::initialize();
+    openvdb::logging::setLevel(openvdb::logging::Level::Fatal);  // what matters is in our own messages
 }
 
 }  // namespace brisance
