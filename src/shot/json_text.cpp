@@ -44,6 +44,7 @@ private:
 };
 
 constexpr int kDeepest = 256;              // JSON is copied and written by recursion
+constexpr std::size_t kMostKeys = 10000;   // JSON keeps the order of keys, and seeks each among all before it
 constexpr std::size_t kLongestPath = 200;  // no key of a shot has a longer one
 
 // Follows the parser through objects and lists, and notes where each key stands.
@@ -77,9 +78,12 @@ private:
 
     void note(const std::string& key) {
         Level& level = levels_.back();
+        if (level.line_of.size() >= kMostKeys)
+            throw Error(ExitCode::Usage, fmt::format("{}:{}: more than {} keys in one object; a shot needs hundreds",
+                                                     source_, line_, kMostKeys));
         path_.resize(level.path_begin);
         if (path_.size() <= kLongestPath)
-            path_ += (path_.empty() ? "" : ".") + key.substr(0, kLongestPath);
+            path_.append(path_.empty() ? "" : ".").append(key, 0, kLongestPath);
         const auto [entry, first] = level.line_of.emplace(key, line_);
         if (!first)
             throw Error(ExitCode::Usage, fmt::format("{}:{}: {} is given twice; it was given first on line {}", source_,
@@ -106,9 +110,11 @@ std::string syntax_message(const std::string& what) {
 }  // namespace
 
 std::optional<Json> parse_json_value(const std::string& text) {
-    const auto shallow = [](int depth, Json::parse_event_t, const Json&) {
-        if (depth > kDeepest)
-            throw std::length_error("nested too deeply");
+    std::size_t keys = 0;
+    const auto shallow = [&](int depth, Json::parse_event_t event, const Json&) {
+        keys += event == Json::parse_event_t::key ? 1 : 0;
+        if (depth > kDeepest || keys > kMostKeys)
+            throw std::length_error("nested too deeply, or too many keys");
         return true;
     };
     try {

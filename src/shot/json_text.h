@@ -18,7 +18,8 @@ struct JsonText {
 // more than 256 levels deep.
 JsonText parse_json_text(const std::string& text, const std::string& source);
 
-// Nothing where the text is no JSON, or nested more than 256 levels deep.
+// Nothing where the text is no JSON, or nested more than 256 levels deep, or with more than
+// 10,000 keys.
 std::optional<Json> parse_json_value(const std::string& text);
 
 }  // namespace brisance

@@ -239,7 +239,7 @@ class Rendering(VolumeCase):
     def test_time_and_believed_error(self):
         self.expect(2, "render", self.volume, "--seconds", "0", says="--seconds")
         self.expect(0, "render", self.volume, *LIT, "--seconds", "0.001", "-o", self.out / "a.exr",
-                    says=["seconds: ", "believed error: "])
+                    says=["seconds=0.001: ", "do not suffice", "believed error: "])
         statistics = json.loads((self.out / "a.stats.json").read_text(encoding="utf-8"))
         self.assertIn("choice for the time", [stage["name"] for stage in statistics["stages"]])
         self.assertGreater(statistics["believed_error"]["picture"]["error"], 0.0)

@@ -57,8 +57,8 @@ TEST(ReadShot, LongKeysAndManyKeysTakeNoTime) {
     EXPECT_LT(message.size(), 300u);
     std::string many = "{\"" + std::string(1000000, 'k') + "\": {";
     for (int i = 0; i < 100000; ++i)
-        many += "\"" + std::to_string(i) + "\": 0, ";
-    EXPECT_NE(error_message(many + "\"last\": 0}}"), "");
+        many.append("\"").append(std::to_string(i)).append("\": 0, ");
+    EXPECT_NE(error_message(many + "\"last\": 0}}").find("more than 10000 keys"), std::string::npos);
 }
 
 TEST(ReadShot, AKeyThatIsGivenTwiceWithinAListIsAnError) {
@@ -278,7 +278,7 @@ TEST(ReadShot, ScenesAreListsOfThings) {
 TEST(ReadShot, MistakesInListsNameTheirPosition) {
     const auto message_for = [](const std::string& scene) { return error_message(R"({"scene": )" + scene + "}"); };
     EXPECT_EQ(message_for(R"({"spheres": [{"centre": [0, 0, 0], "radius": 1}, {"centre": [0, 0, 0], "radius": -2}]})"),
-              "a.json:1: scene.spheres[1].radius: expected a number above 0, got -2 (a number)");
+              "a.json:1: scene.spheres[1].radius: expected a number in (0, 1000000000000000], got -2 (a number)");
     EXPECT_EQ(message_for(R"({"files": [{"file": "a.glb", "upp": "z"}]})"),
               "a.json:1: scene.files[0]: expected keys it knows, such as \"up\", got \"upp\" (text)");
     EXPECT_EQ(message_for(R"({"files": [{"up": "z"}]})"),

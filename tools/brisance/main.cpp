@@ -269,7 +269,7 @@ private:
         const CLI::App& app = parsed_app();
         const std::string help =
             fmt::format("`brisance {}--help` lists all options", &app == &app_ ? "" : app.get_name() + " ");
-        if (error.get_name() != "ExtrasError")
+        if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError))
             return fmt::format("{}; {}", printable(error.what()), help);
         std::vector<std::string> known;
         for (const CLI::Option* const option : app.get_options())
