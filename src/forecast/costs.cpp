@@ -62,9 +62,9 @@ PilotPixel trace_pilot_pixel(const PathTracer& tracer, const Camera& camera, std
 
 }  // namespace
 
-double lit_nodes(const Medium& medium) {
+CountedMedium::CountedMedium(const Medium& counted) : medium(counted) {
     const std::vector<std::uint8_t> needed = nodes_beside_extinction(medium);
-    return double(std::count_if(needed.begin(), needed.end(), [](std::uint8_t n) { return n != 0; }));
+    lit_nodes = double(std::count_if(needed.begin(), needed.end(), [](std::uint8_t n) { return n != 0; }));
 }
 
 int forecast_lattice_level(const ScatteringSettings& settings, double nodes) {
@@ -74,8 +74,8 @@ int forecast_lattice_level(const ScatteringSettings& settings, double nodes) {
     return level;
 }
 
-double grid_seconds(const Shot& shot, const Medium& medium, const Plan& plan, const CameraSettings& camera) {
-    const double nodes = lit_nodes(medium), gathers = plan.multiple ? 2.0 : 1.0;
+double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan, const CameraSettings& camera) {
+    const double nodes = counted.lit_nodes, gathers = plan.multiple ? 2.0 : 1.0;
     double evaluations = kEvaluationsOfNode * nodes * std::pow(double(shot.lighting.alpha), kPowerOfAlpha);
     double coarse = 0.0;
     if (plan.multiple) {
@@ -86,7 +86,7 @@ double grid_seconds(const Shot& shot, const Medium& medium, const Plan& plan, co
         std::pow(double(shadow_resolution(shot.lighting)), 2.0) * shadow_distances(shot.lighting) / kKnownMap;
     const double values = 0.5 * gathers * map * (kMapValuesOfNode * nodes + kMapValuesAtTop);
     return kFrame + kEvaluation * (plan.directional ? kDirectional : 1.0) * evaluations + kMapValue * values +
-           kCoarseNode * coarse + kCameraRay * camera_rays(shot, medium, camera);
+           kCoarseNode * coarse + kCameraRay * camera_rays(shot, counted.medium, camera);
 }
 
 double tracer_seconds(const Medium& medium) {

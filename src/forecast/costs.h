@@ -9,14 +9,19 @@
 
 namespace brisance {
 
-// Nodes at which light is gathered.
-double lit_nodes(const Medium& medium);
+// A medium whose nodes are counted once, which is a pass over all of them. Keeps a reference.
+struct CountedMedium {
+    explicit CountedMedium(const Medium& medium);
+    const Medium& medium;
+    double lit_nodes;  // at which light is gathered
+};
+
 // That of the lattice on which the orders of scattering are solved, about.
 int forecast_lattice_level(const ScatteringSettings& settings, double nodes);
 
 // A picture by the lighting grid: evaluations of lights at nodes, shadow maps, orders of scattering, and the camera's
 // rays.
-double grid_seconds(const Shot& shot, const Medium& medium, const Plan& plan, const CameraSettings& camera);
+double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan, const CameraSettings& camera);
 
 // Set-up of the path tracer.
 double tracer_seconds(const Medium& medium);

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "forecast/costs.h"
 #include "gathering/map_layouts.h"
+#include "medium/thin_smoke.h"
 
 namespace brisance {
 
@@ -42,20 +42,15 @@ double noted(const Statistics& statistics, const std::string& stage, const char*
 
 // Of a voxel, as a collision meets it.
 double voxel_depth(const Medium& medium) {
-    double sum = 0.0, squares = 0.0;
-    for (const float e : medium.extinction) {
-        sum += e;
-        squares += double(e) * e;
-    }
-    return sum > 0.0 ? medium.spacing * squares / sum : 0.0;
+    return medium.spacing * extinction_met(medium.extinction);
 }
 
 class ErrorModel {
 public:
     ErrorModel(const ModelledFrame& frame, double lattice_level, double remainder)
         : plan_(frame.plan),
-          interpolation_(tolerated_interpolation(frame.shot.lighting, std::size_t(lit_nodes(frame.medium)))),
-          depth_(voxel_depth(frame.medium)),
+          interpolation_(tolerated_interpolation(frame.shot.lighting, std::size_t(frame.counted.lit_nodes))),
+          depth_(voxel_depth(frame.counted.medium)),
           lattice_(std::exp2(lattice_level)),
           remainder_(remainder) {
         const LightingSettings& settings = frame.shot.lighting;
@@ -125,7 +120,7 @@ std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFra
 
 ExpectedError expected_error(const ModelledFrame& frame) {
     const ScatteringSettings& settings = frame.shot.scattering;
-    const int level = forecast_lattice_level(settings, lit_nodes(frame.medium));
+    const int level = forecast_lattice_level(settings, frame.counted.lit_nodes);
     ExpectedError out = ErrorModel(frame, level, settings.remainder).of(brightest(frame.plan));
     out.cell.clear();
     return out;

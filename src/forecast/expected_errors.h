@@ -11,6 +11,7 @@
 
 #include "certificate/believed_error.h"
 #include "film/image.h"
+#include "forecast/costs.h"
 #include "forecast/plan.h"
 #include "statistics/statistics.h"
 
@@ -19,7 +20,7 @@ namespace brisance {
 // By reference.
 struct ModelledFrame {
     const Shot& shot;
-    const Medium& medium;
+    const CountedMedium& counted;
     const Plan& plan;
 };
 

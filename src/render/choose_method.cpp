@@ -34,7 +34,7 @@ MethodForecast without_forecast(RenderMethod method, const std::string& reason) 
 
 MethodForecast from_counts(const Shot& shot, const Medium& medium, const Plan& plan, const CameraSettings& camera) {
     MethodForecast out;
-    out.grid_seconds = grid_seconds(shot, medium, plan, camera);
+    out.grid_seconds = grid_seconds(shot, CountedMedium(medium), plan, camera);
     const PathTracer tracer(medium, shot.tracing, shot.scattering.bounces, nullptr);
     const PathPilot pilot = trace_pilot(tracer, Camera(camera, medium), kPilotPixels);
     const double wanted = error_wanted(shot);

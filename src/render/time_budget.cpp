@@ -53,18 +53,19 @@ struct Timing {
 
 Option grid_option(const Timing& t, const Plan& plan) {
     Option out;
+    const CountedMedium counted(t.medium);
     for (int step = step_count() - 1; step >= 0; --step) {
         out.shot = with_step(t.shot, step);
         CameraSettings camera = t.camera;
         if (step == 0)
             camera.samples_per_axis = 1;
-        const double cost = grid_seconds(out.shot, t.medium, plan, camera);
+        const double cost = grid_seconds(out.shot, counted, plan, camera);
         out.seconds = kMargin * (1.0 + t.shot.certify.belief) * cost / t.budget.speed;
         if (out.seconds <= t.left())
             break;
     }
     out.shot.method = RenderMethod::LightingGrid;
-    out.error = expected_error({out.shot, t.medium, plan}).error;
+    out.error = expected_error({out.shot, counted, plan}).error;
     out.text = fmt::format("the lighting grid with lighting.error={:.3g} and lighting.alpha={:.2g}",
                            out.shot.lighting.error, out.shot.lighting.alpha);
     return out;
