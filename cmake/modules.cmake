@@ -1,5 +1,9 @@
 # Warnings, sanitizers and the one way to declare a module.
 
+# Plugins are looked for in bin/../lib, so that the folders can be moved together, and where they were built.
+set(BRISANCE_PLUGIN_FOLDER ${CMAKE_BINARY_DIR}/lib)
+set(CMAKE_BUILD_RPATH "$ORIGIN/../lib;${BRISANCE_PLUGIN_FOLDER}")
+
 add_library(brisance_options INTERFACE)
 target_compile_options(brisance_options INTERFACE -Wall -Wextra -Wpedantic -Wno-psabi)
 if(BRISANCE_WERROR)
@@ -14,6 +18,8 @@ if(BRISANCE_SANITIZE)
 endif()
 if(BRISANCE_FUZZ)
     target_compile_options(brisance_options INTERFACE -fsanitize=fuzzer-no-link)
+    # What is instrumented in a plugin reports to libFuzzer, which is in the program.
+    set(CMAKE_ENABLE_EXPORTS ON)
 endif()
 
 # brisance_module(name SOURCES ... USES modules... WALLS libraries...)

@@ -11,11 +11,11 @@ namespace brisance {
 namespace {
 
 // Errors between a thousandth of the expected one and a thousand times it, evenly in their logarithm.
-constexpr int kErrorSteps = 1401;
+constexpr int kErrorSteps = 1401, kMiddleStep = kErrorSteps / 2;
 constexpr double kStep = 0.01;
 
 double error_at(const ExpectedError& expected, int k) {
-    return expected.error * std::exp(kStep * (k - kErrorSteps / 2));
+    return expected.error * std::exp(kStep * (k - kMiddleStep));
 }
 
 // Logarithm of the probability density of the error, up to a constant, over its logarithm.

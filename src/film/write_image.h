@@ -1,4 +1,4 @@
-// Writes frames; each file appears whole or not at all. Its header includes neither OpenEXR nor OpenImageIO.
+// Writes frames; each file appears whole or not at all. This header does not include OpenEXR.
 #pragma once
 
 #include <cstdint>

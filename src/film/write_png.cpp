@@ -1,5 +1,3 @@
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <cmath>
@@ -9,9 +7,11 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/printable.h"
 #include "film/view_transform.h"
 #include "film/whole_file.h"
 #include "film/write_image.h"
+#include "image_formats/image_formats.h"
 
 namespace brisance {
 namespace {
@@ -34,24 +34,6 @@ std::vector<std::uint8_t> display_pixels(const Image& image, const Layer& beauty
     return bytes;
 }
 
-std::vector<unsigned char> encode_png(const std::filesystem::path& file, int width, int height,
-                                      const std::vector<std::uint8_t>& pixels) {
-    const auto fail = [&](const std::string& why) {
-        throw Error(ExitCode::RenderFailed, fmt::format("cannot encode {}: {}", file.string(), why));
-    };
-    std::vector<unsigned char> encoded;
-    OIIO::Filesystem::IOVecOutput memory(encoded);
-    OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    const auto output = OIIO::ImageOutput::create("png");
-    if (!output)
-        fail("OpenImageIO was built without PNG");
-    if (!output->set_ioproxy(&memory) || !output->open("memory.png", spec) ||
-        !output->write_image(OIIO::TypeDesc::UINT8, pixels.data()) || !output->close())
-        fail(output->geterror());
-    return encoded;
-}
-
 }  // namespace
 
 void write_png(const std::filesystem::path& file, const Image& image, float exposure_stops, ViewTransform view) {
@@ -66,7 +48,10 @@ void write_png(const std::filesystem::path& file, const Image& image, float expo
 void write_png(const std::filesystem::path& file, int width, int height, const std::vector<std::uint8_t>& rgb) {
     if (width < 1 || height < 1 || rgb.size() != 3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
         throw Error(ExitCode::RenderFailed, fmt::format("cannot write {}: the pixels do not fill it", file.string()));
-    const std::vector<unsigned char> encoded = encode_png(file, width, height, rgb);
+    std::string why;
+    const std::vector<unsigned char> encoded = image_formats().encode_png(width, height, rgb, why);
+    if (encoded.empty())
+        throw Error(ExitCode::RenderFailed, fmt::format("cannot encode {}: {}", file.string(), printable(why)));
     write_whole_file(file, {reinterpret_cast<const char*>(encoded.data()), encoded.size()});
 }
 

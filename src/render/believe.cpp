@@ -115,8 +115,8 @@ Belief believe(const RenderedFrame& frame, const DrawInput& input, StageCost& co
     progress.stage("believed error");
     const Stopwatch watch;
     const std::clock_t cpu = std::clock();
-    const Belief out = frame.halves.size() == 2 ? believe_paths(frame.halves, input.plan)
-                                                : believe_lights(frame.image, input, frame.statistics, progress);
+    Belief out = frame.halves.size() == 2 ? believe_paths(frame.halves, input.plan)
+                                          : believe_lights(frame.image, input, frame.statistics, progress);
     cost = {"believed error",
             watch.seconds(),
             0,

@@ -1,7 +1,5 @@
 #include "scene/read_texture.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 #include "core/error.h"
 #include "core/input_file.h"
 #include "core/printable.h"
+#include "image_formats/image_formats.h"
 #include "scene/srgb.h"
 
 namespace brisance {
@@ -20,13 +19,6 @@ namespace {
 
 [[noreturn]] void reject(const std::string& where, const std::string& why) {
     throw Error(ExitCode::BadData, fmt::format("{}: {}; export or copy the picture again", where, why));
-}
-
-// glTF's colours are not multiplied by alpha, and PNG's are not either: OpenImageIO would multiply them.
-OIIO::ImageSpec as_stored() {
-    OIIO::ImageSpec config;
-    config.attribute("oiio:UnassociatedAlpha", 1);
-    return config;
 }
 
 // One, two, three or four channels as RGBA: grey is R = G = B, what has no alpha is opaque.
@@ -45,13 +37,13 @@ std::vector<T> as_rgba(const std::vector<T>& pixels, int channels, T opaque) {
 }
 
 template <class T>
-std::vector<T> read_rgba(OIIO::ImageInput& input, const std::string& where, OIIO::TypeDesc type, T opaque) {
-    const OIIO::ImageSpec& spec = input.spec();
-    const int channels = std::min(spec.nchannels, 4);
-    std::vector<T> pixels(static_cast<std::size_t>(spec.width) * static_cast<std::size_t>(spec.height) *
+std::vector<T> read_rgba(ImageReader& input, const std::string& where, T opaque) {
+    const StoredImage stored = input.stored();
+    const int channels = std::min(stored.channels, 4);
+    std::vector<T> pixels(static_cast<std::size_t>(stored.width) * static_cast<std::size_t>(stored.height) *
                           static_cast<std::size_t>(channels));
-    if (!input.read_image(0, 0, 0, channels, type, pixels.data()))
-        reject(where, "truncated or damaged: " + printable(input.geterror()));
+    if (!input.read(channels, pixels))
+        reject(where, "truncated or damaged: " + printable(input.error()));
     return channels == 4 ? pixels : as_rgba(pixels, channels, opaque);
 }
 
@@ -73,24 +65,24 @@ void make_linear(std::vector<float>& rgba, bool srgb) {
     }
 }
 
-Texture read_opened(OIIO::ImageInput& input, const std::string& where, bool srgb, std::uint64_t memory_limit) {
-    const OIIO::ImageSpec& spec = input.spec();
-    const bool bytes = spec.format == OIIO::TypeDesc::UINT8;
-    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1)
-        reject(where, fmt::format("its size of {} x {} makes no sense", spec.width, spec.height));
-    const double size = 4.0 * spec.width * spec.height * (bytes ? 1.0 : 4.0);
+Texture read_opened(ImageReader& input, const std::string& where, bool srgb, std::uint64_t memory_limit) {
+    const StoredImage stored = input.stored();
+    const bool bytes = stored.eight_bits;
+    if (stored.width < 1 || stored.height < 1 || stored.depth > 1 || stored.channels < 1)
+        reject(where, fmt::format("its size of {} x {} makes no sense", stored.width, stored.height));
+    const double size = 4.0 * stored.width * stored.height * (bytes ? 1.0 : 4.0);
     if (size > static_cast<double>(memory_limit))
         throw Error(ExitCode::Temporary, fmt::format("{}: {} x {} pixels need {:.2f} GiB, more than is left; use a "
                                                      "smaller picture, or a machine with more memory",
-                                                     where, spec.width, spec.height, size / 0x1p30));
+                                                     where, stored.width, stored.height, size / 0x1p30));
     Texture texture;
-    texture.width = spec.width;
-    texture.height = spec.height;
+    texture.width = stored.width;
+    texture.height = stored.height;
     texture.srgb = srgb && bytes;
     if (bytes) {
-        texture.bytes = read_rgba<std::uint8_t>(input, where, OIIO::TypeDesc::UINT8, 255);
+        texture.bytes = read_rgba<std::uint8_t>(input, where, 255);
     } else {
-        texture.floats = read_rgba<float>(input, where, OIIO::TypeDesc::FLOAT, 1.0f);
+        texture.floats = read_rgba<float>(input, where, 1.0f);
         check_brightest(texture.floats, where);
         make_linear(texture.floats, srgb);
     }
@@ -100,7 +92,7 @@ Texture read_opened(OIIO::ImageInput& input, const std::string& where, bool srgb
 // The two formats of glTF: how they begin, and what stands at their end. Their libraries fill up with grey what is
 // missing of a JPEG, and print lines of their own about a PNG: a picture that is cut off is found before they see it.
 struct Format {
-    const char* name;  // OpenImageIO's
+    const char* name;  // of image_formats.h
     std::string_view begin, end;
 };
 constexpr Format kFormats[] = {{"png", "\x89PNG", "IEND"}, {"jpeg", "\xff\xd8\xff", "\xff\xd9"}};
@@ -118,25 +110,18 @@ Texture read_memory(std::string_view bytes, const std::string& where, bool srgb,
     // In the second half: a preview within a JPEG ends too, but it comes first.
     if (bytes.substr(bytes.size() / 2).find(format->end) == std::string_view::npos)
         reject(where, fmt::format("the {} is truncated", format->name));
-    OIIO::Filesystem::IOMemReader memory(bytes.data(), bytes.size());
-    const auto input = OIIO::ImageInput::create(format->name);
-    OIIO::ImageSpec spec;
-    if (!input || !input->set_ioproxy(&memory))
-        reject(where, std::string("OpenImageIO was built without ") + format->name);
-    // The proxy is set twice: JPEG's reader forgets one that its configuration does not name.
-    OIIO::ImageSpec config = as_stored();
-    void* const proxy = &memory;
-    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    if (!input->open("", spec, config))
-        reject(where, "damaged: " + printable(input->geterror()));
+    std::string why;
+    const auto input = image_formats().open(bytes, format->name, why);
+    if (!input)
+        reject(where, "damaged: " + printable(why));
     return read_opened(*input, where, srgb, memory_limit);
 }
 
 Texture read_file(const std::filesystem::path& file, bool srgb, std::uint64_t memory_limit) {
-    const OIIO::ImageSpec config = as_stored();
-    const auto input = OIIO::ImageInput::open(file.string(), &config);
+    std::string why;
+    const auto input = image_formats().open(file.string(), why);
     if (!input)
-        reject(file.string(), "not a picture that can be read: " + printable(OIIO::geterror()));
+        reject(file.string(), "not a picture that can be read: " + printable(why));
     return read_opened(*input, file.string(), srgb, memory_limit);
 }
 

@@ -1,4 +1,4 @@
-// Pictures of files and of memory as textures. The only door to OpenImageIO in this module.
+// Pictures of files and of memory as textures.
 #pragma once
 
 #include <filesystem>
