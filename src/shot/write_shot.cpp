@@ -103,14 +103,14 @@ std::string words_of(const Json& schema) {
     return words == "string" ? "text" : words;
 }
 
-// The keys of the objects of a list, each on a line.
+// The keys of the objects of a list, each on a line that begins with `path`, which ends with a dot.
 void append_members(const std::string& path, const Json& object, std::string& text) {
     for (const auto& [name, schema] : object["properties"].items()) {
         const Json required = object.value("required", Json::array());
         const bool needed = std::find(required.begin(), required.end(), Json(name)) != required.end();
-        text += fmt::format("    {}.{}: {}{}\n", path, name, words_of(schema), needed ? "; required" : "");
+        text += fmt::format("    {}{}: {}{}\n", path, name, words_of(schema), needed ? "; required" : "");
         if (schema.contains("properties"))
-            append_members(path + "." + name, schema, text);
+            append_members(fmt::format("{}{}.", path, name), schema, text);
     }
 }
 
@@ -168,7 +168,7 @@ std::string shot_keys_text() {
                             value ? "; default " + dumped(*value, -1) : "");
         const auto items = key.schema.find("items");
         if (items != key.schema.end() && items->contains("properties"))
-            append_members(key.path + "[]", *items, text);
+            append_members(key.path + "[].", *items, text);
     }
     return text;
 }

@@ -224,6 +224,7 @@ std::vector<FrameFile> resolve_sequence(const std::string& pattern, const std::o
     if (wanted.empty())
         throw_missing(pattern, expand(pattern, 1), 1);
     std::vector<FrameFile> files;
+    files.reserve(wanted.size());
     for (const int frame : wanted)
         files.push_back({frame, resolve_frame(pattern, frame)});
     return files;

@@ -52,6 +52,7 @@ Image path_picture(const PathTracer& tracer, const Camera& camera, std::uint64_t
     Image image{kSize, kSize, {}};
     for (const std::string& cell : kCells)
         image.layers.push_back({cell, {"R", "G", "B"}, true, std::vector<float>(3 * kPixels)});
+    const std::uint64_t samples = (end - begin) / step;
     parallel_for(kPixels, [&](std::size_t p) {
         std::array<dvec3, 4> sum{};
         PathStatistics ignored;
@@ -63,7 +64,7 @@ Image path_picture(const PathTracer& tracer, const Camera& camera, std::uint64_t
         sum[0] = sum[1] + sum[2] + sum[3];
         for (int t = 0; t < 4; ++t)
             for (int c = 0; c < 3; ++c)
-                image.layers[t].pixels[3 * p + c] = static_cast<float>(sum[t][c] / double((end - begin) / step));
+                image.layers[t].pixels[3 * p + c] = static_cast<float>(sum[t][c] / double(samples));
     });
     return image;
 }
@@ -130,6 +131,7 @@ protected:
 
     std::vector<Certificate> certificates(const Image& image, int first_seed) const {
         std::vector<Certificate> all;
+        all.reserve(kCertificates);
         for (int seed = 0; seed < kCertificates; ++seed)
             all.push_back(certificate(image, first_seed + seed));
         return all;
@@ -142,6 +144,7 @@ protected:
 
     static std::vector<TrueError> true_errors(const Image& image, const Truth& truth) {
         std::vector<TrueError> all;
+        all.reserve(kCells.size());
         for (const std::string& cell : kCells)
             all.push_back(true_error(image, truth.a, truth.b, cell));
         return all;

@@ -10,7 +10,7 @@ std::filesystem::path file_with(std::string_view bytes, const std::string& exten
     static const std::filesystem::path folder = std::filesystem::exists("/dev/shm")
                                                     ? std::filesystem::path("/dev/shm")
                                                     : std::filesystem::temp_directory_path();
-    const std::filesystem::path file = folder / ("brisance_fuzz_" + std::to_string(getpid()) + extension);
+    std::filesystem::path file = folder / ("brisance_fuzz_" + std::to_string(getpid()) + extension);
     std::ofstream(file, std::ios::binary | std::ios::trunc)
         .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     static const struct Remover {

@@ -26,6 +26,7 @@ Medium medium_of(const SameScene& scene) {
             grids.back().flame = scalar_grid("flame", r.world_from_index, r.box, r.flame);
     }
     std::vector<MediumPart> parts;
+    parts.reserve(grids.size());
     for (const MediumGrids& g : grids)
         parts.push_back({g, scene.shot.medium, false});
     Progress silent;

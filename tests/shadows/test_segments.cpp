@@ -92,6 +92,7 @@ TEST(Segments, SamplesEqualTheFieldToHalfPrecision) {
     const ExtinctionPyramid pyramid(medium, 4);
     Rng rng(Stream::EscapeRay, 1);
     std::vector<vec3> points;
+    points.reserve(20000);
     for (int i = 0; i < 20000; ++i)
         points.push_back(random_local(medium, rng, -30.0f, 40.0f));
     const std::vector<float> values = samples(pyramid, points, 0);

@@ -47,6 +47,7 @@ std::optional<Mismatch> find_object_mismatch(const std::vector<Member<T>>& membe
         const auto found = find(item.key());
         if (found == members.end()) {
             std::vector<std::string> names;
+            names.reserve(members.size());
             for (const Member<T>& m : members)
                 names.push_back(m.name);
             return Mismatch{"", "keys it knows, such as \"" + nearest_key(item.key(), names) + "\"", Json(item.key())};
