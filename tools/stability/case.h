@@ -52,15 +52,19 @@ struct Case {
     std::function<Scene()> scene;
     Measure measure;
     bool quick = false;  // of the subset that every test run renders
+    // Whether light is scattered more than once, so that the methods that share their noise own a cell.
+    bool scatters_twice = true;
     // Of a method that shares its noise: their mean is judged, and their spread is its noise. Pictures that ought to be
     // the same number by number have no noise, and one of them is enough.
     int pictures = 4;
+    std::map<std::string, int> paths = {};  // particles, by the method's name, where fewer will do
 
     std::string family() const { return name.substr(0, name.find('/')); }
 
     // Empty: the method does not render this case. Methods that own MM and SM take the rest of the picture from the
     // grid, so that the grid's tolerance is a lower bound of theirs.
     std::optional<double> tolerance_of(const Method& method) const;
+    std::optional<int> paths_of(const Method& method) const;
     const Limit* limit_of(const Method& method) const;
 };
 

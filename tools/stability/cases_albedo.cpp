@@ -33,6 +33,7 @@ Case isothermal(const std::string& name, double radius, double albedo) {
     Case c;
     c.name = "albedo/" + name;
     c.truth = "integral equation of the isothermal ball";
+    c.scatters_twice = albedo > 0.0;
     c.tolerance = of_the_ball();
     c.scene = [=] { return scene_of(isothermal_ball(kNodes, radius, albedo), camera_on_centre(8), 512); };
     const double absorbed = 1.0 - double(static_cast<float>(albedo));

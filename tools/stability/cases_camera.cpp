@@ -18,6 +18,7 @@ Case in_slab(const std::string& name, double voxel_depth, const dvec3& eye_nodes
     Case c;
     c.name = "camera/" + name;
     c.truth = "1 - exp(-tau) of what is ahead";
+    c.scatters_twice = false;
     c.tolerance = of_absorption();
     c.scene = [=] {
         const dvec3 eye = kEdge * eye_nodes;
@@ -34,6 +35,7 @@ Case along_axis(const std::string& name, double sign) {
     Case c;
     c.name = "camera/" + name;
     c.truth = "1 - exp(-20 tau)";
+    c.scatters_twice = false;
     c.tolerance = of_absorption();
     c.scene = [=] {
         CameraSettings camera;
@@ -72,6 +74,7 @@ Case in_dense_voxel() {
     Case c;
     c.name = "camera/in-dense-voxel";
     c.truth = "the voxel's own source function";
+    c.scatters_twice = false;
     c.tolerance = of_absorption();
     c.scene = [] {
         media::Recipe r = absorbing_slab(kNodes, kEdge, 0.1);

@@ -53,6 +53,7 @@ Case hot_seen() {
     Case c;
     c.name = "contrast/emission-seen";
     c.truth = "integral of the field along each ray";
+    c.scatters_twice = false;
     c.tolerance = {2e-3, 2e-3, "two Gauss points to a cell for emission and transmittance together"};
     c.scene = [] {
         // Rays at a fifth and three fifths of a voxel from the hot node and beyond.
@@ -72,6 +73,7 @@ Case hot_scattered() {
     Case c;
     c.name = "contrast/emission-scattered";
     c.truth = "airlight of a point light (single scattering)";
+    c.scatters_twice = false;
     c.tolerance = {0.03, 0.01, "the voxel's hat taken for a point, 4 voxels away and more"};
     c.scene = [] {
         const dvec3 off(0.75, 0.0, 0.55);

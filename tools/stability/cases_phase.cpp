@@ -48,6 +48,7 @@ Case single(double g) {
     Case c = picture(g);
     c.name = fmt::format("phase/{}-single", g);
     c.tolerance = {0.05, 0.005, "directions between lights of a lattice"};
+    c.scatters_twice = false;
     c.scene = [scene = c.scene] {
         Scene once = scene();
         once.shot.scattering.bounces = 1;

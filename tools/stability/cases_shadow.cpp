@@ -29,6 +29,7 @@ Case seen() {
     Case c;
     c.name = "shadow/voxel-before-the-fire";
     c.truth = "exp(-tau), tau the column through the voxel's hat";
+    c.scatters_twice = false;
     c.tolerance = {1e-4, 2e-3, "Gauss points are exact along a ray; the tracer averages over pixels"};
     c.scene = [] {
         media::Recipe r = nothing();
@@ -77,6 +78,7 @@ Case scattered() {
     Case c;
     c.name = "shadow/voxel-between-fire-and-smoke";
     c.truth = "integral over the fire's and the smoke's hats (single scattering)";
+    c.scatters_twice = false;
     c.tolerance = {0.1, 0.01, "the shadow's edge is as narrow as the smoke"};
     c.scene = [] {
         media::Recipe r = nothing();

@@ -176,7 +176,10 @@ Case thick_smoke_before_a_wall() {
         return with_walls(scene_of(r, camera_on_slab(kNodes, kEdge), 1024),
                           {ceiling((kNodes - 0.5) * kEdge, 4.0, matt(0.9))});
     };
-    c.measure = every_pixel_is(Rgb(static_cast<float>(isothermal_half_space(albedo, 1.0))));
+    c.measure = [](const Scene& scene, const RenderedFrame& frame, const Method& method, const Render& render) {
+        const Rgb truth(static_cast<float>(isothermal_half_space(albedo, 1.0)));
+        return every_pixel_is(truth)(scene, frame, method, render);
+    };
     return c;
 }
 

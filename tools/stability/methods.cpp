@@ -31,13 +31,13 @@ std::string Method::name() const {
 }
 
 // The keys of a method are named after it.
-void Method::apply_to(Shot& shot, int seed) const {
+void Method::apply_to(Shot& shot, int seed, std::optional<int> paths) const {
     shot.method = is_path() ? RenderMethod::Path : RenderMethod::LightingGrid;
     shot.scattering_methods.method = is_path() ? kLightingGridMethod : scattering_;
     if (!shares_noise())
         return;
     set(shot, name() + ".seed", seed);
-    set(shot, name() + ".paths", kPaths);
+    set(shot, name() + ".paths", paths.value_or(kPaths));
 }
 
 const std::vector<Method>& all_methods() {

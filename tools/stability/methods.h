@@ -2,6 +2,7 @@
 // than once (MM and SM).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,9 +27,9 @@ public:
     // All pixels see the same random lights or particles: only other seeds show their noise.
     bool shares_noise() const { return !is_path() && !is_grid(); }
 
-    // The same shot by this method. `seed`: other ones draw other lights and particles. Throws Error Usage where the
-    // shot has no such key.
-    void apply_to(Shot& shot, int seed) const;
+    // The same shot by this method. `seed`: other ones draw other lights and particles. `paths`: particles; empty: as
+    // many as in other cases. Throws Error Usage where the shot has no such key.
+    void apply_to(Shot& shot, int seed, std::optional<int> paths = std::nullopt) const;
 
     bool operator==(const Method&) const = default;
 

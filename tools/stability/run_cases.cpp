@@ -15,9 +15,9 @@ namespace {
 constexpr double kMostImbalance = 0.01;
 constexpr double kStandardErrors = 4.0;
 
-RenderedFrame rendered_once(const Scene& scene, const Method& method, int seed) {
+RenderedFrame rendered_once(const Scene& scene, const Method& method, int seed, std::optional<int> paths) {
     Shot shot = scene.shot;
-    method.apply_to(shot, seed);
+    method.apply_to(shot, seed, paths);
     shot.certify.belief = 0.0;  // its samples would count as the method's time
     Progress silent;
     return render_medium(shot, scene.medium, silent, scene.surroundings.get());
@@ -33,13 +33,14 @@ void set_mean(Image& image, const std::vector<Image>& pictures) {
         }
 }
 
-RenderedFrame rendered(const Scene& scene, const Method& method, int pictures) {
-    RenderedFrame frame = rendered_once(scene, method, 0);
+RenderedFrame rendered(const Case& c, const Scene& scene, const Method& method) {
+    const std::optional<int> paths = c.paths_of(method);
+    RenderedFrame frame = rendered_once(scene, method, 0, paths);
     if (!method.shares_noise())
         return frame;
     frame.halves = {frame.image};
-    for (int seed = 1; seed < pictures; ++seed)
-        frame.halves.push_back(rendered_once(scene, method, seed).image);
+    for (int seed = 1; seed < c.pictures; ++seed)
+        frame.halves.push_back(rendered_once(scene, method, seed, paths).image);
     set_mean(frame.image, frame.halves);
     return frame;
 }
@@ -80,6 +81,11 @@ bool owns_a_cell(const Method& method, const Scene& scene) {
     return plan_cells(shot, scene.medium, scene.surroundings.get()).scattering_method;
 }
 
+std::optional<int> Case::paths_of(const Method& method) const {
+    const auto found = paths.find(method.name());
+    return found == paths.end() ? std::nullopt : std::optional(found->second);
+}
+
 const Limit* Case::limit_of(const Method& method) const {
     const auto found = tolerance.limits.find(method.name());
     return found == tolerance.limits.end() ? nullptr : &found->second;
@@ -102,7 +108,7 @@ std::optional<Result> run_case(const Case& c, const Method& method) {
         const Scene scene = c.scene();
         if (!owns_a_cell(method, scene))
             return std::nullopt;
-        const Render render = [&c](const Scene& s, const Method& m) { return rendered(s, m, c.pictures); };
+        const Render render = [&c](const Scene& s, const Method& m) { return rendered(c, s, m); };
         const RenderedFrame frame = render(scene, method);
         result.seconds = watch.seconds();
         result.finite = all_finite(frame.image);
