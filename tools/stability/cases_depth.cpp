@@ -40,6 +40,9 @@ Case scattering(int decade) {
     c.tolerance = {0.03, 0.005,
                    thin ? "the ball's rim is a voxel wide, an eighth of its radius"
                         : "the hierarchy does not resolve the skin that is seen"};
+    // Lights scatter nothing that is seen of thin smoke, and nothing is seen of them behind the skin of thick smoke.
+    if (decade <= -4 || decade >= 4)
+        c.paths["ray_lights"] = 16384;
     if (decade > 0) {
         // Nearly all light ends within a part of a voxel: what a flight or a track leaves is known per voxel only.
         c.tolerance.limits["ray_lights"] = {1.0, "flights are far shorter than the skin's voxel, which few rays meet"};
