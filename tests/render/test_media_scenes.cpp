@@ -167,7 +167,7 @@ ByRayLights by_ray_lights(const Shot& shot) {
         RayMedium seen;
         const RaySegment segment = scene.segment_along(rays[i]);
         mirrors.push_back(segment.point && has_delta_lobes(segment.point->material));
-        if (i % 37 != 0)
+        if (i % 149 != 0)
             continue;
         seen.look(scene.field(), rays[i], segment.end);
         if (!seen.empty())
