@@ -1,6 +1,8 @@
 // Ray lights have the mean of the path tracer: MM and SM, in media of all kinds, with light of all kinds.
 #include <gtest/gtest.h>
 
+#include <string>
+
 #include "fixtures/ray_fixture.h"
 
 namespace brisance {
@@ -25,43 +27,48 @@ LightSettings lamp() {
     return l;
 }
 
+// Both lengths of rays against the same paths.
+void expect_same_by_both(const Stage& stage, const std::string& what, std::uint64_t path_samples,
+                         std::uint64_t sets_of_long = 1) {
+    const Estimate paths = mean_by_paths(stage, path_samples);
+    expect_same_light(stage, few(), (what + ", short").c_str(), paths);
+    expect_same_light(stage, few(RayLength::Long), (what + ", long").c_str(), paths, sets_of_long);
+}
+
 TEST(AgainstPaths, Ball) {
-    const Stage stage(coloured_ball(8, 1.5f, 0.0f), {});
-    expect_same_light(stage, few(), "ball, short");
-    expect_same_light(stage, few(RayLength::Long), "ball, long");
+    expect_same_by_both(Stage(coloured_ball(8, 1.5f, 0.0f), {}), "ball", kPathsInSmoke);
 }
 
 TEST(AgainstPaths, LumpyBallOverAFloor) {
-    const Stage stage(lumpy_ball(8, 3.0f, 0.0f), floor_below(0.7f));
-    expect_same_light(stage, few(), "lumps, short");
-    expect_same_light(stage, few(RayLength::Long), "lumps, long");
+    expect_same_by_both(Stage(lumpy_ball(8, 3.0f, 0.0f), floor_below(0.7f)), "lumps", kPathsOverFloor);
 }
 
+// Long rays that scatter forward have rare bright samples: two sets, so that their error stays below its bound.
 TEST(AgainstPaths, ForwardScatteringOverAFloor) {
-    const Stage stage(lumpy_ball(8, 3.0f, 0.6f), floor_below(0.7f));
-    expect_same_light(stage, few(), "lumps, g 0.6, short");
-    expect_same_light(stage, few(RayLength::Long), "lumps, g 0.6, long");
+    expect_same_by_both(Stage(lumpy_ball(8, 3.0f, 0.6f), floor_below(0.7f)), "lumps, g 0.6", kPathsOverFloor, 2);
 }
 
 TEST(AgainstPaths, BackwardScattering) {
     const Stage stage(coloured_ball(8, 2.0f, -0.7f), {});
-    expect_same_light(stage, few(), "ball, g -0.7", 400, 3);
+    expect_same_light(stage, few(), "ball, g -0.7", mean_by_paths(stage, kPathsInSmoke), 2);
 }
 
 TEST(AgainstPaths, ALampOutsideOverAFloor) {
     Recipe dark = lumpy_ball(8, 3.0f, 0.3f);
     dark.flame = {};
     const Stage stage(dark, floor_below(0.7f), {lamp()});
-    expect_same_light(stage, few(), "lamp");
+    const Estimate paths = mean_by_paths(stage, kPathsOverFloor);
+    expect_same_light(stage, few(), "lamp", paths);
     RayLightSettings thinned = few();
     thinned.count = 1000;
-    expect_same_light(stage, thinned, "lamp, most lights left out");
+    expect_same_light(stage, thinned, "lamp, most lights left out", paths);
 }
 
 TEST(AgainstPaths, BouncesEndWhereTheyAreAskedTo) {
     for (const int bounces : {2, 3}) {
         const Stage stage(coloured_ball(8, 2.0f, 0.0f), floor_below(0.7f), {lamp()}, bounces);
-        expect_same_light(stage, few(), bounces == 2 ? "two bounces" : "three bounces");
+        expect_same_light(stage, few(), bounces == 2 ? "two bounces" : "three bounces",
+                          mean_by_paths(stage, kPathsOverFloor));
     }
     const Stage once(coloured_ball(8, 2.0f, 0.0f), floor_below(0.7f), {lamp()}, 1);
     EXPECT_TRUE(once.lights(few(), 4, 1).lights().empty());

@@ -114,12 +114,13 @@ TEST(Beams, ComeToWhatPathsFindAsTheyShrink) {
     const Stage stage(coloured_ball(8, kDepth, 0.3f), floor_below(0.7f));
     RayLightSettings settings;
     settings.paths = 600;
+    const Estimate paths = mean_by_paths(stage, 400);
     double last = -1.0;
     for (const double radius : {0.2, 0.1, 0.05}) {
         settings.radius = radius;
         const std::string what = "beams of " + std::to_string(radius);
         const double expected = bias(kDepth * radius);
-        const double found = expect_same_light(stage, settings, what.c_str(), 200, 1, 2.0 * std::abs(expected));
+        const double found = expect_same_light(stage, settings, what.c_str(), paths, 1, 2.0 * std::abs(expected));
         std::printf("radius %g m, %g mean free paths: bias %+.3f, of even smoke %+.3f\n", radius, kDepth * radius,
                     found, expected);
         EXPECT_GT(found, last) << radius;

@@ -32,12 +32,12 @@ Estimate mean_by_particles(const Stage& stage) {
         1);
 }
 
-void expect_as_paths(const Stage& stage, const char* what) {
-    expect_same_means(mean_by_particles(stage), mean_by_paths(stage, 200), what, 0.05, kBlur);
+void expect_as_paths(const Stage& stage, const char* what, std::uint64_t path_samples = 200) {
+    expect_same_means(mean_by_particles(stage), mean_by_paths(stage, path_samples), what, 0.05, kBlur);
 }
 
 TEST(ParticlesAgainstPaths, Ball) {
-    expect_as_paths(Stage(coloured_ball(8, 1.5f, 0.0f), {}), "ball");
+    expect_as_paths(Stage(coloured_ball(8, 1.5f, 0.0f), {}), "ball", kPathsInSmoke);
 }
 
 TEST(ParticlesAgainstPaths, ForwardScatteringOverAFloor) {
@@ -45,7 +45,7 @@ TEST(ParticlesAgainstPaths, ForwardScatteringOverAFloor) {
 }
 
 TEST(ParticlesAgainstPaths, BackwardScattering) {
-    expect_as_paths(Stage(coloured_ball(8, 2.0f, -0.7f), {}), "ball, g -0.7");
+    expect_as_paths(Stage(coloured_ball(8, 2.0f, -0.7f), {}), "ball, g -0.7", kPathsInSmoke);
 }
 
 TEST(ParticlesAgainstPaths, BouncesEndWhereTheyAreAskedTo) {

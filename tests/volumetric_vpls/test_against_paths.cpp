@@ -14,8 +14,9 @@ using namespace testing;
 constexpr auto kNone = BiasCompensation::None, kExact = BiasCompensation::Exact, kLocal = BiasCompensation::Local;
 
 // Unbounded, a few points almost touch a few rays: their standard error falls slowly, and is only just one.
-Estimate expect_as_paths(const Stage& stage, const char* what, double radius = 0.4, double sharp = 0.05) {
-    Estimate paths = mean_by_paths(stage, 300);
+Estimate expect_as_paths(const Stage& stage, const char* what, std::uint64_t path_samples = kPathsOverFloor,
+                         double radius = 0.4, double sharp = 0.05) {
+    Estimate paths = mean_by_paths(stage, path_samples);
     const std::string name(what);
     expect_same_means(mean_by_points(stage, points(0.0, kNone)), paths, (name + ", unbounded").c_str(), sharp);
     expect_same_means(mean_by_points(stage, points(radius, kExact)), paths, (name + ", exact").c_str(), sharp);
@@ -23,7 +24,7 @@ Estimate expect_as_paths(const Stage& stage, const char* what, double radius = 0
 }
 
 TEST(PointsAgainstPaths, Ball) {
-    expect_as_paths(Stage(coloured_ball(8, 1.5f, 0.0f), {}), "ball");
+    expect_as_paths(Stage(coloured_ball(8, 1.5f, 0.0f), {}), "ball", kPathsInSmoke);
 }
 
 TEST(PointsAgainstPaths, LumpyBallOverAFloor) {
@@ -35,7 +36,7 @@ TEST(PointsAgainstPaths, ForwardScatteringOverAFloor) {
 }
 
 TEST(PointsAgainstPaths, BackwardScattering) {
-    expect_as_paths(Stage(coloured_ball(8, 2.0f, -0.3f), {}), "ball, g -0.3");
+    expect_as_paths(Stage(coloured_ball(8, 2.0f, -0.3f), {}), "ball, g -0.3", kPathsInSmoke);
 }
 
 TEST(PointsAgainstPaths, ALampOutsideOverAFloor) {
@@ -50,7 +51,8 @@ TEST(PointsAgainstPaths, ALampOutsideOverAFloor) {
 
 // Light goes from vertex to vertex within the bound's radius many times: all of the ball is nearer than that.
 TEST(PointsAgainstPaths, ABoundWiderThanTheSmoke) {
-    expect_as_paths(Stage(coloured_ball(8, 4.0f, 0.0f), floor_below(0.7f), {lamp_beside()}), "wide bound", 3.0, 0.15);
+    expect_as_paths(Stage(coloured_ball(8, 4.0f, 0.0f), floor_below(0.7f), {lamp_beside()}), "wide bound",
+                    kPathsOverFloor, 3.0, 0.15);
 }
 
 // Light from floor and mirror is compensated as well: what is left out arrives at the nearer vertex from everywhere. By
@@ -63,13 +65,14 @@ TEST(PointsAgainstPaths, AMirrorAbove) {
     add_quad(scene, {-4, -4, -1.2f}, {8, 0, 0}, {0, 8, 0}, lambert(0.7f));
     add_quad(scene, {-4, -4, 2.8f}, {8, 0, 0}, {0, 8, 0}, mirror);  // above the rays
     const Stage stage(coloured_ball(8, 2.0f, 0.0f), std::move(scene));
-    expect_same_means(mean_by_points(stage, points(0.5, kExact)), mean_by_paths(stage, 300), "mirror, exact");
+    expect_same_means(mean_by_points(stage, points(0.5, kExact)), mean_by_paths(stage, kPathsOverFloor),
+                      "mirror, exact");
 }
 
 TEST(PointsAgainstPaths, BouncesEndWhereTheyAreAskedTo) {
     for (const int bounces : {2, 3})
         expect_as_paths(Stage(coloured_ball(8, 2.0f, 0.0f), floor_below(0.7f), {lamp_beside()}, bounces),
-                        bounces == 2 ? "two bounces" : "three bounces");
+                        bounces == 2 ? "two bounces" : "three bounces", 200);
     const Stage once(coloured_ball(8, 2.0f, 0.0f), floor_below(0.7f), {lamp_beside()}, 1);
     const VolumetricVpls none(once.scene(), points(0.5, kExact), once.bounces(), {});
     EXPECT_TRUE(none.lights().empty());
@@ -83,8 +86,8 @@ TEST(PointsAgainstPaths, BouncesEndWhereTheyAreAskedTo) {
 
 TEST(PointsAgainstPaths, TheBoundDarkensAndTheGuessComesNear) {
     std::printf("%-14s %8s %9s %9s %9s\n", "medium", "radius", "bounded", "local", "error");
-    const auto compare = [](const char* what, const Stage& stage, double radius, double tolerance) {
-        const Estimate paths = mean_by_paths(stage, 300);
+    const auto compare = [](const char* what, const Stage& stage, const Estimate& paths, double radius,
+                            double tolerance) {
         const Estimate bounded = mean_by_points(stage, points(radius, kNone));
         const Estimate local = mean_by_points(stage, points(radius, kLocal));
         const double truth = paths.mean[0], error = std::hypot(local.error[0], paths.error[0]);
@@ -93,11 +96,13 @@ TEST(PointsAgainstPaths, TheBoundDarkensAndTheGuessComesNear) {
         EXPECT_LT(bounded.mean[0], truth - 4.0 * std::hypot(bounded.error[0], paths.error[0])) << what;
         EXPECT_NEAR(local.mean[0], truth, tolerance * truth + 3.0 * error) << what;
     };
-    const Stage even(coloured_ball(8, 2.0f, 0.0f), {});
-    compare("even", even, 0.15, 0.02);
-    compare("even", even, 0.3, 0.05);
-    compare("even, g 0.6", Stage(coloured_ball(8, 2.0f, 0.6f), {}), 0.3, 0.05);
-    compare("lumps", Stage(lumpy_ball(8, 3.0f, 0.0f), {}), 0.3, 0.1);
+    const Stage even(coloured_ball(8, 2.0f, 0.0f), {}), forward(coloured_ball(8, 2.0f, 0.6f), {}),
+        lumps(lumpy_ball(8, 3.0f, 0.0f), {});
+    const Estimate paths = mean_by_paths(even, kPathsInSmoke);
+    compare("even", even, paths, 0.15, 0.02);
+    compare("even", even, paths, 0.3, 0.05);
+    compare("even, g 0.6", forward, mean_by_paths(forward, kPathsInSmoke), 0.3, 0.05);
+    compare("lumps", lumps, mean_by_paths(lumps, kPathsInSmoke), 0.3, 0.1);
 }
 
 }  // namespace
