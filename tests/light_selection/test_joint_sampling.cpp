@@ -20,7 +20,7 @@ class Cumulative {
 public:
     template <class Density>
     Cumulative(double length, double centre, const Density& density) {
-        constexpr int kPoints = 100'000;
+        constexpr int kPoints = 20'000;
         const double c = std::clamp(centre, 0.0, length);
         for (int i = kPoints; i > 0 && c > 0.0; --i)
             places_.push_back(c - c * graded(double(i) / kPoints));
@@ -273,7 +273,7 @@ TEST(PairSampling, SpreadOfOneEstimate) {
         const Geometry geometry(distance, degrees);
         const Spread uniform = spread(geometry, 0.0, Strategy::Uniform);
         const Spread angular = spread(geometry, 0.0, Strategy::EquiAngular);
-        const Spread joint = spread(geometry, 0.0, Strategy::Joint, 40'000);
+        const Spread joint = spread(geometry, 0.0, Strategy::Joint, 20'000);
         std::printf("%8g %6g %8.2f %13.2f %6.4f +- %.4f\n", distance, degrees, uniform.deviation, angular.deviation,
                     joint.deviation, joint.deviation_error);
         EXPECT_LE(joint.deviation, at_most + 2.0 * joint.deviation_error);
