@@ -25,6 +25,7 @@ Shot shot_of(const nlohmann::json& json) {
     shot.medium.smoke.mean_cosine = v["g"];
     shot.medium.fire.strength = v["emission_strength"];
     shot.medium.fire.threshold = v.value("emission_threshold", 0.0f);
+    shot.certify.belief = 0.0;  // the references say what the errors are
     shot.camera_given = true;
     shot.camera.eye = triple(c["eye"]);
     shot.camera.target = triple(c["target"]);
