@@ -92,7 +92,7 @@ void expect_same(const Medium& medium, World world, const std::vector<NamedView>
     std::uint64_t seed = 0;
     for (const NamedView& v : views) {
         const Mean plain = measure(world, v.view, v.paths, ++seed);
-        const testing::Estimate paths = traced.measure(v.view, 0.0035);
+        const testing::Estimate paths = traced.measure(v.view, 0.0031);
         for (int c = 0; c < 3; ++c) {
             const double error = std::hypot(plain.error[c], paths.error[c]);
             const double off = paths.mean[c] - plain.value[c];
