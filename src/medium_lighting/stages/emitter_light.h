@@ -7,8 +7,9 @@
 namespace brisance {
 
 // Every node samples a few points on the emitters, different ones for each node. With the same points, all nodes would
-// have the same error of about a tenth; independent noise is averaged along the camera rays. Point lights and suns are
-// exact except for the ray march, by half a voxel.
+// have the same error of about a tenth; independent noise is averaged along the camera rays. Point lights and suns take
+// one ray each, and are exact except for the ray march, by half a voxel. A sample of an extended light stands for a
+// cone of it, in which the smoke is averaged (gathering/cone_depths.h).
 Gathered gather_from_emitters(const Surroundings& surroundings, const ExtinctionPyramid& pyramid,
                               const LatticeRequest& request);
 
