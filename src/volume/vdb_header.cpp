@@ -19,9 +19,9 @@ namespace {
 
 constexpr std::uint32_t kOldestVersion = 211;  // older ones have another skeleton; nothing has written them since 2012
 constexpr std::uint32_t kNoVersion = 1000;     // 224 since 2018
-constexpr std::uint32_t kGridOffsets = 212, kInstancing = 216, kTextUuid = 218, kCompressionFlag = 220,
-                        kCompressionPerGrid = 222;
-constexpr std::uint32_t kLongestName = 1u << 16;
+constexpr std::uint32_t kGridOffsets = 212, kInstancing = 216, kTextUuid = 218, kTransformPerGrid = 219,
+                        kCompressionFlag = 220, kCompressionPerGrid = 222;
+constexpr std::uint32_t kLongestText = 1u << 16;
 
 // Little-endian reads that check the end of the file.
 class ByteReader {
@@ -44,7 +44,7 @@ public:
 
     std::string text() {
         const auto length = number<std::uint32_t>();
-        if (length > kLongestName)
+        if (length > kLongestText)
             throw_damaged(fmt::format("a name of {} bytes at byte {}", length, offset_));
         std::string result(length, '\0');
         take(result.data(), length);
@@ -102,14 +102,45 @@ bool begins_with_magic(const std::string& bytes) {
     return bytes.starts_with(magic);
 }
 
-// A damaged count or size here would keep OpenVDB busy for minutes. This reader stops at the end of the file.
+// Bytes of one value of a type, as files name types; 0 for one without a fixed size, or unknown here.
+std::uint64_t bytes_of_type(std::string_view type) {
+    struct Type {
+        std::string_view name;
+        std::uint64_t bytes;
+    };
+    static constexpr Type types[] = {{"bool", 1},   {"mask", 1},   {"float", 4},  {"int32", 4},
+                                     {"double", 8}, {"int64", 8},  {"vec2s", 8},  {"vec2i", 8},
+                                     {"vec3s", 12}, {"vec3i", 12}, {"vec2d", 16}, {"vec3d", 24}};
+    const auto* const found = std::find_if(std::begin(types), std::end(types), [&](const Type& t) {  //
+        return t.name == type;
+    });
+    return found == std::end(types) ? 0 : found->bytes;
+}
+
+// A damaged count or size here would keep OpenVDB busy for minutes. This reader stops at the end of the file. Of a
+// number OpenVDB ignores the size: with a wrong one it would go on reading at another place than this reader.
 void skip_metadata(ByteReader& reader) {
     const auto entries = reader.number<std::uint32_t>();
     for (std::uint32_t i = 0; i < entries; ++i) {
         reader.text();  // name
-        reader.text();  // type
-        reader.skip(reader.number<std::uint32_t>());
+        const std::uint64_t should = bytes_of_type(reader.text());
+        const auto bytes = reader.number<std::uint32_t>();
+        if (should != 0 && bytes != should)
+            reader.throw_damaged(
+                fmt::format("a number of {} bytes instead of {} at byte {}", bytes, should, reader.offset()));
+        reader.skip(bytes);
     }
+}
+
+// Bytes of a transform behind its name; 0 for one that is unknown here.
+std::uint64_t bytes_of_transform(std::string_view type) {
+    if (type == "ScaleMap" || type == "UniformScaleMap")
+        return 15 * sizeof(double);  // five vectors: the scale, and what follows from it
+    if (type == "ScaleTranslateMap" || type == "UniformScaleTranslateMap")
+        return 18 * sizeof(double);
+    if (type == "AffineMap" || type == "UnitaryMap")
+        return 16 * sizeof(double);
+    return type == "TranslationMap" ? 3 * sizeof(double) : 0;
 }
 
 // Versions, flags and file metadata; leaves the reader at the count of grids. True: grids can be found by offset.
@@ -129,29 +160,58 @@ bool read_preamble(ByteReader& reader, VdbHeader& header) {
     return offsets;
 }
 
+struct Descriptor {
+    std::string tree_type, shown_name;
+    std::uint64_t end = 0;
+};
+
+// The root of a tree, behind the transform: its counts of tiles and of children, each of which takes bytes before the
+// grid's end. OpenVDB goes on reading at the end of the file, up to 2^32 times. Trees that OpenVDB could not read
+// either, or that are older, are not looked at.
+void check_root(ByteReader& reader, const Descriptor& grid, const std::string& transform) {
+    constexpr std::string_view tree = "Tree_", shape = "_5_4_3";
+    constexpr std::uint64_t place = 3 * sizeof(std::int32_t), masks = 2 * 32 * 32 * 32 / 8;
+    const std::size_t type_end = grid.tree_type.find(shape);
+    if (!grid.tree_type.starts_with(tree) || type_end == std::string::npos)
+        return;
+    const std::uint64_t value = bytes_of_type(grid.tree_type.substr(tree.size(), type_end - tree.size()));
+    const std::uint64_t skipped = bytes_of_transform(transform);
+    if (value == 0 || skipped == 0)
+        return;
+    reader.skip(skipped);
+    reader.skip(sizeof(std::uint32_t) + value);  // count of buffers, always 1; the background
+    const auto tiles = reader.number<std::uint32_t>(), children = reader.number<std::uint32_t>();
+    const std::uint64_t needed = tiles * (place + value + 1) + children * (place + masks);
+    if (reader.offset() > grid.end || needed > grid.end - reader.offset())
+        reader.throw_damaged(
+            fmt::format("the root of grid \"{}\" claims {} tiles and {} children, which cannot fit before byte {}",
+                        grid.shown_name, tiles, children, grid.end));
+}
+
 void read_descriptors(ByteReader& reader, VdbHeader& header) {
     const auto count = reader.number<std::int32_t>();
     for (std::int32_t i = 0; i < count; ++i) {
         const std::string name = reader.text();
-        reader.text();  // type of the tree
-        if (header.file_version >= kInstancing)
-            reader.text();  // name of the grid whose tree is shared
+        Descriptor grid{reader.text(), printable(name.substr(0, name.find('\x1e')), kLongestName), 0};
+        const bool shares_tree = header.file_version >= kInstancing && !reader.text().empty();
         const auto begin = reader.number<std::uint64_t>();
         reader.skip(sizeof(std::uint64_t));
-        const auto end = reader.number<std::uint64_t>();
-        const std::string shown = printable(name.substr(0, name.find('\x1e')), kLongestName);
-        if (end > header.file_bytes)
-            reader.throw_truncated(fmt::format("grid \"{}\" ({} of {}) ends at byte {}", shown, i + 1, count, end));
-        if (begin < reader.offset() || end < begin)
-            reader.throw_damaged(fmt::format("grid \"{}\" ends before it begins", shown));
+        grid.end = reader.number<std::uint64_t>();
+        if (grid.end > header.file_bytes)
+            reader.throw_truncated(
+                fmt::format("grid \"{}\" ({} of {}) ends at byte {}", grid.shown_name, i + 1, count, grid.end));
+        if (begin < reader.offset() || grid.end < begin)
+            reader.throw_damaged(fmt::format("grid \"{}\" ends before it begins", grid.shown_name));
         reader.go_to(begin);
         if (header.file_version >= kCompressionPerGrid)
             reader.skip(sizeof(std::uint32_t));
         skip_metadata(reader);
-        reader.text();  // type of the transform
-        if (reader.offset() > end)
-            reader.throw_damaged(fmt::format("the metadata of grid \"{}\" reach beyond its end", shown));
-        reader.go_to(end);
+        const std::string transform = reader.text();
+        if (reader.offset() > grid.end)
+            reader.throw_damaged(fmt::format("the metadata of grid \"{}\" reach beyond its end", grid.shown_name));
+        if (header.file_version >= kTransformPerGrid && !shares_tree)
+            check_root(reader, grid, transform);
+        reader.go_to(grid.end);
         header.grid_names.push_back(name);
     }
 }

@@ -16,7 +16,8 @@ struct VdbHeader {
 };
 
 // Throws Error MissingInput when there is no such file, and BadData when it is no VDB (naming what it looks like), when
-// it ends before the end of a grid in its own table, or when that table makes no sense.
+// it ends before the end of a grid in its own table, or when that table makes no sense or a tree's root claims more
+// than fits into the file. Streamed files without a table are looked at up to their first grid.
 VdbHeader read_vdb_header(const std::filesystem::path& file);
 
 // Describes the first bytes of a file that is no VDB: "a Git LFS pointer: ...". Ends with the remedy.

@@ -121,10 +121,25 @@ TEST(Unreadable, APackedBlockThatCrashesOpenVdbIsOneLine) {
 }
 
 // The root's number of tiles, 2^31 - 1: OpenVDB would read on and on at the end of the file.
-TEST(Unreadable, AFileThatIsReadForEverRunsOutOfTime) {
+TEST(Unreadable, ARootOfMoreTilesThanFitIsOneLine) {
     const TempFolder folder;
     write_bytes(folder / "damaged.vdb", candle_with(862, "\xff\xff\xff\x7f"));
-    const Failure failure = failure_of([&] { read_grid(folder / "damaged.vdb", "density", 0, kPlentyOfMemory); });
+    const Failure failure = failure_of([&] { list_grids(folder / "damaged.vdb"); });
+    EXPECT_EQ(failure.code, ExitCode::BadData);
+    EXPECT_TRUE(contains(failure.message, "2147483647 tiles")) << failure.message;
+}
+
+// The same in a streamed file, whose trees cannot be found without OpenVDB.
+TEST(Unreadable, AFileThatIsReadForEverRunsOutOfTime) {
+    const TempFolder folder;
+    write_vdb_stream(folder / "stream.vdb", {small_grid()});
+    std::string bytes = bytes_of(folder / "stream.vdb");
+    const std::string transform = "UniformScaleMap";
+    const std::size_t found = bytes.find(transform);
+    ASSERT_NE(found, std::string::npos);
+    const std::size_t tiles = found + transform.size() + 15 * sizeof(double) + 4 + sizeof(float);
+    write_bytes(folder / "damaged.vdb", bytes.replace(tiles, 4, "\xff\xff\xff\x7f"));
+    const Failure failure = failure_of([&] { list_grids(folder / "damaged.vdb"); });
     EXPECT_EQ(failure.code, ExitCode::BadData);
     EXPECT_TRUE(contains(failure.message, "more than 5 s")) << failure.message;
 }
