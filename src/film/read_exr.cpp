@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/input_file.h"
+#include "core/exr_header.h"
 #include "core/printable.h"
 #include "film/write_image.h"
 
@@ -144,7 +144,7 @@ ExrMetadata read_header(const std::filesystem::path& file) {
 // Calls `read` for a file that is there and of a kind that can be read; what OpenEXR throws becomes an Error.
 template <class Read>
 auto read_checked(const std::filesystem::path& file, const Read& read) {
-    size_of_input(file);
+    check_exr_header(file);
     bool tiled = false, deep = false, several_parts = false;
     if (!Imf::isOpenExrFile(file.c_str(), tiled, deep, several_parts))
         reject(file, "it is not an OpenEXR file");
