@@ -31,8 +31,8 @@ public:
 class ImageFormats {
 public:
     virtual ~ImageFormats() = default;
-    virtual std::unique_ptr<ImageReader> open(const std::string& file, std::string& why) const = 0;
-    // `format` is "png" or "jpeg". `bytes` must live as long as the reader.
+    // `format`: OpenImageIO's name, such as "png". `bytes` must live as long as the reader.
+    virtual std::unique_ptr<ImageReader> open(const std::string& file, const char* format, std::string& why) const = 0;
     virtual std::unique_ptr<ImageReader> open(std::string_view bytes, const char* format, std::string& why) const = 0;
     // sRGB, three channels of 8 bits.
     virtual std::vector<unsigned char> encode_png(int width, int height, std::span<const std::uint8_t> rgb,

@@ -39,11 +39,13 @@ private:
 
 class Formats final : public ImageFormats {
 public:
-    std::unique_ptr<ImageReader> open(const std::string& file, std::string& why) const override {
-        const OIIO::ImageSpec config = as_stored();
-        auto input = OIIO::ImageInput::open(file, &config);
-        if (!input) {
-            why = OIIO::geterror();
+    std::unique_ptr<ImageReader> open(const std::string& file, const char* format, std::string& why) const override {
+        auto input = created(format, why);
+        OIIO::ImageSpec spec;
+        if (!input)
+            return nullptr;
+        if (!input->open(file, spec, as_stored())) {
+            why = input->geterror();
             return nullptr;
         }
         return std::make_unique<Reader>(std::move(input));
@@ -51,11 +53,10 @@ public:
 
     std::unique_ptr<ImageReader> open(std::string_view bytes, const char* format, std::string& why) const override {
         auto memory = std::make_unique<OIIO::Filesystem::IOMemReader>(const_cast<char*>(bytes.data()), bytes.size());
-        auto input = OIIO::ImageInput::create(format);
-        if (!input || !input->set_ioproxy(memory.get())) {
-            why = std::string("OpenImageIO was built without ") + format;
+        auto input = created(format, why);
+        if (!input)
             return nullptr;
-        }
+        input->set_ioproxy(memory.get());
         // The proxy is set twice: JPEG's reader forgets one that its configuration does not name.
         OIIO::ImageSpec spec, config = as_stored();
         void* const proxy = memory.get();
@@ -84,6 +85,14 @@ public:
             return {};
         }
         return encoded;
+    }
+
+private:
+    static std::unique_ptr<OIIO::ImageInput> created(const char* format, std::string& why) {
+        auto input = OIIO::ImageInput::create(format);
+        if (!input)
+            why = std::string("OpenImageIO was built without ") + format;
+        return input;
     }
 };
 

@@ -9,9 +9,11 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/exr_header.h"
 #include "core/input_file.h"
 #include "core/printable.h"
 #include "image_formats/image_formats.h"
+#include "scene/picture_size.h"
 #include "scene/srgb.h"
 
 namespace brisance {
@@ -65,16 +67,26 @@ void make_linear(std::vector<float>& rgba, bool srgb) {
     }
 }
 
-Texture read_opened(ImageReader& input, const std::string& where, bool srgb, std::uint64_t memory_limit) {
-    const StoredImage stored = input.stored();
-    const bool bytes = stored.eight_bits;
-    if (stored.width < 1 || stored.height < 1 || stored.depth > 1 || stored.channels < 1)
-        reject(where, fmt::format("its size of {} x {} makes no sense", stored.width, stored.height));
-    const double size = 4.0 * stored.width * stored.height * (bytes ? 1.0 : 4.0);
+// OpenImageIO reads up to 256 lines at once, whatever is left of the memory.
+constexpr std::int64_t kLongestSide = 1 << 16;
+
+void check_size(std::int64_t width, std::int64_t height, double channel_bytes, const std::string& where,
+                std::uint64_t memory_limit) {
+    if (width < 1 || height < 1 || width > kLongestSide || height > kLongestSide)
+        reject(where, fmt::format("its size of {} x {} makes no sense", width, height));
+    const double size = 4.0 * static_cast<double>(width * height) * channel_bytes;
     if (size > static_cast<double>(memory_limit))
         throw Error(ExitCode::Temporary, fmt::format("{}: {} x {} pixels need {:.2f} GiB, more than is left; use a "
                                                      "smaller picture, or a machine with more memory",
-                                                     where, stored.width, stored.height, size / 0x1p30));
+                                                     where, width, height, size / 0x1p30));
+}
+
+Texture read_opened(ImageReader& input, const std::string& where, bool srgb, std::uint64_t memory_limit) {
+    const StoredImage stored = input.stored();
+    const bool bytes = stored.eight_bits;
+    if (stored.depth > 1 || stored.channels < 1)
+        reject(where, "it is no flat picture");
+    check_size(stored.width, stored.height, bytes ? 1.0 : 4.0, where, memory_limit);
     Texture texture;
     texture.width = stored.width;
     texture.height = stored.height;
@@ -110,6 +122,8 @@ Texture read_memory(std::string_view bytes, const std::string& where, bool srgb,
     // In the second half: a preview within a JPEG ends too, but it comes first.
     if (bytes.substr(bytes.size() / 2).find(format->end) == std::string_view::npos)
         reject(where, fmt::format("the {} is truncated", format->name));
+    const PictureSize size = claimed_size(bytes, where);
+    check_size(size.width, size.height, 1.0, where, memory_limit);
     std::string why;
     const auto input = image_formats().open(bytes, format->name, why);
     if (!input)
@@ -117,21 +131,35 @@ Texture read_memory(std::string_view bytes, const std::string& where, bool srgb,
     return read_opened(*input, where, srgb, memory_limit);
 }
 
-Texture read_file(const std::filesystem::path& file, bool srgb, std::uint64_t memory_limit) {
+// What else is read, by how it begins. OpenImageIO alone would try all the libraries that it was built with, some of
+// which were never meant for files from outside.
+constexpr Format kOtherFormats[] = {
+    {"hdr", "#?", {}},          {"openexr", kExrMagic, {}}, {"tiff", {"II*\0", 4}, {}},
+    {"tiff", {"MM\0*", 4}, {}}, {"tiff", {"II+\0", 4}, {}}, {"tiff", {"MM\0+", 4}, {}},
+};
+
+Texture read_file(const std::filesystem::path& file, std::string_view begin, bool srgb, std::uint64_t memory_limit) {
+    const std::string where = file.string();
+    const auto* const format = std::find_if(std::begin(kOtherFormats), std::end(kOtherFormats),
+                                            [&](const Format& f) { return begin.starts_with(f.begin); });
+    if (format == std::end(kOtherFormats))
+        reject(where, "not a picture that can be read: PNG, JPEG, Radiance, OpenEXR or TIFF");
+    check_exr_header(file);
     std::string why;
-    const auto input = image_formats().open(file.string(), why);
+    const auto input = image_formats().open(where, format->name, why);
     if (!input)
-        reject(file.string(), "not a picture that can be read: " + printable(why));
-    return read_opened(*input, file.string(), srgb, memory_limit);
+        reject(where, "not a picture that can be read: " + printable(why));
+    return read_opened(*input, where, srgb, memory_limit);
 }
 
-// The bytes of a PNG or JPEG; empty where the file is something else.
+// All bytes of a PNG or JPEG, and the first ones of anything else.
 std::string bytes_of_format(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
     std::string bytes(4, '\0');
     in.read(bytes.data(), 4);
+    bytes.resize(static_cast<std::size_t>(in.gcount()));
     if (!in || format_of(bytes) == nullptr)
-        return {};
+        return bytes;
     return bytes + std::string(std::istreambuf_iterator<char>(in), {});
 }
 
@@ -140,8 +168,8 @@ std::string bytes_of_format(const std::filesystem::path& file) {
 Texture read_texture(const std::filesystem::path& file, bool srgb, std::uint64_t memory_limit) {
     size_of_input(file);
     const std::string bytes = bytes_of_format(file);
-    Texture texture =
-        bytes.empty() ? read_file(file, srgb, memory_limit) : read_memory(bytes, file.string(), srgb, memory_limit);
+    Texture texture = format_of(bytes) == nullptr ? read_file(file, bytes, srgb, memory_limit)
+                                                  : read_memory(bytes, file.string(), srgb, memory_limit);
     texture.name = file.filename().string();
     return texture;
 }

@@ -46,7 +46,7 @@ TEST(ImageFormats, APngKeepsItsBytes) {
 // What is no picture is null, and says why.
 TEST(ImageFormats, WhatIsNoPictureSaysWhy) {
     std::string why;
-    EXPECT_FALSE(image_formats().open(std::string("/nowhere/is.png"), why));
+    EXPECT_FALSE(image_formats().open(std::string("/nowhere/is.png"), "png", why));
     EXPECT_FALSE(why.empty());
     why.clear();
     EXPECT_FALSE(image_formats().open(std::string_view("no picture"), "png", why));

@@ -207,6 +207,39 @@ TEST(ReadTexture, FilesMayBeMissingOrTooLarge) {
     }
 }
 
+// A JPEG's or PNG's header is not believed: their libraries would take the memory before anyone could look.
+TEST(ReadTexture, AClaimOfManyPixelsCostsNoMemory) {
+    std::string jpeg = encoded(".jpg", 64, 64, 3, std::vector<std::uint8_t>(64 * 64 * 3, 99));
+    const std::size_t frame = jpeg.find("\xff\xc0");
+    ASSERT_NE(frame, std::string::npos);
+    jpeg.replace(frame + 5, 4, "\xff\xdc\xff\xdc");
+    EXPECT_EQ(failure_of([&] { read_texture(as_bytes(jpeg), "p", true, kPlenty); }).code, ExitCode::Temporary);
+    std::string png = encoded(".png", 64, 64, 3, std::vector<std::uint8_t>(64 * 64 * 3, 99));
+    png.replace(16, 8, std::string("\0\x7f\xff\xff\0\x7f\xff\xff", 8));
+    EXPECT_TRUE(contains(failure_of([&] { read_texture(as_bytes(png), "p", true, kPlenty); }).message, "no sense"));
+    const TempFolder folder;
+    write_bytes(folder / "wide.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 499999\n");
+    const Failure wide = failure_of([&] { read_texture(folder / "wide.hdr", false, kPlenty); });
+    EXPECT_EQ(wide.code, ExitCode::BadData);
+    EXPECT_TRUE(contains(wide.message, "499999 x 4")) << wide.message;
+}
+
+TEST(ReadTexture, ChunksOfAPngEndWithinIt) {
+    std::string png = encoded(".png", 64, 64, 3, std::vector<std::uint8_t>(64 * 64 * 3, 99));
+    const std::size_t data = png.find("IDAT");
+    ASSERT_NE(data, std::string::npos);
+    png.replace(data - 4, 2, "\x7f\x7f");
+    EXPECT_TRUE(contains(failure_of([&] { read_texture(as_bytes(png), "p", true, kPlenty); }).message, "truncated"));
+}
+
+TEST(ReadTexture, FormatsThatAreNotKnownAreLeftUnopened) {
+    const TempFolder folder;
+    write_bytes(folder / "sky.gif", "GIF89a" + std::string(100, '\0'));
+    const Failure failure = failure_of([&] { read_texture(folder / "sky.gif", false, kPlenty); });
+    EXPECT_EQ(failure.code, ExitCode::BadData);
+    EXPECT_TRUE(contains(failure.message, "PNG, JPEG, Radiance, OpenEXR or TIFF")) << failure.message;
+}
+
 TEST(ReadTexture, OtherFormatsFromFiles) {
     const TempFolder folder;
     write_float_picture(folder / "sky.exr", 2, 1, {0.5f, 100.0f, std::numeric_limits<float>::infinity(), 1, 2, 3});
