@@ -31,7 +31,7 @@ std::string checkpoint_key(const Shot& shot, const std::filesystem::path& volume
     for (const Key& key : shot_keys())
         if (decides_bits(key))
             if (const std::optional<Json> value = key.get(shot))
-                text += key.path + "=" + value->dump() + "\n";
+                text += key.path + "=" + value->dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
     text += volume.filename().string() + " " + size_of(volume) + " " + std::to_string(frame);
     for (const std::filesystem::path& file : further_files(shot, frame))
         text.append(" ").append(size_of(file));

@@ -58,7 +58,8 @@ std::string shortened(const Json& value) {
 
 // Names the part that is to blame where a value has parts.
 [[noreturn]] void reject_value_of(const Key& key, const std::string& where, const Json& value) {
-    if (const std::optional<std::string> renamed = renamed_value(key.path, value.dump()))
+    if (const std::optional<std::string> renamed =
+            renamed_value(key.path, value.dump(-1, ' ', false, Json::error_handler_t::replace)))
         throw Error(ExitCode::Usage, fmt::format("{}: {}: {}", where, key.path, *renamed));
     if (key.find_mismatch)
         if (const std::optional<Mismatch> part = key.find_mismatch(value))

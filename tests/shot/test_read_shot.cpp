@@ -84,6 +84,9 @@ TEST(ReadShot, WhatSinglePrecisionCannotSumIsOutOfRange) {
 }
 
 TEST(ReadShot, ForeignTextInAMessageIsPrintable) {
+    for (const char* const setting :
+         {"fire.ramp=[[0,[1,0,0]z],[1,[~\xff\xff\xff\x99", "method=\xff", "fire.ramp=[\"\xff\"]"})
+        EXPECT_NE(message_of_overrides({setting}).find("expected"), std::string::npos) << setting;
     EXPECT_EQ(error_message("{\"smo\xff\\nke\": 1}").find('\n'), std::string::npos);
     const std::string message = error_message("{\"smoke\": {\"alb\\u001b[31mdo\": 1}}");
     EXPECT_EQ(message.find('\x1b'), std::string::npos) << message;

@@ -34,7 +34,8 @@ bool is_scene(const std::string& input) {
 Shot shot_of_scene(const std::string& input, const ShotOptions& options) {
     const nlohmann::json shot = {{"name", fs::path(input).stem().string()},
                                  {"scene", {{"files", {{{"file", input}}}}}}};
-    return parse_shot(shot.dump(), "shot made for " + input, {}, options);
+    const std::string text = shot.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    return parse_shot(text, "shot made for " + input, {}, options);
 }
 
 Shot suggested(const std::string& input, const ShotOptions& options, Progress& progress) {

@@ -38,17 +38,17 @@ void TextProgress::begin_frame(int frame, const std::string& file, std::size_t i
     stage_.clear();
     percent_ = -1;
     if (style_ == ProgressStyle::Plain)
-        print_line(fmt::format("{:8.1f} s  {}{}", seconds(), frame_, file));
+        print_line(fmt::format("{:8.1f} s  {}{}", seconds(), frame_, printable_line(file)));
 }
 
 void TextProgress::stage(const std::string& name) {
     const std::lock_guard lock(mutex_);
-    stage_ = name;
+    stage_ = printable_line(name);
     percent_ = 0;
     printed_percent_ = 0;
     last_line_ = Clock::now();
     if (style_ == ProgressStyle::Plain)
-        print_line(fmt::format("{:8.1f} s  {}{}", seconds(), frame_, name));
+        print_line(fmt::format("{:8.1f} s  {}{}", seconds(), frame_, stage_));
     if (style_ == ProgressStyle::Bar)
         draw_bar();
 }
