@@ -55,6 +55,8 @@ public:
         return std::string(take(length + 1).substr(0, length));
     }
 
+    bool empty() const { return rest_.empty(); }
+
     void expect_end() const {
         if (!rest_.empty())
             reject(file_, "an attribute of its header is shorter than it says");
@@ -117,22 +119,34 @@ std::uint64_t bytes_of_channels(Bytes value) {
     return sum;
 }
 
+// Texts of a length each; OpenEXR would read the last one beyond the attribute's end.
+void skip_texts(Bytes value) {
+    while (!value.empty())
+        value.take(value.number());
+}
+
+// OpenEXR reads a value by its type whatever its name is: each has to end where the file says.
 void take_attribute(const std::string& name, const std::string& type, Bytes value, Part& part) {
-    if (name == "channels" && type == "chlist") {
-        part.pixel_bytes = bytes_of_channels(value);
+    if (type == "chlist") {
+        const std::uint64_t bytes = bytes_of_channels(value);
+        part.pixel_bytes = name == "channels" ? bytes : part.pixel_bytes;
+    } else if (type == "stringvector") {
+        skip_texts(value);
+    } else if (type == "preview") {
+        const std::uint64_t width = value.number(), height = value.number();
+        value.take(4 * std::min(width * height, std::uint64_t{1} << 32));
+        value.expect_end();
     } else if (name == "compression" && type == "compression") {
         part.compression = static_cast<unsigned char>(value.take(1)[0]);
     } else if (name == "tiles" && type == "tiledesc") {
         part.tile_width = value.number();
         part.tile_height = value.number();
-    } else if ((name == "dataWindow" || name == "displayWindow") && type == "box2i") {
+    } else if (name == "dataWindow" && type == "box2i") {
         std::array<std::int64_t, 4> box{};
         for (std::int64_t& side : box)
             side = static_cast<std::int32_t>(value.number());
-        if (name == "dataWindow") {
-            part.width = box[2] - box[0] + 1;
-            part.height = box[3] - box[1] + 1;
-        }
+        part.width = box[2] - box[0] + 1;
+        part.height = box[3] - box[1] + 1;
     }
 }
 

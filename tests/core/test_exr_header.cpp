@@ -83,6 +83,19 @@ TEST(ExrClaims, AttributesEndWithinTheFile) {
     EXPECT_TRUE(contains(answer(part(8, 8, kZip).substr(0, 40), 0), "end"));
 }
 
+// OpenEXR reads a value by its type, and may find the next attribute elsewhere than the sizes say.
+TEST(ExrClaims, ValuesEndWhereTheirAttributeDoes) {
+    const std::string channel = ended("Y") + number(1) + std::string(4, '\0') + number(1) + number(1);
+    EXPECT_EQ(answer(attribute("mine", "chlist", channel + '\0') + part(8, 8, kZip)), "");
+    EXPECT_NE(answer(attribute("mine", "chlist", channel + "Z") + part(8, 8, kZip)), "");
+    EXPECT_NE(answer(attribute("mine", "chlist", channel + '\0' + "more") + part(8, 8, kZip)), "");
+    EXPECT_EQ(answer(attribute("texts", "stringvector", number(2) + "ab" + number(0)) + part(8, 8, kZip)), "");
+    EXPECT_NE(answer(attribute("texts", "stringvector", number(3) + "ab") + part(8, 8, kZip)), "");
+    EXPECT_EQ(answer(attribute("small", "preview", number(1) + number(1) + "rgba") + part(8, 8, kZip)), "");
+    EXPECT_NE(answer(attribute("small", "preview", number(99) + number(99) + "rgba") + part(8, 8, kZip)), "");
+    EXPECT_NE(answer(attribute("small", "preview", number(0xffffffffu) + number(0xffffffffu)) + part(8, 8, kZip)), "");
+}
+
 TEST(ExrClaims, PicturesFitIntoTheirFile) {
     EXPECT_TRUE(contains(answer(part(16384, 16384, kZip)), "cannot be in"));
     EXPECT_TRUE(contains(answer(part(200000, 1, kZip), 100000), "makes no sense"));
