@@ -160,6 +160,17 @@ std::vector<half> as_half(const std::vector<float>& pixels, ExrReport& report) {
     return halves;
 }
 
+// The brightest colour of the beauty where all of it is too dark for halves; 0 where it is not, or truly black.
+float lost_as_half(const Layer& layer) {
+    if (!layer.name.empty() || layer.full_float)
+        return 0.0f;
+    float brightest = 0.0f;
+    for (std::size_t i = 0; i < layer.pixels.size(); ++i)
+        if (layer.channels[i % layer.channels.size()] != "A")
+            brightest = std::max(brightest, std::abs(layer.pixels[i]));
+    return half(brightest) == half(0.0f) ? brightest : 0.0f;
+}
+
 // A sum that overflowed says nothing: a picture with holes is worse than none.
 void refuse_not_finite(const std::filesystem::path& file, const Image& image) {
     for (const Layer& layer : image.layers) {
@@ -204,6 +215,7 @@ void encode_exr(MemoryStream& stream, const Image& image, const ImageMetadata& m
             add_slices(frame, layer, layer.pixels, image.width);
         } else {
             halves[i] = as_half(layer.pixels, report);
+            report.all_lost = std::max(report.all_lost, lost_as_half(layer));
             add_slices(frame, layer, halves[i], image.width);
         }
     }
@@ -216,6 +228,11 @@ void encode_exr(MemoryStream& stream, const Image& image, const ImageMetadata& m
 }  // namespace
 
 std::string ExrReport::describe() const {
+    if (all_lost > 0.0f)
+        return fmt::format(
+            "the picture is stored as black: its brightest value, {:.2g}, is below the smallest half, "
+            "6e-08; raise fire.strength or the power of lights, or thin the smoke",
+            all_lost);
     return clamped == 0
                ? std::string()
                : fmt::format("{} values above the largest half, {}, were stored as that", clamped, kLargestHalf);

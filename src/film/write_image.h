@@ -16,6 +16,7 @@ namespace brisance {
 // What could not be stored as it was.
 struct ExrReport {
     std::uint64_t clamped = 0;     // values beyond the largest half (65504), stored as that
+    float all_lost = 0.0f;         // the brightest colour of a picture that is all black as halves; 0: it is not
     std::string describe() const;  // one line; empty when there is nothing to report
 };
 

@@ -1,10 +1,12 @@
 #include "reference/trace_picture.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <ctime>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <mutex>
 
 #include "camera/pixel_filter.h"
@@ -294,12 +296,13 @@ private:
 
     void add_variance(Image& image) const {
         Layer& layer = add(image, "variance", kColour);
+        constexpr double most = std::numeric_limits<float>::max();  // the square of a light of 1e20 is beyond it
         const double n = 2.0 * film_.work.passes;
         for (std::size_t p = 0; p < pixels(); ++p) {
             const Rgb m = mean(p, -1, 0, film_.order_sums());
             for (int c = 0; c < 3; ++c)
                 layer.pixels[3 * p + c] = static_cast<float>(
-                    std::max(0.0, film_.square(p, c) / n - double(m[c]) * m[c]) / std::max(n - 1.0, 1.0));
+                    std::clamp((film_.square(p, c) / n - double(m[c]) * m[c]) / std::max(n - 1.0, 1.0), 0.0, most));
         }
     }
 

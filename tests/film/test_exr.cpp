@@ -128,6 +128,18 @@ TEST(Exr, ValuesBeyondHalfAreClampedAndTold) {
     EXPECT_TRUE(ExrReport{}.describe().empty());
 }
 
+TEST(Exr, APictureTooDarkForHalvesIsTold) {
+    const TemporaryFolder folder;
+    for (const float bright : {1e-11f, 1e-6f, 0.0f}) {
+        const Image image{2, 1, {make_layer("", {"R", "G", "B", "A"}, 2, 1, [&](int x, int, int channel) {
+                              return channel == 3 ? 1.0f : x == 1 ? bright : 0.0f;
+                          })}};
+        const ExrReport report = write_exr(folder / "a.exr", image, {});
+        EXPECT_EQ(report.all_lost, bright == 1e-11f ? bright : 0.0f);
+        EXPECT_EQ(report.describe().find("stored as black") != std::string::npos, bright == 1e-11f);
+    }
+}
+
 TEST(Exr, AnImageWithANumberThatIsNoneIsRefused) {
     const TemporaryFolder folder;
     for (const float odd : {std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()}) {

@@ -20,7 +20,7 @@ using namespace testing;
 
 constexpr int kWidth = 40, kHeight = 36;
 
-Medium cloud() {
+Medium cloud(float strength = 1.0f) {
     Recipe r;
     r.box = cube(-9, 9);
     r.world_from_index = cubic(0.1);
@@ -29,6 +29,7 @@ Medium cloud() {
     r.settings.smoke.albedo = Rgb(0.9f, 0.8f, 0.6f);
     r.settings.smoke.mean_cosine = 0.4f;
     r.settings.fire.colour = Rgb(1.0f, 0.6f, 0.3f);
+    r.settings.fire.strength = strength;
     return make_medium(r);
 }
 
@@ -195,6 +196,20 @@ TEST(TracedPicture, VarianceIsThatOfTheHalvesOrMore) {
         EXPECT_LT(by_halves, by_paths + 4.0 * std::sqrt(square));
         EXPECT_GT(by_halves, 0.02 * by_paths);
     }
+}
+
+// The brightest fire that a shot may ask for: squares of its light are beyond single precision.
+TEST(TracedPicture, TheVarianceOfTheBrightestFireIsANumber) {
+    const Render r = render(shot_of(2), cloud(1e20f));
+    float brightest = 0.0f;
+    for (const Layer& layer : r.picture.image.layers)
+        for (const float value : layer.pixels) {
+            ASSERT_TRUE(std::isfinite(value)) << layer.name;
+            brightest = layer.name.empty() ? std::max(brightest, value) : brightest;
+        }
+    EXPECT_GT(brightest, 1e15f);
+    for (const float value : colour(r.picture.image, "variance"))
+        EXPECT_GE(value, 0.0f);
 }
 
 // Sum over the picture, all channels, and its standard error by the spread of paths.
