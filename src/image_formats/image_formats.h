@@ -32,8 +32,10 @@ class ImageFormats {
 public:
     virtual ~ImageFormats() = default;
     // `format`: OpenImageIO's name, such as "png". `bytes` must live as long as the reader.
-    virtual std::unique_ptr<ImageReader> open(const std::string& file, const char* format, std::string& why) const = 0;
-    virtual std::unique_ptr<ImageReader> open(std::string_view bytes, const char* format, std::string& why) const = 0;
+    virtual std::unique_ptr<ImageReader> open_file(const std::string& file, const char* format,
+                                                   std::string& why) const = 0;
+    virtual std::unique_ptr<ImageReader> open_bytes(std::string_view bytes, const char* format,
+                                                    std::string& why) const = 0;
     // sRGB, three channels of 8 bits.
     virtual std::vector<unsigned char> encode_png(int width, int height, std::span<const std::uint8_t> rgb,
                                                   std::string& why) const = 0;

@@ -39,7 +39,8 @@ private:
 
 class Formats final : public ImageFormats {
 public:
-    std::unique_ptr<ImageReader> open(const std::string& file, const char* format, std::string& why) const override {
+    std::unique_ptr<ImageReader> open_file(const std::string& file, const char* format,
+                                           std::string& why) const override {
         auto input = created(format, why);
         OIIO::ImageSpec spec;
         if (!input)
@@ -51,7 +52,8 @@ public:
         return std::make_unique<Reader>(std::move(input));
     }
 
-    std::unique_ptr<ImageReader> open(std::string_view bytes, const char* format, std::string& why) const override {
+    std::unique_ptr<ImageReader> open_bytes(std::string_view bytes, const char* format,
+                                            std::string& why) const override {
         auto memory = std::make_unique<OIIO::Filesystem::IOMemReader>(const_cast<char*>(bytes.data()), bytes.size());
         auto input = created(format, why);
         if (!input)

@@ -125,7 +125,7 @@ Texture read_memory(std::string_view bytes, const std::string& where, bool srgb,
     const PictureSize size = claimed_size(bytes, where);
     check_size(size.width, size.height, 1.0, where, memory_limit);
     std::string why;
-    const auto input = image_formats().open(bytes, format->name, why);
+    const auto input = image_formats().open_bytes(bytes, format->name, why);
     if (!input)
         reject(where, "damaged: " + printable(why));
     return read_opened(*input, where, srgb, memory_limit);
@@ -146,7 +146,7 @@ Texture read_file(const std::filesystem::path& file, std::string_view begin, boo
         reject(where, "not a picture that can be read: PNG, JPEG, Radiance, OpenEXR or TIFF");
     check_exr_header(file);
     std::string why;
-    const auto input = image_formats().open(where, format->name, why);
+    const auto input = image_formats().open_file(where, format->name, why);
     if (!input)
         reject(where, "not a picture that can be read: " + printable(why));
     return read_opened(*input, where, srgb, memory_limit);

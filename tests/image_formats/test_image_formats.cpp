@@ -31,7 +31,7 @@ TEST(ImageFormats, APngKeepsItsBytes) {
     std::string why;
     const std::vector<unsigned char> png = image_formats().encode_png(2, 2, rgb, why);
     ASSERT_FALSE(png.empty()) << why;
-    const auto reader = image_formats().open({reinterpret_cast<const char*>(png.data()), png.size()}, "png", why);
+    const auto reader = image_formats().open_bytes({reinterpret_cast<const char*>(png.data()), png.size()}, "png", why);
     ASSERT_TRUE(reader) << why;
     const StoredImage stored = reader->stored();
     EXPECT_EQ(stored.width, 2);
@@ -46,10 +46,10 @@ TEST(ImageFormats, APngKeepsItsBytes) {
 // What is no picture is null, and says why.
 TEST(ImageFormats, WhatIsNoPictureSaysWhy) {
     std::string why;
-    EXPECT_FALSE(image_formats().open(std::string("/nowhere/is.png"), "png", why));
+    EXPECT_FALSE(image_formats().open_file("/nowhere/is.png", "png", why));
     EXPECT_FALSE(why.empty());
     why.clear();
-    EXPECT_FALSE(image_formats().open(std::string_view("no picture"), "png", why));
+    EXPECT_FALSE(image_formats().open_bytes("no picture", "png", why));
     EXPECT_FALSE(why.empty());
 }
 
