@@ -5,7 +5,6 @@
 #include <cmath>
 #include <ctime>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <mutex>
 
@@ -50,10 +49,10 @@ SamplePoint sample_point(int seed, std::size_t pixel, std::uint64_t sample) {
 
 Ray ray_at(const Camera& camera, std::size_t pixel, const SamplePoint& point) {
     const CameraSettings& s = camera.settings();
-    const std::size_t column = pixel % s.width, row = pixel / s.width;
+    const std::size_t x = pixel % s.width, y = pixel / s.width;
+    const double column = static_cast<double>(x) + 0.5, row = static_cast<double>(y) + 0.5;
     const double size = s.filter_width_pixels;
-    return camera.ray(static_cast<double>(column) + 0.5 + (point.x - 0.5) * size,
-                      static_cast<double>(row) + 0.5 + (point.y - 0.5) * size);
+    return camera.ray(column + (point.x - 0.5) * size, row + (point.y - 0.5) * size);
 }
 
 class Tracing {
