@@ -15,7 +15,7 @@ float position_in_part(int part, int parts) {
     return (part + 0.5f) / parts;
 }
 
-// What is seen of a thick cell is its near end: sources that vary along it want more parts than extinction does.
+// What is seen of a thick voxel is its near end: sources that vary along it want more parts than extinction does.
 constexpr float kThickVoxel = 0.5f;
 constexpr int kThickVoxelParts = 4, kOpaqueVoxelParts = 8;
 
@@ -27,7 +27,7 @@ vec3 sample_position(const VoxelSegment& s, double t) {
     return glm::clamp(vec3(s.origin + s.direction * t), vec3(0.0f), vec3(float(BrickLattice::kSize)));
 }
 
-// A part of a cell's segment: constant coefficients, `length` metres at `distance`.
+// A part of a voxel's segment: constant coefficients, `length` metres at `distance`.
 struct Part {
     SourceRecord record;
     SimilarRecord similar;       // where the field has one
@@ -81,11 +81,11 @@ void add_part(RaySum& sum, const SourceField& field, const Part& p) {
 int parts_of(const SourceField& field, const VoxelSegment& s, float length) {
     if (field.majorant(s.brick) * length <= kThickVoxel)
         return 1;
-    const float depth = field.majorant_of_cell(s.brick, s.cube) * length;
+    const float depth = field.majorant_of_voxel(s.brick, s.cube) * length;
     return depth <= kThickVoxel ? 1 : (depth <= 2.0f * kThickVoxel ? kThickVoxelParts : kOpaqueVoxelParts);
 }
 
-// Visits every part of every cell until visit(part) returns false.
+// Visits every part of every voxel until visit(part) returns false.
 template <class Visit>
 void walk_parts(const SourceField& field, const Ray& ray, int parts, double end, const Visit& visit) {
     const auto visit_parts = [&](const VoxelSegment& s) {

@@ -88,8 +88,8 @@ SourceField::SourceField(const Medium& medium, const NodeSources& sources, const
     });
 }
 
-float SourceField::majorant_of_cell(std::size_t brick, const ivec3& cell) const {
-    const SourceRecord* r = &records_[brick * kRecords + std::size_t((cell.x * kSide + cell.y) * kSide + cell.z)];
+float SourceField::majorant_of_voxel(std::size_t brick, const ivec3& voxel) const {
+    const SourceRecord* r = &records_[brick * kRecords + std::size_t((voxel.x * kSide + voxel.y) * kSide + voxel.z)];
     float most = 0.0f;
     for (int k = 0; k < 8; ++k)
         most = std::max(most, r[((k >> 2) * kSide + (k >> 1 & 1)) * kSide + (k & 1)].value[SourceRecord::Extinction]);

@@ -44,7 +44,7 @@ public:
     bool direct_emission() const { return direct_; }
     float minimum(std::size_t brick) const { return minimum_[brick]; }  // of extinction over the brick's voxels
     float majorant(std::size_t brick) const { return majorant_[brick]; }
-    float majorant_of_cell(std::size_t brick, const ivec3& cell) const;  // of extinction over its corners
+    float majorant_of_voxel(std::size_t brick, const ivec3& voxel) const;  // of extinction over its corners
     bool has_similar() const { return !similar_.empty(); }
     bool has_outside() const { return !outside_.empty(); }
     std::uint64_t bytes() const {

@@ -24,9 +24,9 @@ constexpr float kGauss[2][2] = {{0.78867513459481288225f, 0.21132486540518711775
 constexpr int kStride[3] = {at(0, 0, 1), at(0, 1, 0), at(1, 0, 0)};
 
 using Box = std::array<float, kPlane>;
-using GaussBoxes = std::array<Box, 8>;  // one value per cell at each of its Gauss points
+using GaussBoxes = std::array<Box, 8>;  // one value per voxel at each of its Gauss points
 
-// Node values at the Gauss points of all cells, one axis after the other. A cell is known by its lowest node. Cells
+// Node values at the Gauss points of all voxels, one axis after the other. A voxel is known by its lowest node. Voxels
 // that begin at the last node of a row read the next row: they add to nodes of the margin only, which no one reads.
 void to_gauss_points(const float* nodes, GaussBoxes& points) {
     std::copy_n(nodes, kPlane, points[0].begin());
@@ -41,7 +41,7 @@ void to_gauss_points(const float* nodes, GaussBoxes& points) {
         }
 }
 
-// The transpose: values of cells at their Gauss points, as sums at the nodes. Uses `points` up.
+// The transpose: values of voxels at their Gauss points, as sums at the nodes. Uses `points` up.
 void from_gauss_points(GaussBoxes& points, float* nodes) {
     for (int a = 2; a >= 0; --a)
         for (int g = 0; g < 1 << a; ++g) {
@@ -65,7 +65,7 @@ bool dark(std::span<const float> box) {
     return std::all_of(box.begin(), box.end(), [](float v) { return v == 0.0f; });
 }
 
-// Integrals over a brick and its margin of hat * (extinction * factor + emission), in units of a cell's volume.
+// Integrals over a brick and its margin of hat * (extinction * factor + emission), in units of a voxel's volume.
 struct BrickProjection {
     Box extinction;
     std::array<float, 3 * kPlane> factor, emission, sum;

@@ -5,7 +5,7 @@
 //   I_i = integral of hat_i(x) j(x) dV,   j = extinction * source + emission,
 // where each factor is interpolated on its own. Hats sum to one and reproduce linear functions, so the sum of all I_i
 // is the exact integral of j, and their first moment is exact too. The integrand is of degree three per axis in each
-// cell, so a 2-point Gauss rule per axis integrates it without error. The result is then sharpened (sharpen_lights):
+// voxel, so a 2-point Gauss rule per axis integrates it without error. The result is then sharpened (sharpen_lights):
 // the sum stays exact, and so does the first moment wherever the fire is smooth.
 #pragma once
 

@@ -11,7 +11,8 @@ namespace brisance {
 
 namespace {
 
-// First scatterings drawn on one camera ray. The ray itself, integrated cell by cell, costs as much as several of them.
+// First scatterings drawn on one camera ray. The ray itself, integrated voxel by voxel, costs as much as several of
+// them.
 constexpr int kFirstCollisions = 16;
 
 // Surface paths that begin at the end of one camera ray through smoke. They share the cost of the ray itself; without

@@ -11,15 +11,15 @@ namespace {
 constexpr double kRouletteDepth = 2.3;
 // The same for the camera's own rays: transmittance 1e-7.
 constexpr double kCameraRouletteDepth = 16.0;
-// Cells of less optical depth are sampled uniformly along the ray, others in proportion to transmittance.
+// Voxels of less optical depth are sampled uniformly along the ray, others in proportion to transmittance.
 constexpr double kThinVoxel = 0.1;
 
-// One sample of the integral of T (sigma S + j) along a cell, as seen from where the ray enters it. Draws uniformly
+// One sample of the integral of T (sigma S + j) along a voxel, as seen from where the ray enters it. Draws uniformly
 // along the ray, in proportion to T sigma, or by both with the balance heuristic where neither alone is bounded.
 class VoxelEmission {
 public:
-    VoxelEmission(const TrackingField& field, const VoxelSegment& cell, const Cubic& sigma, double depth)
-        : field_(field), cell_(cell), sigma_(sigma), metres_(cell.end - cell.begin), depth_(depth) {}
+    VoxelEmission(const TrackingField& field, const VoxelSegment& voxel, const Cubic& sigma, double depth)
+        : field_(field), voxel_(voxel), sigma_(sigma), metres_(voxel.end - voxel.begin), depth_(depth) {}
 
     Rgb estimate(double xi) const {
         if (depth_ < kThinVoxel)
@@ -28,17 +28,17 @@ public:
         const double u = invert_depth(sigma_, metres_, std::min(-std::log1p(-xi * absorbed), depth_));
         Rgb sum(0.0f);
         if (field_.has_source())
-            sum += float(absorbed) * field_.source(cell_.brick, at(u));
+            sum += float(absorbed) * field_.source(voxel_.brick, at(u));
         if (field_.has_emission())
             sum += balanced(u, absorbed) + balanced(xi, absorbed);
         return sum;
     }
 
-    // Two antithetic samples: exact for what changes linearly along the cell.
+    // Two antithetic samples: exact for what changes linearly along the voxel.
     Rgb estimate_pair(double xi) const { return 0.5f * (estimate(xi) + estimate(1.0 - xi)); }
 
 private:
-    vec3 at(double u) const { return point_in_brick(cell_, cell_.begin + u * metres_); }
+    vec3 at(double u) const { return point_in_brick(voxel_, voxel_.begin + u * metres_); }
 
     double transmittance(double u) const { return std::exp(-metres_ * sigma_.integral(u)); }
 
@@ -47,9 +47,9 @@ private:
         const float seen = static_cast<float>(metres_ * transmittance(u));
         Rgb sum(0.0f);
         if (field_.has_source())
-            sum += float(sigma_.at(u)) * field_.source(cell_.brick, p);
+            sum += float(sigma_.at(u)) * field_.source(voxel_.brick, p);
         if (field_.has_emission())
-            sum += field_.emission(cell_.brick, p);
+            sum += field_.emission(voxel_.brick, p);
         return seen * sum;
     }
 
@@ -57,11 +57,11 @@ private:
     Rgb balanced(double u, double absorbed) const {
         const double t = transmittance(u);
         const double density = 1.0 + t * std::max(sigma_.at(u), 0.0) * metres_ / absorbed;
-        return float(metres_ * t / density) * field_.emission(cell_.brick, at(u));
+        return float(metres_ * t / density) * field_.emission(voxel_.brick, at(u));
     }
 
     const TrackingField& field_;
-    const VoxelSegment& cell_;
+    const VoxelSegment& voxel_;
     const Cubic& sigma_;
     double metres_, depth_;
 };
@@ -99,13 +99,13 @@ private:
     double stop_ = std::numeric_limits<double>::infinity();
 };
 
-Collision collision_in(const Cubic& extinction, const VoxelSegment& cell, double depth) {
-    const double metres = cell.end - cell.begin;
-    const double t = cell.begin + metres * invert_depth(extinction, metres, depth);
-    return {t, cell.brick, point_in_brick(cell, t)};
+Collision collision_in(const Cubic& extinction, const VoxelSegment& voxel, double depth) {
+    const double metres = voxel.end - voxel.begin;
+    const double t = voxel.begin + metres * invert_depth(extinction, metres, depth);
+    return {t, voxel.brick, point_in_brick(voxel, t)};
 }
 
-// Where null collisions are neither so rare that they miss the fire nor so many that walking cells is cheaper.
+// Where null collisions are neither so rare that they miss the fire nor so many that walking voxels is cheaper.
 bool crowded(const TrackingField& field, const VoxelSegment& brick) {
     const double per_voxel = field.majorant(brick.brick) / glm::length(brick.direction);
     return !field.has_emission() && per_voxel > 0.05 && per_voxel < 8.0;
@@ -170,13 +170,13 @@ LineResult LineTracker::follow_path(const Ray& ray, Rng& rng, double end) const 
             return meet_in_brick(field_, brick, out, rng);
         // The exponential distribution has no memory: every brick samples it anew.
         double left = rng.next_exponential();
-        return walk_cubics(field_, brick, [&](const VoxelSegment& cell) {
-            const Cubic sigma = field_.extinction_along(cell);
-            const double tau = std::max(0.0, sigma.integral(1.0) * (cell.end - cell.begin));
-            if (burns && field_.voxel_burns(cell))
-                out.radiance += VoxelEmission(field_, cell, sigma, tau).estimate(positions.next());
+        return walk_cubics(field_, brick, [&](const VoxelSegment& voxel) {
+            const Cubic sigma = field_.extinction_along(voxel);
+            const double tau = std::max(0.0, sigma.integral(1.0) * (voxel.end - voxel.begin));
+            if (burns && field_.voxel_burns(voxel))
+                out.radiance += VoxelEmission(field_, voxel, sigma, tau).estimate(positions.next());
             if (tau > left)
-                out.collision = collision_in(sigma, cell, left);
+                out.collision = collision_in(sigma, voxel, left);
             left -= tau;
             return !out.collision;
         });
@@ -195,12 +195,12 @@ Rgb LineTracker::follow_line(const Ray& ray, Rng& rng, double end) const {
     double depth = 0.0;
     walk_bricks(field_.bricks(), path, [&](const VoxelSegment& brick) {
         const bool burns = field_.burns(brick.brick);
-        return walk_cubics(field_, brick, [&](const VoxelSegment& cell) {
-            const Cubic sigma = field_.extinction_along(cell);
-            const double tau = std::max(0.0, sigma.integral(1.0) * (cell.end - cell.begin));
-            if (burns && field_.voxel_burns(cell))
+        return walk_cubics(field_, brick, [&](const VoxelSegment& voxel) {
+            const Cubic sigma = field_.extinction_along(voxel);
+            const double tau = std::max(0.0, sigma.integral(1.0) * (voxel.end - voxel.begin));
+            if (burns && field_.voxel_burns(voxel))
                 radiance +=
-                    float(visibility.of(depth)) * VoxelEmission(field_, cell, sigma, tau).estimate(positions.next());
+                    float(visibility.of(depth)) * VoxelEmission(field_, voxel, sigma, tau).estimate(positions.next());
             depth += tau;
             visibility.pass(depth, rng);
             return !visibility.ended(depth);
@@ -211,20 +211,20 @@ Rgb LineTracker::follow_line(const Ray& ray, Rng& rng, double end) const {
 
 void LineTracker::follow_camera(const Ray& ray, Rng& rng, CameraLine& line, double end) const {
     line.radiance = Rgb(0.0f);
-    line.cells.clear();
+    line.voxels.clear();
     Visibility visibility(kCameraRouletteDepth);
     Positions positions(rng);
     double depth = 0.0;
     walk_bricks(field_.bricks(), field_.enter(ray, end), [&](const VoxelSegment& brick) {
         const bool burns = field_.burns(brick.brick);
-        return walk_cubics(field_, brick, [&](const VoxelSegment& cell) {
-            const Cubic sigma = field_.extinction_along(cell);
-            const double tau = std::max(0.0, sigma.integral(1.0) * (cell.end - cell.begin));
-            if (burns && field_.voxel_burns(cell))
+        return walk_cubics(field_, brick, [&](const VoxelSegment& voxel) {
+            const Cubic sigma = field_.extinction_along(voxel);
+            const double tau = std::max(0.0, sigma.integral(1.0) * (voxel.end - voxel.begin));
+            if (burns && field_.voxel_burns(voxel))
                 line.radiance += float(visibility.of(depth)) *
-                                 VoxelEmission(field_, cell, sigma, tau).estimate_pair(positions.next());
+                                 VoxelEmission(field_, voxel, sigma, tau).estimate_pair(positions.next());
             if (tau > 0.0)
-                line.cells.push_back({cell, depth, depth + tau});
+                line.voxels.push_back({voxel, depth, depth + tau});
             depth += tau;
             visibility.pass(depth, rng);
             return !visibility.ended(depth);
@@ -246,14 +246,14 @@ double LineTracker::transmittance(const Ray& ray, double end, Rng& rng) const {
 
 // Where roulette ended the walk, less than e^-16 of the ray's collisions lie beyond: below single precision.
 Collision LineTracker::choose(const CameraLine& line, double position) const {
-    const double depth = std::min(-std::log1p(-position * line.opacity()), line.cells.back().end_depth);
-    const auto cell = std::upper_bound(line.cells.begin(), line.cells.end() - 1, depth,
-                                       [](double d, const PassedVoxel& c) { return d < c.end_depth; });
-    const double inside = std::clamp(depth - cell->begin_depth, 0.0, cell->end_depth - cell->begin_depth);
-    return collision_in(field_.extinction_along(cell->segment), cell->segment, inside);
+    const double depth = std::min(-std::log1p(-position * line.opacity()), line.voxels.back().end_depth);
+    const auto voxel = std::upper_bound(line.voxels.begin(), line.voxels.end() - 1, depth,
+                                        [](double d, const PassedVoxel& c) { return d < c.end_depth; });
+    const double inside = std::clamp(depth - voxel->begin_depth, 0.0, voxel->end_depth - voxel->begin_depth);
+    return collision_in(field_.extinction_along(voxel->segment), voxel->segment, inside);
 }
 
-// The whole line in runs of bricks that burn, which are integrated cell by cell, and gaps between them, whose
+// The whole line in runs of bricks that burn, which are integrated voxel by voxel, and gaps between them, whose
 // transmittance is estimated; independent factors, so that their product is unbiased.
 Rgb LineTracker::radiance_by_estimates(const LatticeRay& ray, Rng& rng) const {
     Rgb radiance(0.0f);
@@ -274,11 +274,11 @@ Rgb LineTracker::radiance_by_estimates(const LatticeRay& ray, Rng& rng) const {
                 return false;
             seen *= 2.0;
         }
-        walk_cubes<1>(brick, [&](const VoxelSegment& cell) {
-            const Cubic sigma = field_.extinction_along(cell);
-            const double tau = std::max(0.0, sigma.integral(1.0) * (cell.end - cell.begin));
-            if (field_.voxel_burns(cell))
-                radiance += float(seen) * VoxelEmission(field_, cell, sigma, tau).estimate(positions.next());
+        walk_cubes<1>(brick, [&](const VoxelSegment& voxel) {
+            const Cubic sigma = field_.extinction_along(voxel);
+            const double tau = std::max(0.0, sigma.integral(1.0) * (voxel.end - voxel.begin));
+            if (field_.voxel_burns(voxel))
+                radiance += float(seen) * VoxelEmission(field_, voxel, sigma, tau).estimate(positions.next());
             seen *= std::exp(-tau);
             return true;
         });

@@ -23,13 +23,13 @@ struct PassedVoxel {
     double begin_depth, end_depth;  // optical depth
 };
 
-// A ray of the camera and all cells on it, to choose collisions from.
+// A ray of the camera and all voxels on it, to choose collisions from.
 struct CameraLine {
     Rgb radiance{0.0f};
-    std::vector<PassedVoxel> cells;
+    std::vector<PassedVoxel> voxels;
     // The chance that a flight along the ray collides, 1 - T.
-    double opacity() const { return cells.empty() ? 0.0 : -std::expm1(-cells.back().end_depth); }
-    double transmittance() const { return cells.empty() ? 1.0 : std::exp(-cells.back().end_depth); }
+    double opacity() const { return voxels.empty() ? 0.0 : -std::expm1(-voxels.back().end_depth); }
+    double transmittance() const { return voxels.empty() ? 1.0 : std::exp(-voxels.back().end_depth); }
 };
 
 // Lines end at `end` metres, where a surface is.
@@ -44,7 +44,8 @@ public:
     // The emission along the whole line. Russian roulette ends it deep in the smoke.
     Rgb follow_line(const Ray& ray, Rng& rng, double end = kNoEnd) const;
 
-    // The emission along the whole line without roulette, and its cells. `line` is overwritten; keep it for its memory.
+    // The emission along the whole line without roulette, and its voxels. `line` is overwritten; keep it for its
+    // memory.
     void follow_camera(const Ray& ray, Rng& rng, CameraLine& line, double end = kNoEnd) const;
 
     // Of [0, end] [m], by the estimator that the settings name.

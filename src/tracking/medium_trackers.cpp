@@ -19,16 +19,16 @@ bool stiff(const TrackingField& field, const VoxelSegment& in_brick) {
 // Inverts the optical depth voxel by voxel; `depth` is what remains up to the collision.
 std::optional<Collision> flight_in_brick(const TrackingField& field, const VoxelSegment& in_brick, double& depth) {
     std::optional<Collision> found;
-    walk_cubics(field, in_brick, [&](const VoxelSegment& cell) {
-        const Cubic sigma = field.extinction_along(cell);
-        const double metres = cell.end - cell.begin;
+    walk_cubics(field, in_brick, [&](const VoxelSegment& voxel) {
+        const Cubic sigma = field.extinction_along(voxel);
+        const double metres = voxel.end - voxel.begin;
         const double tau = std::max(0.0, sigma.integral(1.0) * metres);
         if (depth >= tau) {
             depth -= tau;
             return true;
         }
-        const double t = cell.begin + metres * invert_depth(sigma, metres, depth);
-        found = Collision{t, cell.brick, point_in_brick(cell, t)};
+        const double t = voxel.begin + metres * invert_depth(sigma, metres, depth);
+        found = Collision{t, voxel.brick, point_in_brick(voxel, t)};
         return false;
     });
     return found;
@@ -48,8 +48,8 @@ std::optional<Collision> woodcock_in_brick(const TrackingField& field, const Vox
 
 double depth_of_brick(const TrackingField& field, const VoxelSegment& in_brick) {
     double depth = 0.0;
-    walk_cubics(field, in_brick, [&](const VoxelSegment& cell) {
-        depth += field.extinction_along(cell).integral(1.0) * (cell.end - cell.begin);
+    walk_cubics(field, in_brick, [&](const VoxelSegment& voxel) {
+        depth += field.extinction_along(voxel).integral(1.0) * (voxel.end - voxel.begin);
         return true;
     });
     return std::max(depth, 0.0);
@@ -196,9 +196,9 @@ double unbiased_ray_march(const TrackingField& field, const LatticeRay& ray, Rng
         return 1.0;
     const double depth = absorbers.majorant_depth;
     const double target = std::cbrt((0.015 + depth) * (0.65 + depth) * (60.3 + depth));
-    // Cells need no more than two samples each for their exact depth.
-    const double cells = absorbers.metres * glm::length(ray.direction);
-    if (target > 3.0 * cells + 8.0) {
+    // Voxels need no more than two samples each for their exact depth.
+    const double voxels = absorbers.metres * glm::length(ray.direction);
+    if (target > 3.0 * voxels + 8.0) {
         double exact = 0.0;
         for (const VoxelSegment& s : absorbers.segments)
             exact += depth_of_brick(field, s);

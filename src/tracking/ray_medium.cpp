@@ -35,34 +35,34 @@ Coefficients RayProbe::at(double t) const {
 }
 
 void RayMedium::look(const TrackingField& field, const Ray& ray, double end) {
-    cells_.clear();
+    voxels_.clear();
     double depth = 0.0;
     walk_bricks(field.bricks(), field.enter(ray, end), [&](const VoxelSegment& brick) {
-        return walk_cubics(field, brick, [&](const VoxelSegment& cell) {
-            const Cubic sigma = field.extinction_along(cell);
-            const double tau = std::max(0.0, sigma.integral(1.0) * (cell.end - cell.begin));
+        return walk_cubics(field, brick, [&](const VoxelSegment& voxel) {
+            const Cubic sigma = field.extinction_along(voxel);
+            const double tau = std::max(0.0, sigma.integral(1.0) * (voxel.end - voxel.begin));
             if (tau > 0.0)
-                cells_.push_back({cell, sigma, depth, depth + tau});
+                voxels_.push_back({voxel, sigma, depth, depth + tau});
             depth += tau;
             return depth < kUnseenDepth;
         });
     });
-    if (cells_.empty())
+    if (voxels_.empty())
         return;
-    begin_ = cells_.front().segment.begin;
-    segment_ = {ray.origin + begin_ * ray.direction, ray.direction, cells_.back().segment.end - begin_};
+    begin_ = voxels_.front().segment.begin;
+    segment_ = {ray.origin + begin_ * ray.direction, ray.direction, voxels_.back().segment.end - begin_};
     // The segment's points are counted from its start, so that an eye far away costs no digits.
     probe_.emplace(field, ray);
 }
 
-const RayMedium::Cell& RayMedium::voxel_at(double t) const {
-    const auto after = std::upper_bound(cells_.begin(), cells_.end() - 1, begin_ + t,
-                                        [](double x, const Cell& c) { return x < c.segment.end; });
+const RayMedium::Voxel& RayMedium::voxel_at(double t) const {
+    const auto after = std::upper_bound(voxels_.begin(), voxels_.end() - 1, begin_ + t,
+                                        [](double x, const Voxel& c) { return x < c.segment.end; });
     return *after;
 }
 
 double RayMedium::depth_at(double t) const {
-    const Cell& c = voxel_at(t);
+    const Voxel& c = voxel_at(t);
     const double metres = c.segment.end - c.segment.begin;
     const double part = std::clamp((begin_ + t - c.segment.begin) / metres, 0.0, 1.0);
     return std::clamp(c.begin_depth + metres * c.extinction.integral(part), c.begin_depth, c.end_depth);
@@ -73,27 +73,27 @@ double RayMedium::transmittance(double t) const {
 }
 
 double RayMedium::opacity() const {
-    return cells_.empty() ? 0.0 : -std::expm1(-cells_.back().end_depth);
+    return voxels_.empty() ? 0.0 : -std::expm1(-voxels_.back().end_depth);
 }
 
 double RayMedium::distance_to_depth(double depth) const {
-    if (depth >= cells_.back().end_depth)
+    if (depth >= voxels_.back().end_depth)
         return segment_.length;
-    const auto cell = std::upper_bound(cells_.begin(), cells_.end() - 1, depth,
-                                       [](double d, const Cell& c) { return d < c.end_depth; });
-    const double metres = cell->segment.end - cell->segment.begin;
-    const double inside = std::clamp(depth - cell->begin_depth, 0.0, cell->end_depth - cell->begin_depth);
-    const double t = cell->segment.begin + metres * invert_depth(cell->extinction, metres, inside) - begin_;
+    const auto voxel = std::upper_bound(voxels_.begin(), voxels_.end() - 1, depth,
+                                        [](double d, const Voxel& c) { return d < c.end_depth; });
+    const double metres = voxel->segment.end - voxel->segment.begin;
+    const double inside = std::clamp(depth - voxel->begin_depth, 0.0, voxel->end_depth - voxel->begin_depth);
+    const double t = voxel->segment.begin + metres * invert_depth(voxel->extinction, metres, inside) - begin_;
     return std::clamp(t, 0.0, segment_.length);
 }
 
 double RayMedium::sample_flight(double xi) const {
-    return distance_to_depth(std::min(-std::log1p(-xi * opacity()), cells_.back().end_depth));
+    return distance_to_depth(std::min(-std::log1p(-xi * opacity()), voxels_.back().end_depth));
 }
 
-// By the same polynomial that sample_flight() inverts; no point between cells with extinction is drawn.
+// By the same polynomial that sample_flight() inverts; no point between voxels with extinction is drawn.
 double RayMedium::pdf_of_flight(double t) const {
-    const Cell& c = voxel_at(t);
+    const Voxel& c = voxel_at(t);
     const double metres = c.segment.end - c.segment.begin, part = (begin_ + t - c.segment.begin) / metres;
     if (!(part >= 0.0))
         return 0.0;

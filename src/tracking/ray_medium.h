@@ -28,15 +28,15 @@ private:
     LatticeRay path_;
 };
 
-// A ray of the camera with all cells on it. Its transmittance is known everywhere, and collisions of free flights can
+// A ray of the camera with all voxels on it. Its transmittance is known everywhere, and collisions of free flights can
 // be sampled. Nothing beyond an optical depth of 64 contributes (e^-64 is below single precision).
 class RayMedium {
 public:
     // Overwrites the previous ray; reuse the object to keep its memory. `end`: of the ray [m], where a surface is.
     void look(const TrackingField& field, const Ray& ray, double end);
 
-    bool empty() const { return cells_.empty(); }
-    // From the first to the last cell with extinction.
+    bool empty() const { return voxels_.empty(); }
+    // From the first to the last voxel with extinction.
     const Segment& segment() const { return segment_; }
     double transmittance(double t) const;  // from the ray's origin to t along the segment
     Coefficients coefficients(double t) const { return probe_->at(begin_ + t); }
@@ -48,15 +48,15 @@ public:
     double distance_to_depth(double depth) const;  // t where that optical depth is reached, or the segment's length
 
 private:
-    struct Cell {
+    struct Voxel {
         VoxelSegment segment;
         Cubic extinction;
         double begin_depth, end_depth;
     };
-    const Cell& voxel_at(double t) const;
+    const Voxel& voxel_at(double t) const;
     double depth_at(double t) const;
 
-    std::vector<Cell> cells_;
+    std::vector<Voxel> voxels_;
     Segment segment_;
     double begin_ = 0.0;  // of the segment on the ray [m]
     std::optional<RayProbe> probe_;

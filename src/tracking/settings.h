@@ -9,12 +9,12 @@ enum class EmissionEstimator {
 };
 
 enum class FreeFlight {
-    Exact,         // inverts the optical depth of each cell, a polynomial along the ray
+    Exact,         // inverts the optical depth of each voxel, a polynomial along the ray
     NullCollision  // Woodcock tracking against each brick's majorant
 };
 
 enum class TransmittanceEstimator {
-    Exact,     // the cells' own integral
+    Exact,     // the voxels' own integral
     RayMarch,  // unbiased ray marching (Kettunen et al. 2021)
     Ratio      // ratio tracking
 };

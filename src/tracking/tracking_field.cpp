@@ -14,7 +14,7 @@ constexpr int kSide = BrickLattice::kSize + 1;
 constexpr int kRecords = kSide * kSide * kSide;
 
 struct Corner {
-    std::size_t first;  // of the cell's eight corners
+    std::size_t first;  // of the voxel's eight corners
     vec3 fraction;
 };
 
@@ -23,7 +23,7 @@ Corner corner_of(std::size_t records, const vec3& p) {
     return {records + (base.x * kSide + base.y) * kSide + base.z, p - vec3(base)};
 }
 
-// `load(i)`: the i-th record from the cell's first corner.
+// `load(i)`: the i-th record from the voxel's first corner.
 template <class Load>
 auto trilinear(const Load& load, const vec3& f) {
     const auto along_z = [&](int at) {
@@ -155,17 +155,17 @@ Rgb TrackingField::emission(std::size_t brick, const vec3& p) const {
     return interpolate(&emission_[c.first], c.fraction);
 }
 
-// The trilinear polynomial a + bx + cy + dz + exy + fxz + gyz + hxyz of the cell, along p(u) = q + u w.
+// The trilinear polynomial a + bx + cy + dz + exy + fxz + gyz + hxyz of the voxel, along p(u) = q + u w.
 Cubic TrackingField::extinction_along(const VoxelSegment& s) const {
-    const ivec3& cell = s.cube;
-    const float* v = &extinction_[s.brick * kRecords + (cell.x * kSide + cell.y) * kSide + cell.z];
+    const ivec3& voxel = s.cube;
+    const float* v = &extinction_[s.brick * kRecords + (voxel.x * kSide + voxel.y) * kSide + voxel.z];
     const double v000 = v[0], v001 = v[1], v010 = v[kSide], v011 = v[kSide + 1];
     const float* x = v + kSide * kSide;
     const double v100 = x[0], v101 = x[1], v110 = x[kSide], v111 = x[kSide + 1];
     const double b = v100 - v000, c = v010 - v000, d = v001 - v000;
     const double e = v110 - v100 - c, f = v101 - v100 - d, g = v011 - v010 - d;
     const double h = v111 - v110 - v101 + v100 - g;
-    const dvec3 q = s.origin + s.direction * s.begin - dvec3(cell), w = s.direction * (s.end - s.begin);
+    const dvec3 q = s.origin + s.direction * s.begin - dvec3(voxel), w = s.direction * (s.end - s.begin);
     Cubic out;
     out.c[0] = v000 + q.x * (b + q.y * (e + q.z * h) + q.z * f) + q.y * (c + q.z * g) + q.z * d;
     out.c[1] = w.x * (b + q.y * (e + q.z * h) + q.z * f) + w.y * (c + q.x * (e + q.z * h) + q.z * g) +

@@ -1,4 +1,4 @@
-// The medium as a tracker samples it: cells with all their corners in one brick, and bounds of each brick.
+// The medium as a tracker samples it: voxels with all their corners in one brick, and bounds of each brick.
 #pragma once
 
 #include <cstdint>
@@ -9,29 +9,29 @@
 namespace brisance {
 
 // A polynomial of degree three in u, from 0 at a segment's begin to 1 at its end: what a trilinear field is along a
-// straight line through one cell.
+// straight line through one voxel.
 struct Cubic {
     double c[4] = {};
     double at(double u) const { return c[0] + u * (c[1] + u * (c[2] + u * c[3])); }
     double integral(double u) const { return u * (c[0] + u * (c[1] / 2 + u * (c[2] / 3 + u * (c[3] / 4)))); }
 };
 
-// Fields are copied with one layer of neighbours, 9^3 nodes to a brick of 8^3 cells; source, emission and albedo only
+// Fields are copied with one layer of neighbours, 9^3 nodes to a brick of 8^3 voxels; source, emission and albedo only
 // where they are needed.
 class TrackingField {
 public:
     // Keeps a reference to the medium for its transforms.
     explicit TrackingField(const Medium& medium);
 
-    const BrickLattice& bricks() const { return bricks_; }  // of cells
+    const BrickLattice& bricks() const { return bricks_; }  // of voxels
     LatticeRay enter(const Ray& ray, double end = std::numeric_limits<double>::infinity()) const {
         return lattice_ray(bricks_, index_from_local_, medium_->reference_node, ray, end);
     }
 
-    float minimum(std::size_t brick) const { return minimum_[brick]; }    // of extinction over the brick's cells
+    float minimum(std::size_t brick) const { return minimum_[brick]; }    // of extinction over the brick's voxels
     float majorant(std::size_t brick) const { return majorant_[brick]; }  // [1/m]
     bool burns(std::size_t brick) const { return fire_index_[brick] >= 0; }
-    // Whether all cells of the brick have one extinction, and nothing glows in them.
+    // Whether all voxels of the brick have one extinction, and nothing glows in them.
     bool homogeneous(std::size_t brick) const { return minimum_[brick] == majorant_[brick] && !burns(brick); }
     float mean_cosine() const { return medium_->mean_cosine; }
     const Medium& medium() const { return *medium_; }
@@ -45,10 +45,10 @@ public:
     Rgb source(std::size_t brick, const vec3& p) const;
     Rgb emission(std::size_t brick, const vec3& p) const;
 
-    // Extinction along a segment that lies in one cell, or in a homogeneous brick [1/m]; never negative beyond
+    // Extinction along a segment that lies in one voxel, or in a homogeneous brick [1/m]; never negative beyond
     // rounding.
     Cubic extinction_along(const VoxelSegment& segment) const;
-    // Whether anything can glow inside the cell of the segment.
+    // Whether anything can glow inside the voxel of the segment.
     bool voxel_burns(const VoxelSegment& segment) const;
 
     bool has_source() const { return !source_.empty(); }
@@ -70,7 +70,7 @@ private:
 };
 
 // Calls visit(part) for the parts of a brick's segment along which the extinction is one cubic, in order, until visit
-// returns false: its cells, or all of it where the brick is homogeneous. Returns false when visit did.
+// returns false: its voxels, or all of it where the brick is homogeneous. Returns false when visit did.
 template <class Visit>
 bool walk_cubics(const TrackingField& field, const VoxelSegment& in_brick, const Visit& visit) {
     return field.homogeneous(in_brick.brick) ? visit(in_brick) : walk_cubes<1>(in_brick, visit);

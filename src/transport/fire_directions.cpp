@@ -10,10 +10,10 @@ namespace brisance {
 
 namespace {
 
-// A number that is above zero wherever the cell glows at all: products of means, not means of products. A cell that is
-// not finite is no aim, so that it spoils those paths alone that meet it.
-double glow_of_voxel(const TrackingField& field, std::size_t brick, const ivec3& cell) {
-    const vec3 middle = vec3(cell) + 0.5f;
+// A number that is above zero wherever the voxel glows at all: products of means, not means of products. A voxel that
+// is not finite is no aim, so that it spoils those paths alone that meet it.
+double glow_of_voxel(const TrackingField& field, std::size_t brick, const ivec3& voxel) {
+    const vec3 middle = vec3(voxel) + 0.5f;
     double glow = 0.0;
     if (field.has_source())
         glow += double(field.extinction(brick, middle)) * luminance(field.source(brick, middle));
@@ -34,8 +34,8 @@ FireDirections::FireDirections(const TrackingField& field)
     std::vector<double> glow(brick_of_.size() * kCubes);
     parallel_for(brick_of_.size(), [&](std::size_t i) {
         for (int c = 0; c < BrickLattice::kNodes; ++c) {
-            const ivec3 cell = BrickLattice::node_in_brick(c), cube = cell / kCube;
-            glow[i * kCubes + (cube.x * 2 + cube.y) * 2 + cube.z] += glow_of_voxel(field, brick_of_[i], cell);
+            const ivec3 voxel = BrickLattice::node_in_brick(c), cube = voxel / kCube;
+            glow[i * kCubes + (cube.x * 2 + cube.y) * 2 + cube.z] += glow_of_voxel(field, brick_of_[i], voxel);
         }
     });
     double total = 0.0;

@@ -26,7 +26,8 @@ public:
     // A particle that leaves a point of the fire in any direction, and its power over pdf, 4 pi j over the density of
     // points [W]. There must be a fire.
     EmittedParticle emit(Rng& rng) const;
-    // Total power of emit(), luminance [W]; evaluated at the centres of cells, which is enough to distribute particles.
+    // Total power of emit(), luminance [W]; evaluated at the centres of voxels, which is enough to distribute
+    // particles.
     double power() const { return power_; }
 
     // Half the diagonal of the box around all emission [m].
@@ -35,7 +36,7 @@ public:
     std::uint64_t bytes() const { return (cumulative_.size() + density_.size()) * sizeof(double); }
 
 private:
-    static constexpr int kCube = 4;  // cells along a side within which the density is constant
+    static constexpr int kCube = 4;  // voxels along a side within which the density is constant
     static constexpr int kCubes =
         (BrickLattice::kSize / kCube) * (BrickLattice::kSize / kCube) * (BrickLattice::kSize / kCube);
 

@@ -52,7 +52,7 @@ private:
     std::vector<vec3> toward_eye_;  // per node, unit
     FixedSums sums_;                // [W m / sr]
     std::vector<Rgb> radiance_;     // toward the eye, times the volume around the node in voxels
-    std::vector<float> volume_;     // around each node, within the medium's cells, in voxels
+    std::vector<float> volume_;     // around each node, within the medium's bricks, in voxels
     // Each node with extinction has a list of up to kTracks + 1 tracks by decreasing priority; no lists unless
     // `other_directions`.
     std::vector<std::int32_t> list_of_;  // of each node, or -1

@@ -59,7 +59,7 @@ NodeFields fields_of(const BrickLattice& lattice, const Sources& s) {
     return f;
 }
 
-// What a node without extinction lends to the cells around it is of whatever smoke is beside it.
+// What a node without extinction lends to the voxels around it is of whatever smoke is beside it.
 float extinction_around(const BrickLattice& lattice, const std::vector<float>& extinction, const ivec3& node) {
     float sum = 0.0f;
     for (int k = 0; k < 27; ++k) {

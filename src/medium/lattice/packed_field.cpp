@@ -14,8 +14,8 @@ constexpr float kStoredMaximum = 60000.0f;  // of a half float: leaves nine deca
 
 constexpr int kSide = BrickLattice::kSize + 1;
 
-// Cells of a brick reach one node into the next brick, so every brick's lower neighbours get cells too.
-BrickLattice bricks_of_cells(const BrickLattice& lattice) {
+// Voxels of a brick reach one node into the next brick, so every brick's lower neighbours get voxels too.
+BrickLattice bricks_of_voxels(const BrickLattice& lattice) {
     std::vector<ivec3> bricks;
     for (std::size_t b = 0; b < lattice.brick_count(); ++b)
         for (int k = 0; k < 8; ++k)
@@ -23,7 +23,7 @@ BrickLattice bricks_of_cells(const BrickLattice& lattice) {
     return BrickLattice(std::move(bricks));
 }
 
-// The words of one brick of cells; none where all its nodes are 0.
+// The words of one brick of voxels; none where all its nodes are 0.
 std::vector<std::uint32_t> packed_brick(const BrickLattice& lattice, const std::vector<float>& nodes,
                                         const ivec3& first_node, float to_stored) {
     std::vector<float> box(kSide * kSide * kSide);
@@ -50,17 +50,17 @@ PackedField::PackedField(const BrickLattice& lattice, const std::vector<float>& 
     const float maximum = nodes.empty() ? 0.0f : *std::max_element(nodes.begin(), nodes.end());
     scale_ = maximum / kStoredMaximum;
 
-    const BrickLattice cells = bricks_of_cells(lattice);
-    std::vector<std::vector<std::uint32_t>> packed(cells.brick_count());
+    const BrickLattice voxels = bricks_of_voxels(lattice);
+    std::vector<std::vector<std::uint32_t>> packed(voxels.brick_count());
     // Extinction too small for its inverse to be a float stops nothing over any distance a float can hold.
     const float to_stored = maximum > 1e-30f ? kStoredMaximum / maximum : 0.0f;
-    parallel_for(cells.brick_count(),
-                 [&](std::size_t b) { packed[b] = packed_brick(lattice, nodes, cells.first_node(b), to_stored); });
+    parallel_for(voxels.brick_count(),
+                 [&](std::size_t b) { packed[b] = packed_brick(lattice, nodes, voxels.first_node(b), to_stored); });
     words_.assign(PackedExtinction::kWordsPerBrick, 0);
-    for (std::size_t b = 0; b < cells.brick_count(); ++b) {
+    for (std::size_t b = 0; b < voxels.brick_count(); ++b) {
         if (packed[b].empty())
             continue;
-        const ivec3 r = cells.brick(b) - reference_brick - min_brick_;
+        const ivec3 r = voxels.brick(b) - reference_brick - min_brick_;
         directory_[(std::size_t(r.x) * extent_.y + r.y) * extent_.z + r.z] = static_cast<std::int32_t>(words_.size());
         words_.insert(words_.end(), packed[b].begin(), packed[b].end());
         packed[b] = {};

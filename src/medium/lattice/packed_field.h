@@ -1,6 +1,6 @@
 // A field on a lattice's nodes, such as extinction, packed for fast trilinear sampling.
 //
-// Each packed brick of 8^3 cells holds 9 x 9 x 8 words of 32 bits, word (x, y, z) being the half floats of nodes z and
+// Each packed brick of 8^3 voxels holds 9 x 9 x 8 words of 32 bits, word (x, y, z) being the half floats of nodes z and
 // z + 1: a trilinear sample is four loads.
 #pragma once
 

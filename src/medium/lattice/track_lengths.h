@@ -13,7 +13,7 @@ public:
     // Keeps a reference.
     explicit TrackLengths(const Medium& medium)
         : medium_(medium),
-          cells_(voxel_lattice(medium)),
+          voxels_(voxel_lattice(medium)),
           index_from_local_(glm::inverse(dmat3(medium.local_from_index))) {}
 
     // Cuts the ray up to `end` [m] into segments, each of which counts for its nearest node. Calls visit(node, length)
@@ -21,19 +21,19 @@ public:
     template <class Visit>
     void along(const Ray& ray, double end, const Visit& visit) const;
 
-    // The share, from 0 to 1, of the voxel around a node that lies in cells whose track lengths count.
+    // The share, from 0 to 1, of the cube around a node that lies in voxels whose track lengths count.
     float part_in_voxels(const ivec3& node) const {
-        int cells = 0;
+        int voxels = 0;
         for (int k = 0; k < 8; ++k)
-            cells += cells_.find_node(node - ivec3(k >> 2, k >> 1 & 1, k & 1)) >= 0;
-        return float(cells) / 8.0f;
+            voxels += voxels_.find_node(node - ivec3(k >> 2, k >> 1 & 1, k & 1)) >= 0;
+        return float(voxels) / 8.0f;
     }
 
 private:
-    static constexpr int kParts = 2;  // of a segment through a cell
+    static constexpr int kParts = 2;  // of a segment through a voxel
 
     const Medium& medium_;
-    BrickLattice cells_;
+    BrickLattice voxels_;
     dmat3 index_from_local_;
 };
 
@@ -45,7 +45,7 @@ void TrackLengths::along(const Ray& ray, double end, const Visit& visit) const {
         for (int part = 0; part < kParts; ++part) {
             const dvec3 position = s.origin + s.direction * (s.begin + (part + 0.5) * length);
             const std::int64_t node =
-                medium_.lattice.find_node(cells_.first_node(s.brick) + ivec3(glm::round(position)));
+                medium_.lattice.find_node(voxels_.first_node(s.brick) + ivec3(glm::round(position)));
             if (node < 0)
                 continue;
             const float tau = medium_.extinction[node] * float(length);
@@ -54,7 +54,7 @@ void TrackLengths::along(const Ray& ray, double end, const Visit& visit) const {
         }
         return depth < kOpaqueDepth;
     };
-    walk_bricks(cells_, lattice_ray(cells_, index_from_local_, medium_.reference_node, ray, end),
+    walk_bricks(voxels_, lattice_ray(voxels_, index_from_local_, medium_.reference_node, ray, end),
                 [&](const VoxelSegment& brick) { return walk_cubes<1>(brick, in_voxel); });
 }
 

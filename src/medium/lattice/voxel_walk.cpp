@@ -36,7 +36,7 @@ LatticeRay lattice_ray(const BrickLattice& bricks, const dmat3& index_from_local
     return out;
 }
 
-// Bricks are known by their nodes; cells reach one node up on every axis.
+// Bricks are known by their nodes; voxels reach one node up on every axis.
 BrickLattice voxel_lattice(const Medium& medium) {
     std::vector<ivec3> bricks;
     for (std::size_t b = 0; b < medium.lattice.brick_count(); ++b) {

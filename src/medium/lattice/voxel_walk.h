@@ -1,4 +1,4 @@
-// Walking a ray through the bricks of a lattice and through their cells, without gaps or overlaps.
+// Walking a ray through the bricks of a lattice and through their voxels, without gaps or overlaps.
 #pragma once
 
 #include <limits>
@@ -23,10 +23,10 @@ LatticeRay lattice_ray(const BrickLattice& bricks, const dmat3& index_from_local
 LatticeRay lattice_ray(const BrickLattice& bricks, const Medium& medium, const Ray& ray,
                        double end = std::numeric_limits<double>::infinity());
 
-// The bricks whose cells (from a node to the next on every axis) touch a node that absorbs or emits.
+// The bricks whose voxels (from a node to the next on every axis) touch a node that absorbs or emits.
 BrickLattice voxel_lattice(const Medium& medium);
 
-// Part of a ray inside one brick, or inside one cell of it.
+// Part of a ray inside one brick, or inside one voxel of it.
 struct VoxelSegment {
     std::size_t brick;
     double begin, end;  // distances along the ray [m]
@@ -40,7 +40,7 @@ struct VoxelSegment {
 template <class Visit>
 bool walk_bricks(const BrickLattice& bricks, const LatticeRay& ray, const Visit& visit);
 
-// The same for the cubes of `size` cells (1, 2, 4) inside one brick's segment.
+// The same for the cubes of `size` voxels (1, 2, 4) inside one brick's segment.
 template <int size, class Visit>
 bool walk_cubes(const VoxelSegment& in_brick, const Visit& visit);
 

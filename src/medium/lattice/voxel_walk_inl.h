@@ -1,4 +1,4 @@
-// Implementation of voxel_walk.h: two nested digital differential analysers, over bricks and over cells.
+// Implementation of voxel_walk.h: two nested digital differential analysers, over bricks and over cubes.
 #pragma once
 
 #include <algorithm>
@@ -13,23 +13,23 @@ public:
         : origin_(origin), direction_(direction), size_(size) {
         for (int a = 0; a < 3; ++a) {
             const double p = (origin[a] + direction[a] * begin) / size;
-            cell[a] = std::clamp(static_cast<int>(std::floor(p)), low[a], high[a]);
-            // Exactly on a face the cell ahead is the one the ray is about to enter.
-            if (direction[a] < 0.0 && p == std::floor(p) && cell[a] > low[a] && p == cell[a])
-                --cell[a];
+            cube[a] = std::clamp(static_cast<int>(std::floor(p)), low[a], high[a]);
+            // Exactly on a face the cube ahead is the one the ray is about to enter.
+            if (direction[a] < 0.0 && p == std::floor(p) && cube[a] > low[a] && p == cube[a])
+                --cube[a];
             per_node_[a] = direction[a] == 0.0 ? 0.0 : 1.0 / direction[a];
             crossing_[a] = next_crossing(a);
         }
     }
 
-    ivec3 cell{0};
+    ivec3 cube{0};
 
     double exit() const { return std::min({crossing_.x, crossing_.y, crossing_.z}); }
 
     void advance() {
         const int a =
             crossing_.x <= crossing_.y ? (crossing_.x <= crossing_.z ? 0 : 2) : (crossing_.y <= crossing_.z ? 1 : 2);
-        cell[a] += direction_[a] > 0.0 ? 1 : -1;
+        cube[a] += direction_[a] > 0.0 ? 1 : -1;
         crossing_[a] = next_crossing(a);
     }
 
@@ -37,15 +37,15 @@ private:
     double next_crossing(int a) const {
         if (direction_[a] == 0.0)
             return std::numeric_limits<double>::infinity();
-        return ((cell[a] + (direction_[a] > 0.0 ? 1 : 0)) * size_ - origin_[a]) * per_node_[a];
+        return ((cube[a] + (direction_[a] > 0.0 ? 1 : 0)) * size_ - origin_[a]) * per_node_[a];
     }
 
     dvec3 origin_, direction_, per_node_{0.0}, crossing_{0.0};
     double size_;
 };
 
-inline bool inside(const ivec3& cell, const ivec3& count) {
-    return std::min({cell.x, cell.y, cell.z}) >= 0 && cell.x < count.x && cell.y < count.y && cell.z < count.z;
+inline bool inside(const ivec3& cube, const ivec3& count) {
+    return std::min({cube.x, cube.y, cube.z}) >= 0 && cube.x < count.x && cube.y < count.y && cube.z < count.z;
 }
 
 }  // namespace brisance::detail
@@ -61,7 +61,7 @@ bool walk_bricks(const BrickLattice& bricks, const LatticeRay& ray, const Visit&
     double begin = ray.begin;
     detail::Walker walker(ray.origin, ray.direction, begin, kSize, ivec3(0), count - 1);
     while (begin < ray.end) {
-        const ivec3 b = walker.cell;
+        const ivec3 b = walker.cube;
         const double leave = std::min(walker.exit(), ray.end);
         const int brick = bricks.find(low + b);
         if (brick >= 0 && leave > begin &&
@@ -69,7 +69,7 @@ bool walk_bricks(const BrickLattice& bricks, const LatticeRay& ray, const Visit&
             return false;
         begin = std::max(begin, leave);
         walker.advance();
-        if (!detail::inside(walker.cell, count))
+        if (!detail::inside(walker.cube, count))
             break;
     }
     return true;
@@ -81,11 +81,11 @@ bool walk_cubes(const VoxelSegment& s, const Visit& visit) {
     detail::Walker walker(s.origin, s.direction, s.begin, size, ivec3(0), ivec3(kCount - 1));
     for (double t = s.begin; t < s.end;) {
         const double next = std::min(walker.exit(), s.end);
-        if (next > t && !visit(VoxelSegment{s.brick, t, next, s.origin, s.direction, walker.cell}))
+        if (next > t && !visit(VoxelSegment{s.brick, t, next, s.origin, s.direction, walker.cube}))
             return false;
         t = std::max(t, next);
         walker.advance();
-        if (!detail::inside(walker.cell, ivec3(kCount)))
+        if (!detail::inside(walker.cube, ivec3(kCount)))
             break;
     }
     return true;

@@ -11,10 +11,10 @@ namespace brisance {
 namespace {
 
 // Voxels along a cluster's side: the tree chooses between clusters by their distance, inside all voxels count alike.
-constexpr int kCellShift = 3;
+constexpr int kClusterShift = 3;
 
 std::uint64_t key_of(const ivec3& node) {
-    const auto part = [](int i) { return static_cast<std::uint64_t>((i >> kCellShift) + (1 << 20)); };
+    const auto part = [](int i) { return static_cast<std::uint64_t>((i >> kClusterShift) + (1 << 20)); };
     return part(node.x) << 42 | part(node.y) << 21 | part(node.z);
 }
 
