@@ -46,19 +46,22 @@ public:
 private:
     void draw_row(int begin, int row, std::vector<FoundSurface>& found) {
         const int width = camera_.settings().width, y = begin + row;
-        for (int x = 0; x < width; ++x)
+        std::vector<float> direct(samples_.size());
+        for (int x = 0; x < width; ++x) {
+            const auto pixel = static_cast<std::uint32_t>(y * width + x);
             for (std::uint32_t k = 0; k < samples_.size(); ++k) {
                 const PixelSample& s = samples_[k];
                 const std::uint64_t number = static_cast<std::uint64_t>(settings_.pass) << 32 | k;
-                const auto pixel = static_cast<std::uint32_t>(y * width + x);
                 const PixelRay ray{pixel, number, camera_.ray(x + 0.5 + s.x, y + 0.5 + s.y)};
                 const PrimaryRay seen = trace_primary_ray(field_, ray, settings_);
                 add_weighted(sums_[std::size_t(row) * width + x], seen.sum, s.weight);
-                if (!glare_.empty())
-                    glare_[pixel].add(seen.sum.cells);
+                direct[k] = direct_luminance(seen.sum.cells);
                 if (seen.surface)
                     found.push_back({{pixel, number, ray.ray, *seen.surface}, s.weight * std::exp(-seen.sum.depth)});
             }
+            if (!glare_.empty())
+                glare_[pixel] = glare_of(direct);
+        }
     }
 
     void light(const std::vector<std::vector<FoundSurface>>& rows, int begin) {

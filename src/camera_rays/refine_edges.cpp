@@ -1,6 +1,7 @@
 #include "camera_rays/refine_edges.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "camera_rays/primary_ray.h"
 #include "core/parallel.h"
@@ -18,20 +19,24 @@ struct Pixel {
     int x, y;
 };
 
+// Between the ranges of two pixels; 0 where they overlap.
+float gap(const Glare& a, const Glare& b) {
+    return std::max({a.least - b.most, b.least - a.most, 0.0f});
+}
+
 // The pixel and those beside it: what its own rays have missed may show there.
 bool has_edge(const PictureWriter& writer, const std::vector<Glare>& glare, int width, int height, Pixel p,
               std::size_t rays) {
-    Glare around;
-    float sum = 0.0f;
+    const Glare& own = glare[std::size_t(p.y) * width + p.x];
+    float step = 0.0f, sum = 0.0f;
     int count = 0;
     for (int y = std::max(p.y - 1, 0); y <= std::min(p.y + 1, height - 1); ++y)
         for (int x = std::max(p.x - 1, 0); x <= std::min(p.x + 1, width - 1); ++x, ++count) {
             const Glare& g = glare[std::size_t(y) * width + x];
-            around.least = std::min(around.least, g.least);
-            around.most = std::max(around.most, g.most);
+            step = std::max({step, g.step, gap(own, g)});
             sum += writer.luminance_at(x, y);
         }
-    return around.most - around.least > kUnseen * rays * sum / count;
+    return step > kUnseen * rays * sum / count;
 }
 
 void look(const SourceField& field, const Camera& camera, const PictureSettings& settings, Pixel p,
@@ -46,10 +51,21 @@ void look(const SourceField& field, const Camera& camera, const PictureSettings&
 
 }  // namespace
 
-void Glare::add(const CellSum& seen) {
-    const float here = luminance(seen.at(Cell::V) + seen.at(Cell::A));
-    least = std::min(least, here);
-    most = std::max(most, here);
+float direct_luminance(const CellSum& seen) {
+    return luminance(seen.at(Cell::V) + seen.at(Cell::A));
+}
+
+Glare glare_of(std::span<const float> luminances) {
+    const auto [least, most] = std::minmax_element(luminances.begin(), luminances.end());
+    Glare glare{*least, *most, 0.0f};
+    const auto n = static_cast<std::size_t>(std::lround(std::sqrt(double(luminances.size()))));
+    for (std::size_t i = 0; i < luminances.size(); ++i) {
+        if (i % n != 0)
+            glare.step = std::max(glare.step, std::abs(luminances[i] - luminances[i - 1]));
+        if (i >= n)
+            glare.step = std::max(glare.step, std::abs(luminances[i] - luminances[i - n]));
+    }
+    return glare;
 }
 
 void refine_edges(const SourceField& field, const Camera& camera, const PictureSettings& settings,

@@ -2,11 +2,12 @@
 //
 // A lamp, the sun in a puddle or a flame may be thousands of times brighter than its neighbourhood. The fraction of a
 // pixel that it covers then determines the pixel, and the rays that shade surfaces are far too few to estimate it.
-// Tracing costs little compared with shading. Where directly visible fire, emitters and background differ strongly
-// within a pixel or between it and its neighbours, many more rays are therefore traced, and their result replaces that
-// of the pixel's own rays. The light of surfaces is kept.
+// Tracing costs little compared with shading. Where directly visible fire, emitters and background jump between
+// neighbouring rays, many more rays are therefore traced, and their result replaces that of the pixel's own rays. What
+// changes evenly within a pixel is known from its own rays and is not traced again. The light of surfaces is kept.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "camera/pixel_samples.h"
@@ -16,10 +17,14 @@ namespace brisance {
 
 // Luminance of directly visible emission (cells V and A) over the rays of a pixel [W/(m^2 sr)].
 struct Glare {
-    float least = std::numeric_limits<float>::infinity(), most = 0.0f;
-
-    void add(const CellSum& seen);
+    float least = 0.0f, most = 0.0f;
+    float step = 0.0f;  // largest difference between neighbouring rays
 };
+
+float direct_luminance(const CellSum& seen);
+
+// Of the luminances that the rays of pixel_samples() saw, in their order.
+Glare glare_of(std::span<const float> luminances);
 
 // `glare`: of every pixel, in rows, as `samples` saw it. `writer`: holds the finished picture.
 void refine_edges(const SourceField& field, const Camera& camera, const PictureSettings& settings,

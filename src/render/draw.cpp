@@ -79,7 +79,7 @@ private:
             return render_picture(field, input_.camera, settings_, progress_);
         const SurfaceShader shader({input_.plan.needed, field, *lights_.paths(), lights_.medium().lighting(),
                                     lights_.virtual_lights(), estimator, input_.plan.emitters_by_rays, settings_.parts,
-                                    lengths_ ? &*lengths_ : nullptr});
+                                    input_.camera.settings().width, lengths_ ? &*lengths_ : nullptr});
         return render_picture(field, input_.camera, settings_, progress_,
                               [&](const auto& samples, auto& light) { shader.shade(samples, light); });
     }

@@ -19,7 +19,9 @@ public:
     void add(std::uint32_t pixel, const vec3& local, const vec3& normal);
     // The receivers to light, to be called after all samples are added.
     std::vector<SurfaceReceiver>& receivers();
-    const SurfaceReceiver& of_sample(std::size_t sample) const { return receivers_[receiver_of_[sample]]; }
+    std::size_t count() const { return receivers_.size(); }
+    const SurfaceReceiver& operator[](std::size_t receiver) const { return receivers_[receiver]; }
+    const std::vector<std::uint32_t>& receiver_of() const { return receiver_of_; }  // of each sample
 
 private:
     struct Group {

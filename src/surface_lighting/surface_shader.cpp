@@ -1,10 +1,9 @@
 #include "surface_lighting/surface_shader.h"
 
-#include <array>
 #include <cmath>
-#include <numbers>
 
 #include "core/parallel.h"
+#include "surface_lighting/planar_receivers.h"
 #include "surface_lighting/shared_receivers.h"
 
 namespace brisance {
@@ -76,38 +75,22 @@ std::vector<SurfaceShader::ShadedPoint> SurfaceShader::shaded_points(const std::
     return points;
 }
 
-// Light that the base reflects of what other surfaces do not occlude, relative to what a white Lambert surface would
-// reflect of all of it.
-SurfaceShader::SeenPart SurfaceShader::seen_part(const VisibilityRatio* light, const SurfacePoint& point,
-                                                 const dvec3& toward_viewer, Rng& rng) const {
-    std::array<VisibilityRatio::Draw, VisibilityRatio::kDraws> draws;
-    const LitPoint lit{point.position, point.frame.normal, LitPoint::Kind::Surface};
-    if (!light || !light->draw(lit, rng, draws))
-        return {};
-    const Bsdf base(point.material, point.frame, Lobes::Base);
-    SeenPart seen;
-    float white = 0.0f;
-    for (const VisibilityRatio::Draw& d : draws) {
-        if (!(d.weight > 0.0f))
-            continue;
-        white += d.weight / std::numbers::pi_v<float>;
-        const dvec3 direction(d.direction);
-        const bool above =
-            glm::dot(point.geometric_normal, direction) * glm::dot(point.geometric_normal, toward_viewer) > 0.0;
-        if (!above)
-            continue;
-        const float cosine = glm::dot(vec3(point.frame.normal), d.direction);
-        const dvec3 from = point.start_toward(dvec3(d.point));
-        const dvec3 offset = dvec3(d.point) - from;
-        const double distance = glm::length(offset);
-        const Panes::Passage passage = panes_.along({from, offset / distance}, distance);
-        if (!passage.blocked)
-            (passage.panes > 0 ? seen.through_panes : seen.clear) +=
-                base.evaluate(toward_viewer, direction) * (d.weight / cosine) * passage.weight;
+// What the bases of all points reflect of the medium's light.
+std::vector<BaseLight> SurfaceShader::light_bases(const std::vector<SurfaceSample>& samples,
+                                                  const std::vector<ShadedPoint>& points) const {
+    if (!input_.medium_lighting)
+        return std::vector<BaseLight>(samples.size());
+    SharedReceivers receivers(input_.paths.direct().field().medium());
+    std::vector<BasePoint> bases;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const BehindMirrors& seen = points[i].seen;
+        receivers.add(samples[i].pixel, vec3(seen.point.position), vec3(seen.point.frame.normal));
+        const bool lit = !seen.lost && has_base(seen.point.material);
+        bases.push_back({lit ? &seen.point : nullptr, -seen.arriving, samples[i].pixel, samples[i].number});
     }
-    if (!(white > 0.0f))
-        return {};
-    return {seen.clear / white, seen.through_panes / white};
+    light_planar_receivers(input_.paths.direct().field().medium(), receivers.receivers(),
+                           [&](std::vector<SurfaceReceiver>& at) { input_.medium_lighting->at_surfaces(at); });
+    return BaseLighting(*input_.medium_lighting, panes_, samples_through_panes(), input_.width).light(bases, receivers);
 }
 
 // All lobes but the base, and how rays and lights share them.
@@ -163,23 +146,14 @@ void SurfaceShader::reflect_scattered(const SurfacePoint& point, const dvec3& to
         reflect_medium(point, toward_viewer, *gloss, rng, ray_rng, light);
 }
 
-void SurfaceShader::shade_point(const SurfaceSample& sample, const SurfaceReceiver& receiver, ShadedPoint& at,
+void SurfaceShader::shade_point(const SurfaceSample& sample, const BaseLight& base, ShadedPoint& at,
                                 CellSum& out) const {
     const SurfacePoint& point = at.seen.point;
     const dvec3 toward_viewer = -at.seen.arriving;
     Rng rng(Stream::Surface, sample.pixel, sample.number);
-    if (input_.medium_lighting && has_base(point.material)) {
-        const auto add = [&](Cell cell, const std::array<Rgb, 2>& arriving, const VisibilityRatios& ratios) {
-            for (int part = 0; part < 2; ++part) {
-                const SeenPart seen = seen_part(ratios[part], point, toward_viewer, rng);
-                out.at(cell) += arriving[part] * seen.clear;
-                if (samples_through_panes())
-                    out.at(Cell::SS) += arriving[part] * seen.through_panes;
-            }
-        };
-        add(Cell::SV, receiver.fire, input_.medium_lighting->fire_visibility());
-        add(Cell::SM, receiver.smoke, input_.medium_lighting->smoke_visibility());
-    }
+    out.at(Cell::SV) += base.from_fire;
+    out.at(Cell::SM) += base.from_smoke;
+    out.at(Cell::SS) += base.through_panes;
     reflect_scattered(point, toward_viewer, rng, at.ray_rng, out);
     const PathVertex vertex(point, at.seen.arriving);
     if (input_.needed.contains(Cell::SA))
@@ -199,11 +173,7 @@ void SurfaceShader::shade_point(const SurfaceSample& sample, const SurfaceReceiv
 
 void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) const {
     std::vector<ShadedPoint> points = shaded_points(samples, light);
-    SharedReceivers receivers(input_.paths.direct().field().medium());
-    for (std::size_t i = 0; i < samples.size(); ++i)
-        receivers.add(samples[i].pixel, vec3(points[i].seen.point.position), vec3(points[i].seen.point.frame.normal));
-    if (input_.medium_lighting)
-        input_.medium_lighting->at_surfaces(receivers.receivers());
+    const std::vector<BaseLight> bases = light_bases(samples, points);
     parallel_for(
         samples.size(),
         [&](std::size_t i) {
@@ -211,11 +181,11 @@ void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector
             if (seen.lost)
                 return;
             if (seen.mirrors == 0) {
-                shade_point(samples[i], receivers.of_sample(i), points[i], light[i]);
+                shade_point(samples[i], bases[i], points[i], light[i]);
                 return;
             }
             CellSum there;
-            shade_point(samples[i], receivers.of_sample(i), points[i], there);
+            shade_point(samples[i], bases[i], points[i], there);
             for (const Rgb& cell : there)
                 light[i].at(Cell::SS) += seen.throughput * cell;
         },

@@ -20,6 +20,7 @@
 #include "light_selection/in_scattering.h"
 #include "medium_lighting/medium_lighting.h"
 #include "reference/path_tracer.h"
+#include "surface_lighting/base_lighting.h"
 #include "surface_lighting/mirrors.h"
 #include "surface_lighting/panes.h"
 #include "surface_lighting/path_lengths.h"
@@ -37,6 +38,7 @@ struct SurfaceLightingInput {
     const InScattering* in_scattering = nullptr;      // null: it does not own SM
     bool emitters_by_rays = false;                    // MA is estimated along rays (medium_along_ray.h)
     int parts = 2;                                    // that of PictureSettings
+    int width = 0;                                    // of the picture, in pixels
     PathLengths* lengths = nullptr;                   // counts the paths of virtual lights; null: not counted
 };
 
@@ -51,13 +53,9 @@ private:
     struct GlossyLobes;
     std::vector<ShadedPoint> shaded_points(const std::vector<SurfaceSample>& samples,
                                            std::vector<CellSum>& light) const;
-    void shade_point(const SurfaceSample& sample, const SurfaceReceiver& receiver, ShadedPoint& at,
-                     CellSum& light) const;
-    struct SeenPart {
-        Rgb clear{0.0f}, through_panes{0.0f};
-    };
-    SeenPart seen_part(const VisibilityRatio* light, const SurfacePoint& point, const dvec3& toward_viewer,
-                       Rng& rng) const;
+    std::vector<BaseLight> light_bases(const std::vector<SurfaceSample>& samples,
+                                       const std::vector<ShadedPoint>& points) const;
+    void shade_point(const SurfaceSample& sample, const BaseLight& base, ShadedPoint& at, CellSum& light) const;
     Rgb from_emitters(const PathVertex& vertex, Rng& rng) const;
     void reflect_scattered(const SurfacePoint& point, const dvec3& toward_viewer, Rng& rng, Rng& ray_rng,
                            CellSum& light) const;

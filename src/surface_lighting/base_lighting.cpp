@@ -1,0 +1,226 @@
+#include "surface_lighting/base_lighting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/parallel.h"
+
+namespace brisance {
+
+namespace {
+
+constexpr Stream kTogether = stream_of("base lighting, samples together"),
+                 kAlone = stream_of("base lighting, samples alone");
+
+// Fewer samples find as much by themselves at the same cost.
+constexpr std::size_t kFewSamples = 4;
+constexpr std::size_t kRaysTogether = 16;
+// Pixels on either side in the row that are asked whether something may be hidden.
+constexpr std::uint32_t kPixelsAside = 4;
+
+constexpr std::size_t kReceiversAtOnce = 32;
+
+// Samples sorted by their receiver.
+struct SamplesOfReceivers {
+    std::vector<std::uint32_t> first, samples;  // `first` has one more than there are receivers, as an end
+
+    explicit SamplesOfReceivers(const SharedReceivers& receivers) : first(receivers.count() + 1, 0) {
+        const std::vector<std::uint32_t>& of = receivers.receiver_of();
+        for (const std::uint32_t r : of)
+            ++first[r + 1];
+        for (std::size_t r = 1; r < first.size(); ++r)
+            first[r] += first[r - 1];
+        samples.resize(of.size());
+        std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+        for (std::uint32_t i = 0; i < of.size(); ++i)
+            samples[next[of[i]]++] = i;
+    }
+    std::span<const std::uint32_t> of(std::size_t receiver) const {
+        return std::span(samples).subspan(first[receiver], first[receiver + 1] - first[receiver]);
+    }
+};
+
+// Draws of a visibility ratio, chosen in proportion to their weight.
+class WeightedDraws {
+public:
+    explicit WeightedDraws(const std::array<VisibilityRatio::Draw, VisibilityRatio::kDraws>& draws) : draws_(draws) {
+        float sum = 0.0f;
+        for (std::size_t k = 0; k < draws.size(); ++k)
+            passed_[k] = sum += std::max(draws[k].weight, 0.0f);
+    }
+    bool empty() const { return !(passed_.back() > 0.0f); }
+    const VisibilityRatio::Draw& at(float u) const {
+        const auto found = std::upper_bound(passed_.begin(), passed_.end() - 1, u * passed_.back());
+        return draws_[std::size_t(found - passed_.begin())];
+    }
+
+private:
+    const std::array<VisibilityRatio::Draw, VisibilityRatio::kDraws>& draws_;
+    std::array<float, VisibilityRatio::kDraws> passed_;
+};
+
+Rgb arriving(const SurfaceReceiver& receiver, int light) {
+    return light < 2 ? receiver.fire[light] : receiver.smoke[light - 2];
+}
+
+void add(int light, const Rgb& scattered, BaseLight& out) {
+    (light < 2 ? out.from_fire : out.from_smoke) += scattered;
+}
+
+// The base's share of what a white Lambert surface reflects of light from there; none from below.
+Rgb relative_to_white(const Bsdf& base, const SurfacePoint& at, const dvec3& toward_viewer, const dvec3& toward_light) {
+    const double cosine = glm::dot(at.frame.normal, toward_light);
+    const bool above = glm::dot(at.geometric_normal, toward_light) * glm::dot(at.geometric_normal, toward_viewer) > 0.0;
+    if (!above || !(cosine > 0.0))
+        return Rgb(0.0f);
+    return base.evaluate(toward_viewer, toward_light) * (std::numbers::pi_v<float> / float(cosine));
+}
+
+}  // namespace
+
+// What the samples of a receiver found together.
+struct BaseLighting::Together {
+    std::array<Seen, kLights> seen{};
+    bool tried = false;
+};
+
+BaseLighting::BaseLighting(const MediumLighting& medium, const Panes& panes, bool through_panes, int width)
+    : panes_(panes), through_panes_(through_panes), width_(width) {
+    const VisibilityRatios fire = medium.fire_visibility(), smoke = medium.smoke_visibility();
+    ratios_ = {fire[0], fire[1], smoke[0], smoke[1]};
+}
+
+Panes::Passage BaseLighting::passage(const SurfacePoint& surface, const vec3& light) const {
+    const dvec3 from = surface.start_toward(dvec3(light)), offset = dvec3(light) - from;
+    const double distance = glm::length(offset);
+    return panes_.along({from, offset / distance}, distance);
+}
+
+BaseLighting::Seen BaseLighting::see_together(int light, const SurfaceReceiver& receiver,
+                                              std::span<const std::uint32_t> samples, std::span<const BasePoint> points,
+                                              Rng& rng, std::span<BaseLight> out) const {
+    std::array<VisibilityRatio::Draw, VisibilityRatio::kDraws> draws;
+    const LitPoint lit{dvec3(receiver.local), dvec3(receiver.normal), LitPoint::Kind::Surface};
+    if (!ratios_[light] || arriving(receiver, light) == Rgb(0.0f) || !ratios_[light]->draw(lit, rng, draws))
+        return Seen::NoLight;
+    const WeightedDraws weighted(draws);
+    if (weighted.empty())
+        return Seen::NoLight;
+    const std::size_t rays = (kRaysTogether + samples.size() - 1) / samples.size(), all = rays * samples.size();
+    const float shift = rng.next();
+    std::size_t arrived = 0;
+    for (std::size_t i = 0; i < all; ++i) {
+        const std::uint32_t sample = samples[i / rays];
+        const BasePoint& p = points[sample];
+        const vec3 from = weighted.at((float(i) + shift) / float(all)).point;
+        const Panes::Passage way = passage(*p.surface, from);
+        const Rgb share = relative_to_white(Bsdf(p.surface->material, p.surface->frame, Lobes::Base), *p.surface,
+                                            p.toward_viewer, glm::normalize(dvec3(from) - p.surface->position));
+        if (way.panes > 0 || share == Rgb(0.0f))
+            return Seen::Part;
+        if (way.blocked)
+            continue;
+        ++arrived;
+        add(light, arriving(receiver, light) * share / float(rays), out[sample]);
+    }
+    return arrived == all ? Seen::All : (arrived == 0 ? Seen::Nothing : Seen::Part);
+}
+
+bool BaseLighting::light_together(const SurfaceReceiver& receiver, std::span<const std::uint32_t> samples,
+                                  std::span<const BasePoint> points, std::span<BaseLight> out,
+                                  std::array<Seen, kLights>& seen) const {
+    if (samples.size() < kFewSamples || !std::ranges::all_of(samples, [&](auto i) { return points[i].surface; }))
+        return false;
+    Rng rng(kTogether, points[samples[0]].pixel, points[samples[0]].number);
+    for (int light = 0; light < kLights; ++light)
+        seen[light] = see_together(light, receiver, samples, points, rng, out);
+    return true;
+}
+
+BaseLighting::Shares BaseLighting::measured(const VisibilityRatio& ratio, const BasePoint& p, Rng& rng) const {
+    std::array<VisibilityRatio::Draw, VisibilityRatio::kDraws> draws;
+    const LitPoint lit{p.surface->position, p.surface->frame.normal, LitPoint::Kind::Surface};
+    if (!ratio.draw(lit, rng, draws))
+        return {};
+    const Bsdf base(p.surface->material, p.surface->frame, Lobes::Base);
+    Shares seen;
+    float all = 0.0f;
+    for (const VisibilityRatio::Draw& d : draws) {
+        if (!(d.weight > 0.0f))
+            continue;
+        all += d.weight;
+        const Rgb share = relative_to_white(base, *p.surface, p.toward_viewer, dvec3(d.direction));
+        if (share == Rgb(0.0f))
+            continue;
+        const Panes::Passage way = passage(*p.surface, d.point);
+        if (!way.blocked)
+            (way.panes > 0 ? seen.through_panes : seen.clear) += share * d.weight * way.weight;
+    }
+    if (!(all > 0.0f))
+        return {};
+    return {seen.clear / all, seen.through_panes / all};
+}
+
+BaseLight BaseLighting::light_alone(const BasePoint& point, const SurfaceReceiver& receiver) const {
+    BaseLight out;
+    if (!point.surface)
+        return out;
+    Rng rng(kAlone, point.pixel, point.number);
+    for (int light = 0; light < kLights; ++light) {
+        const Rgb there = arriving(receiver, light);
+        if (!ratios_[light] || there == Rgb(0.0f))
+            continue;
+        const Shares seen = measured(*ratios_[light], point, rng);
+        add(light, there * seen.clear, out);
+        if (through_panes_)
+            out.through_panes += there * seen.through_panes;
+    }
+    return out;
+}
+
+std::vector<BaseLight> BaseLighting::light(std::span<const BasePoint> points, const SharedReceivers& receivers) const {
+    std::vector<BaseLight> out(points.size());
+    const SamplesOfReceivers samples(receivers);
+    std::vector<Together> together(receivers.count());
+    parallel_for(
+        together.size(),
+        [&](std::size_t r) {
+            together[r].tried = light_together(receivers[r], samples.of(r), points, out, together[r].seen);
+        },
+        kReceiversAtOnce);
+    const auto pixel = [&](std::size_t r) { return points[samples.of(r)[0]].pixel; };
+    const auto beside = [&](std::size_t r, std::size_t other) {
+        const std::uint32_t a = pixel(r), b = pixel(other);
+        return a / width_ == b / width_ && (a > b ? a - b : b - a) <= kPixelsAside;
+    };
+    // Whether both see all of each light, or both nothing of it.
+    const auto agree = [&](std::size_t r, std::size_t other) {
+        for (int light = 0; light < kLights; ++light) {
+            const Seen own = together[r].seen[light], there = together[other].seen[light];
+            if (own != Seen::NoLight && there != Seen::NoLight && (own != there || own == Seen::Part))
+                return false;
+        }
+        return true;
+    };
+    const auto settled = [&](std::size_t r) {
+        bool sure = together[r].tried && agree(r, r);
+        for (std::size_t other = r; sure && other-- > 0 && beside(r, other);)
+            sure = agree(r, other);
+        for (std::size_t other = r + 1; sure && other < together.size() && beside(r, other); ++other)
+            sure = agree(r, other);
+        return sure;
+    };
+    parallel_for(
+        together.size(),
+        [&](std::size_t r) {
+            if (settled(r))
+                return;
+            for (const std::uint32_t i : samples.of(r))
+                out[i] = light_alone(points[i], receivers[r]);
+        },
+        kReceiversAtOnce);
+    return out;
+}
+
+}  // namespace brisance

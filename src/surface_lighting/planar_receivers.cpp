@@ -1,0 +1,289 @@
+#include "surface_lighting/planar_receivers.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <tuple>
+#include <unordered_map>
+
+#include "medium/lattice/local_bounds.h"
+
+namespace brisance {
+
+namespace {
+
+// Side of the smallest and of the largest cells, powers of two of a voxel.
+constexpr int kFinest = -1, kCoarsest = 8;
+// Largest side of a cell, relative to the distance from the smoke, and in voxels where that is more.
+constexpr float kSideOfDistance = 0.25f, kSideInVoxels = 4.0f;
+// Largest difference between what a cell's corners predict and what is found between them, relative to the light there.
+// Parabolas through all of them are off by far less.
+constexpr float kPredicted = 0.06f;
+// A cell has nine points, most of which it shares.
+constexpr std::size_t kWorthACell = 5;
+
+// Of normals, and of the distance of planes from the origin in voxels: those of one surface differ by rounding alone.
+constexpr float kNormalStep = 0x1p-15f, kOffsetStep = 0.02f, kOffsetShift = 0.37f;
+
+struct Plane {
+    ivec3 normal;
+    std::int64_t offset;
+    auto operator<=>(const Plane& o) const {
+        return std::tie(normal.x, normal.y, normal.z, offset) <=>
+               std::tie(o.normal.x, o.normal.y, o.normal.z, o.offset);
+    }
+    bool operator==(const Plane&) const = default;
+};
+
+// Coordinates on a plane, in voxels.
+class PlaneFrame {
+public:
+    PlaneFrame(const Plane& plane, float voxel) : voxel_(voxel), normal_(glm::normalize(vec3(plane.normal))) {
+        const vec3 a = glm::abs(normal_);
+        const vec3 other = a.x <= a.y && a.x <= a.z ? vec3(1, 0, 0) : (a.y <= a.z ? vec3(0, 1, 0) : vec3(0, 0, 1));
+        u_ = glm::normalize(glm::cross(normal_, other));
+        v_ = glm::cross(normal_, u_);
+        origin_ = normal_ * ((float(plane.offset) + 0.5f - kOffsetShift) * kOffsetStep * voxel);
+    }
+    vec2 on_plane(const vec3& local) const { return vec2(glm::dot(local, u_), glm::dot(local, v_)) / voxel_; }
+    vec3 local(const vec2& p) const { return origin_ + voxel_ * (p.x * u_ + p.y * v_); }
+    const vec3& normal() const { return normal_; }
+
+private:
+    float voxel_;
+    vec3 normal_, u_, v_, origin_;
+};
+
+// All four of a receiver's lights.
+struct Light {
+    std::array<Rgb, 2> fire{}, smoke{};
+};
+
+template <class Use>
+void for_parts(const Use& use) {
+    for (int part = 0; part < 2; ++part) {
+        use([part](auto& light) -> auto& { return light.fire[part]; });
+        use([part](auto& light) -> auto& { return light.smoke[part]; });
+    }
+}
+
+float total(const Light& light) {
+    float sum = 0.0f;
+    for_parts([&](const auto& part) { sum += luminance(part(light)); });
+    return sum;
+}
+
+// a (1 - t) + b t
+Light between(const Light& a, const Light& b, float t) {
+    Light out;
+    for_parts([&](const auto& part) { part(out) = part(a) * (1.0f - t) + part(b) * t; });
+    return out;
+}
+
+// Through values at 0, 1/2 and 1, and never below zero.
+Light parabola(const std::array<Light, 3>& at, float t) {
+    Light out;
+    for_parts([&](const auto& part) {
+        const Rgb sum = part(at[0]) * ((1.0f - t) * (1.0f - 2.0f * t)) + part(at[1]) * (4.0f * t * (1.0f - t)) +
+                        part(at[2]) * (t * (2.0f * t - 1.0f));
+        part(out) = glm::max(sum, Rgb(0.0f));
+    });
+    return out;
+}
+
+float difference(const Light& a, const Light& b) {
+    float sum = 0.0f;
+    for_parts([&](const auto& part) { sum += luminance(glm::abs(part(a) - part(b))); });
+    return sum;
+}
+
+struct PlaneCell {
+    int level;
+    std::int32_t x, y;
+    std::vector<std::uint32_t> receivers;
+
+    float side() const { return std::ldexp(1.0f, level); }
+};
+
+// Points of all levels, in half sides of the finest cells.
+std::uint64_t point_key(std::int32_t x, std::int32_t y) {
+    return std::uint64_t(std::uint32_t(x)) << 32 | std::uint32_t(y);
+}
+
+// The lattice of one plane.
+class LitPlane {
+public:
+    LitPlane(const Medium& medium, const Plane& plane, std::vector<SurfaceReceiver>& receivers,
+             const GatherReceivers& gather)
+        : bounds_(local_bounds(medium)),
+          voxel_(medium.spacing),
+          frame_(plane, medium.spacing),
+          receivers_(receivers),
+          gather_(gather) {}
+
+    // Returns those that are to be gathered themselves.
+    std::vector<std::uint32_t> light(const std::vector<std::uint32_t>& on_plane) {
+        std::vector<PlaneCell> cells = cells_of(on_plane);
+        while (!cells.empty()) {
+            std::vector<PlaneCell> tried, next;
+            for (PlaneCell& cell : cells)
+                if (cell.receivers.size() < kWorthACell)
+                    alone_.insert(alone_.end(), cell.receivers.begin(), cell.receivers.end());
+                else
+                    (too_large(cell) ? next : tried).push_back(std::move(cell));
+            std::vector<PlaneCell> coarse = std::move(next);
+            next.clear();
+            gather_points(tried);
+            for (PlaneCell& cell : tried)
+                if (predicted(cell))
+                    interpolate(cell);
+                else
+                    coarse.push_back(std::move(cell));
+            for (const PlaneCell& cell : coarse)
+                divide(cell, next);
+            cells = std::move(next);
+        }
+        return std::move(alone_);
+    }
+
+private:
+    using Corners = std::array<std::array<Light, 3>, 3>;  // [y][x]
+
+    std::vector<PlaneCell> cells_of(const std::vector<std::uint32_t>& on_plane) const {
+        std::map<std::pair<std::int32_t, std::int32_t>, std::vector<std::uint32_t>> sorted;
+        for (const std::uint32_t r : on_plane) {
+            const vec2 p = glm::floor(frame_.on_plane(receivers_[r].local) / std::ldexp(1.0f, kCoarsest));
+            sorted[{std::int32_t(p.x), std::int32_t(p.y)}].push_back(r);
+        }
+        std::vector<PlaneCell> cells;
+        for (auto& [at, inside] : sorted)
+            cells.push_back({kCoarsest, at.first, at.second, std::move(inside)});
+        return cells;
+    }
+
+    bool too_large(const PlaneCell& cell) const {
+        if (cell.level == kFinest)
+            return false;
+        const vec3 middle = frame_.local((vec2(cell.x, cell.y) + 0.5f) * cell.side());
+        return cell.side() * voxel_ > std::max(kSideOfDistance * bounds_.distance(middle), kSideInVoxels * voxel_);
+    }
+
+    std::uint64_t key(const PlaneCell& cell, int i, int j) const {
+        const int half = 1 << (cell.level - kFinest);
+        return point_key((2 * cell.x + i) * half, (2 * cell.y + j) * half);
+    }
+
+    void gather_points(const std::vector<PlaneCell>& cells) {
+        std::vector<SurfaceReceiver> at;
+        std::vector<std::uint64_t> keys;
+        for (const PlaneCell& cell : cells)
+            for (int j = 0; j < 3; ++j)
+                for (int i = 0; i < 3; ++i)
+                    if (points_.try_emplace(key(cell, i, j)).second) {
+                        const vec2 p = (vec2(cell.x, cell.y) + 0.5f * vec2(i, j)) * cell.side();
+                        at.push_back({frame_.local(p), frame_.normal()});
+                        keys.push_back(key(cell, i, j));
+                    }
+        gather_(at);
+        for (std::size_t k = 0; k < at.size(); ++k)
+            points_[keys[k]] = {at[k].fire, at[k].smoke};
+    }
+
+    Corners corners(const PlaneCell& cell) const {
+        Corners c;
+        for (int j = 0; j < 3; ++j)
+            for (int i = 0; i < 3; ++i)
+                c[j][i] = points_.at(key(cell, i, j));
+        return c;
+    }
+
+    bool predicted(const PlaneCell& cell) const {
+        const Corners c = corners(cell);
+        for (int j = 0; j < 3; ++j)
+            for (int i = 0; i < 3; ++i) {
+                const Light by_corners =
+                    between(between(c[0][0], c[0][2], 0.5f * i), between(c[2][0], c[2][2], 0.5f * i), 0.5f * j);
+                if (!(difference(by_corners, c[j][i]) <= kPredicted * total(c[j][i])))
+                    return false;
+            }
+        return true;
+    }
+
+    void interpolate(const PlaneCell& cell) {
+        const Corners c = corners(cell);
+        for (const std::uint32_t r : cell.receivers) {
+            const vec2 p = glm::clamp(frame_.on_plane(receivers_[r].local) / cell.side() - vec2(cell.x, cell.y),
+                                      vec2(0.0f), vec2(1.0f));
+            const Light light = parabola({parabola(c[0], p.x), parabola(c[1], p.x), parabola(c[2], p.x)}, p.y);
+            receivers_[r].fire = light.fire;
+            receivers_[r].smoke = light.smoke;
+        }
+    }
+
+    void divide(const PlaneCell& cell, std::vector<PlaneCell>& out) {
+        if (cell.level == kFinest) {
+            alone_.insert(alone_.end(), cell.receivers.begin(), cell.receivers.end());
+            return;
+        }
+        std::array<PlaneCell, 4> parts;
+        for (int k = 0; k < 4; ++k)
+            parts[k] = {cell.level - 1, 2 * cell.x + (k & 1), 2 * cell.y + (k >> 1), {}};
+        const float side = parts[0].side();
+        for (const std::uint32_t r : cell.receivers) {
+            const vec2 p = frame_.on_plane(receivers_[r].local) / side;
+            parts[(p.x >= float(parts[3].x) ? 1 : 0) + (p.y >= float(parts[3].y) ? 2 : 0)].receivers.push_back(r);
+        }
+        for (PlaneCell& part : parts)
+            if (!part.receivers.empty())
+                out.push_back(std::move(part));
+    }
+
+    LocalBounds bounds_;
+    float voxel_;
+    PlaneFrame frame_;
+    std::vector<SurfaceReceiver>& receivers_;
+    const GatherReceivers& gather_;
+    std::unordered_map<std::uint64_t, Light> points_;
+    std::vector<std::uint32_t> alone_;
+};
+
+// Farther from the origin, in voxels, lattices are not numbered.
+constexpr float kFarthest = 0x1p26f;
+
+// None where its numbers would not fit.
+std::optional<Plane> plane_of(const SurfaceReceiver& r, float voxel) {
+    const vec3 at = glm::abs(r.local) / voxel;
+    if (!(at.x + at.y + at.z < kFarthest) || !(glm::dot(r.normal, r.normal) < 2.0f))
+        return std::nullopt;
+    const double offset = glm::dot(dvec3(r.local), dvec3(r.normal)) / (double(kOffsetStep) * voxel);
+    return Plane{ivec3(glm::round(r.normal / kNormalStep)), std::int64_t(std::floor(offset + kOffsetShift))};
+}
+
+}  // namespace
+
+void light_planar_receivers(const Medium& medium, std::vector<SurfaceReceiver>& receivers,
+                            const GatherReceivers& gather) {
+    std::map<Plane, std::vector<std::uint32_t>> planes;
+    std::vector<std::uint32_t> alone;
+    for (std::uint32_t i = 0; i < receivers.size(); ++i)
+        if (const std::optional<Plane> plane = plane_of(receivers[i], medium.spacing))
+            planes[*plane].push_back(i);
+        else
+            alone.push_back(i);
+    for (const auto& [plane, on_plane] : planes) {
+        const std::vector<std::uint32_t> rest =
+            on_plane.size() < kWorthACell ? on_plane : LitPlane(medium, plane, receivers, gather).light(on_plane);
+        alone.insert(alone.end(), rest.begin(), rest.end());
+    }
+    std::vector<SurfaceReceiver> at;
+    for (const std::uint32_t r : alone)
+        at.push_back(receivers[r]);
+    gather(at);
+    for (std::size_t k = 0; k < alone.size(); ++k)
+        receivers[alone[k]] = at[k];
+}
+
+}  // namespace brisance
