@@ -28,6 +28,7 @@ using LightRays = std::function<LightOnRay(const PixelRay& ray, double end)>;
 
 struct PictureSettings {
     int samples_per_axis = 1;                    // anti-aliasing, along a pixel's side
+    int medium_samples_per_axis = 0;             // fewer, where they are enough for the medium (pixel_rays.h); 0: all
     int edge_refinement = 1;                     // factor where light has edges (refine_edges.h)
     int parts = 2;                               // of a voxel's segment
     bool cells = true;                           // layers per ledger cell, ...

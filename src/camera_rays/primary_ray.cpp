@@ -6,40 +6,42 @@
 
 namespace brisance {
 
-PrimaryRay trace_primary_ray(const SourceField& field, const PixelRay& pixel_ray, const PictureSettings& settings) {
-    const Ray& ray = pixel_ray.ray;
-    const auto integrated = [&](double end) {
-        RaySum sum = integrate(field, ray, settings.parts, end);
-        if (settings.light_rays) {
-            const LightOnRay more = settings.light_rays(pixel_ray, end);
-            sum.cells.at(Cell::MM) += more.scattered;
-            sum.cells.at(Cell::MA) += more.emitters;
-            sum.once_from_emitters = more.emitters;
-        }
-        if (settings.once) {
-            const CellSum once = integrate(*settings.once, ray, settings.parts, end).cells;
-            sum.once_from_fire = once.at(Cell::MV);
-            sum.once_from_emitters += once.at(Cell::MA);
-        }
-        return sum;
-    };
-    constexpr double kNowhere = std::numeric_limits<double>::infinity();
-    if (!settings.surroundings)
-        return {integrated(kNowhere), std::nullopt};
-    const Surroundings& set = *settings.surroundings;
-    const std::optional<SurfaceHit> hit = set.intersector().first_hit(ray);
-    RaySum sum = integrated(hit ? hit->distance : kNowhere);
-    const float through = std::exp(-sum.depth);
-    if (!hit) {
-        sum.cells.at(Cell::A) += through * set.emitters().background(ray.direction);
-        return {sum, std::nullopt};
+RaySum medium_along(const SourceField& field, const PixelRay& ray, double end, const PictureSettings& settings) {
+    RaySum sum = integrate(field, ray.ray, settings.parts, end);
+    if (settings.light_rays) {
+        const LightOnRay more = settings.light_rays(ray, end);
+        sum.cells.at(Cell::MM) += more.scattered;
+        sum.cells.at(Cell::MA) += more.emitters;
+        sum.once_from_emitters = more.emitters;
     }
-    const SurfacePoint point = surface_point(set.scene(), *hit, -ray.direction);
+    if (settings.once) {
+        const CellSum once = integrate(*settings.once, ray.ray, settings.parts, end).cells;
+        sum.once_from_fire = once.at(Cell::MV);
+        sum.once_from_emitters += once.at(Cell::MA);
+    }
+    return sum;
+}
+
+void add_end(const Surroundings& surroundings, const Ray& ray, const std::optional<SurfaceHit>& hit, float through,
+             RaySum& sum) {
+    if (!hit) {
+        sum.cells.at(Cell::A) += through * surroundings.emitters().background(ray.direction);
+        return;
+    }
+    const SurfacePoint point = surface_point(surroundings.scene(), *hit, -ray.direction);
     sum.cells.at(Cell::A) += through * point.emission;
     sum.alpha = 1.0f;
     sum.distance_weight += through;
     sum.distance_sum += through * static_cast<float>(hit->distance);
     sum.albedo_sum += through * point.material.base_colour;
+}
+
+PrimaryRay trace_primary_ray(const SourceField& field, const PixelRay& ray, const std::optional<SurfaceHit>& hit,
+                             const PictureSettings& settings) {
+    constexpr double kNowhere = std::numeric_limits<double>::infinity();
+    RaySum sum = medium_along(field, ray, hit ? hit->distance : kNowhere, settings);
+    if (settings.surroundings)
+        add_end(*settings.surroundings, ray.ray, hit, std::exp(-sum.depth), sum);
     return {sum, sum.depth < kOpaqueDepth ? hit : std::nullopt};
 }
 

@@ -13,6 +13,9 @@ namespace {
 // What one ray more or less may change a pixel by, over its luminance, that is not worth looking again.
 constexpr float kUnseen = 0.01f;
 
+// Of the sum of a pixel's weights.
+constexpr float kRounding = 1e-5f;
+
 constexpr std::size_t kPixelsAtOnce = 8;
 
 struct Pixel {
@@ -39,53 +42,31 @@ bool has_edge(const PictureWriter& writer, const std::vector<Glare>& glare, int 
     return step > kUnseen * rays * sum / count;
 }
 
-void look(const SourceField& field, const Camera& camera, const PictureSettings& settings, Pixel p,
-          const std::vector<PixelSample>& samples, float sign, RaySum& sum) {
-    for (const PixelSample& s : samples) {
-        const PixelRay ray{0, 0, camera.ray(p.x + 0.5 + s.x, p.y + 0.5 + s.y)};
-        RaySum seen = trace_primary_ray(field, ray, settings).sum;
-        seen.alpha -= 1.0f;  // the same for the difference, and exact where all is covered
-        add_weighted(sum, seen, sign * s.weight);
-    }
-}
-
 }  // namespace
 
-float direct_luminance(const CellSum& seen) {
-    return luminance(seen.at(Cell::V) + seen.at(Cell::A));
-}
-
-Glare glare_of(std::span<const float> luminances) {
-    const auto [least, most] = std::minmax_element(luminances.begin(), luminances.end());
-    Glare glare{*least, *most, 0.0f};
-    const auto n = static_cast<std::size_t>(std::lround(std::sqrt(double(luminances.size()))));
-    for (std::size_t i = 0; i < luminances.size(); ++i) {
-        if (i % n != 0)
-            glare.step = std::max(glare.step, std::abs(luminances[i] - luminances[i - 1]));
-        if (i >= n)
-            glare.step = std::max(glare.step, std::abs(luminances[i] - luminances[i - n]));
-    }
-    return glare;
-}
-
 void refine_edges(const SourceField& field, const Camera& camera, const PictureSettings& settings,
-                  const std::vector<PixelSample>& samples, const std::vector<Glare>& glare, PictureWriter& writer) {
+                  const std::vector<Glare>& glare, PictureWriter& writer) {
     const int width = camera.settings().width, height = camera.settings().height;
+    PictureSettings own = settings;
+    own.light_rays = {};  // random, and the same on average
+    PictureSettings many = own;
+    many.samples_per_axis *= settings.edge_refinement;
+    many.medium_samples_per_axis = 0;
+    const PixelRays own_rays(field, camera, own), many_rays(field, camera, many);
     std::vector<Pixel> edges;
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
-            if (has_edge(writer, glare, width, height, {x, y}, samples.size()))
+            if (has_edge(writer, glare, width, height, {x, y}, own_rays.count()))
                 edges.push_back({x, y});
-    PictureSettings steady = settings;
-    steady.light_rays = {};  // random, and the same on average
-    const auto more = pixel_samples(camera.settings(), settings.samples_per_axis * settings.edge_refinement);
     parallel_for(
         edges.size(),
         [&](std::size_t i) {
-            RaySum difference;
-            look(field, camera, steady, edges[i], more, 1.0f, difference);
-            look(field, camera, steady, edges[i], samples, -1.0f, difference);
-            writer.add(edges[i].x, edges[i].y, difference);
+            const Pixel p = edges[i];
+            RaySum difference = many_rays.trace(p.x, p.y, nullptr, nullptr);
+            add_weighted(difference, own_rays.trace(p.x, p.y, nullptr, nullptr), -1.0f);
+            if (std::abs(difference.alpha) < kRounding)
+                difference.alpha = 0.0f;
+            writer.add(p.x, p.y, difference);
         },
         kPixelsAtOnce);
 }

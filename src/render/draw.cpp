@@ -29,9 +29,11 @@ PictureSettings picture_settings(const DrawInput& input, const ManyLights& light
     const CameraSettings& camera = input.camera.settings();
     PictureSettings settings;
     settings.samples_per_axis = camera.samples_per_axis;
-    if (camera.samples_per_axis == 0)
-        settings.samples_per_axis = std::max(automatic_samples(input.camera, lights.medium().field()),
-                                             input.plan.surfaces ? kSurfaceSamples : 1);
+    if (camera.samples_per_axis == 0) {
+        const int of_medium = automatic_samples(input.camera, lights.medium().field());
+        settings.samples_per_axis = std::max(of_medium, input.plan.surfaces ? kSurfaceSamples : 1);
+        settings.medium_samples_per_axis = of_medium;
+    }
     settings.edge_refinement = camera.edge_refinement;
     settings.cells = input.shot.output.cell_layers;
     settings.layers = input.plan.needed;
