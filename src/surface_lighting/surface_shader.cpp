@@ -103,19 +103,27 @@ struct SurfaceShader::GlossyLobes {
     GlossyLobes& operator=(const GlossyLobes&) = delete;
 };
 
-// Samples one direction of those lobes and adds what the medium emits and scatters along it.
+// Samples one direction of those lobes and adds what the medium emits and scatters along it. Small flames are rarely
+// met so: a line toward the fire finds its emission, too, and the balance heuristic weights both.
 void SurfaceShader::reflect_medium(const SurfacePoint& point, const dvec3& toward_viewer, const GlossyLobes& lobes,
                                    Rng& rng, Rng& ray_rng, CellSum& light) const {
+    const DirectLight& direct = input_.paths.direct();
+    const PathVertex vertex(point, lobes.bsdf, -toward_viewer);
+    const float lines = has_wide_lobes(point.material) ? direct.fire_lines_on_surface(vertex) : 0.0f;
+    if (lines > 0.0f)
+        light.at(Cell::SV) += direct.from_fire(vertex, lines, ray_rng);
     const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
     const std::optional<BsdfSample> drawn = lobes.bsdf.sample(toward_viewer, {x, y, z});
     if (!drawn || point.leaks(toward_viewer, drawn->wi))
         return;
     const float of_rays = drawn->delta ? 1.0f : float(lobes.split.of_rays(drawn->wi));
     Rgb weight = drawn->weight;
-    RaySegment segment = input_.paths.direct().segment_along(point.leaving(drawn->wi));
+    RaySegment segment = direct.segment_along(point.leaving(drawn->wi));
     for (int panes = 0;; ++panes) {
         RaySum seen = medium_.look(segment.ray, segment.end, ray_rng);
         seen.cells.at(Cell::MM) *= of_rays;
+        if (panes == 0 && !drawn->delta && seen.cells.at(Cell::V) != Rgb(0.0f))
+            seen.cells.at(Cell::V) *= direct.weight_of_sample(lines, segment.ray, drawn->pdf);
         light.at(panes == 0 ? Cell::SV : Cell::SS) += weight * seen.cells.at(Cell::V);
         light.at(panes == 0 ? Cell::SM : Cell::SS) += weight * scattered_by_medium(seen.cells);
         if (!samples_through_panes() || !segment.point || seen.depth > kOpaqueDepth)
@@ -123,7 +131,7 @@ void SurfaceShader::reflect_medium(const SurfacePoint& point, const dvec3& towar
         weight *= std::exp(-seen.depth) * Panes::straight_on(*segment.point, segment.ray.direction);
         if (weight == Rgb(0.0f))
             return;
-        segment = input_.paths.direct().segment_along(segment.point->leaving(segment.ray.direction));
+        segment = direct.segment_along(segment.point->leaving(segment.ray.direction));
     }
 }
 
