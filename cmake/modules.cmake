@@ -15,6 +15,8 @@ target_compile_definitions(brisance_options INTERFACE GLM_FORCE_XYZW_ONLY)
 if(BRISANCE_SANITIZE)
     target_compile_options(brisance_options INTERFACE -fsanitize=${BRISANCE_SANITIZE} -fno-omit-frame-pointer)
     target_link_options(brisance_options INTERFACE -fsanitize=${BRISANCE_SANITIZE})
+    # The sanitizers' own dlopen knows no run path but the kind that the whole program inherits.
+    target_link_options(brisance_options INTERFACE -Wl,--disable-new-dtags)
 endif()
 # The modules whose readers are fuzzed. The others are linked for what the target `shot` knows of them, and would take
 # most of the time of that build with their templates optimised and instrumented.

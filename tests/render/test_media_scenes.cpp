@@ -33,13 +33,19 @@ using testing::Target;
 constexpr int kWidth = 32, kHeight = 18;
 constexpr double kStandardErrors = 3.0;
 
-Shot read(const MediaScene& scene, std::vector<std::string> more) {
-    more.insert(more.end(), scene.more.begin(), scene.more.end());
-    more.insert(more.end(), {"camera.width=" + std::to_string(kWidth), "camera.height=" + std::to_string(kHeight),
-                             "camera.samples_per_axis=4", "camera.edge_refinement=4", "lighting.error=0.02",
-                             "virtual_lights.count=1500", "virtual_lights.photons=200000", "output.layers.cells=true"});
+Shot read(const MediaScene& scene, const std::vector<std::string>& more) {
+    std::vector<std::string> set = {"camera.width=" + std::to_string(kWidth),
+                                    "camera.height=" + std::to_string(kHeight),
+                                    "camera.samples_per_axis=4",
+                                    "camera.edge_refinement=4",
+                                    "lighting.error=0.02",
+                                    "virtual_lights.count=1500",
+                                    "virtual_lights.photons=200000",
+                                    "output.layers.cells=true"};
+    set.insert(set.end(), scene.more.begin(), scene.more.end());
+    set.insert(set.end(), more.begin(), more.end());
     return read_shot(std::filesystem::path(BRISANCE_SHOTS) / "media" / (std::string(scene.name) + ".json"),
-                     {"draft", more});
+                     {"draft", set});
 }
 
 std::filesystem::path volume_of(const Shot& shot) {
