@@ -209,13 +209,10 @@ double GridInfo::voxel_volume() const {
     return std::abs(glm::determinant(dmat3(world_from_index)));
 }
 
-VdbReader::VdbReader(const std::filesystem::path& file) : file_(file), session_(std::make_unique<Session>(file)) {}
+VdbReader::VdbReader(const std::filesystem::path& file)
+    : file_(file), session_(std::make_unique<Session>(file)), grids_(session_->grids()) {}
 
 VdbReader::~VdbReader() = default;
-
-const std::vector<GridInfo>& VdbReader::grids() const {
-    return session_->grids();
-}
 
 // One damaged grid does not hide the others.
 void VdbReader::start_again_if_ended() {
@@ -226,7 +223,7 @@ void VdbReader::start_again_if_ended() {
 BlockGrid VdbReader::read(const std::string& name, int index, std::uint64_t memory_limit_bytes) {
     start_again_if_ended();
     const std::size_t k = session_->find(name, index);
-    const GridInfo& info = grids()[k];
+    const GridInfo& info = session_->grids()[k];
     if (!info.usable)
         throw Error(ExitCode::BadData, fmt::format("{} {}", session_->where(k), info.why_unusable));
     const ReceivedGrid grid = session_->load(k, memory_limit_bytes);

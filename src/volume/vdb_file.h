@@ -65,8 +65,8 @@ public:
     explicit VdbReader(const std::filesystem::path& file);
     ~VdbReader();
 
-    // Without voxels, in the order of the file.
-    const std::vector<GridInfo>& grids() const;
+    // Without voxels, in the order of the file; as long as the reader lives.
+    const std::vector<GridInfo>& grids() const { return grids_; }
 
     // One grid by name and index. Throws Error BadData when it is absent (naming those that are there), unusable, has a
     // singular or frustum transform, an absurd bounding box, or would need more than `memory_limit_bytes`.
@@ -81,6 +81,7 @@ private:
 
     std::filesystem::path file_;
     std::unique_ptr<Session> session_;
+    std::vector<GridInfo> grids_;  // apart from the session, which ends with its child
 };
 
 // The same for a single question.
