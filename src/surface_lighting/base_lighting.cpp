@@ -82,11 +82,22 @@ Rgb relative_to_white(const Bsdf& base, const SurfacePoint& at, const dvec3& tow
 // What the samples of a receiver found together.
 struct BaseLighting::Together {
     std::array<Seen, kLights> seen{};
+    std::uint32_t pixel = 0;
     bool tried = false;
+
+    // Whether both see all of each light, or both nothing of it.
+    bool agrees(const Together& other) const {
+        for (int light = 0; light < kLights; ++light) {
+            const Seen own = seen[light], there = other.seen[light];
+            if (own != Seen::NoLight && there != Seen::NoLight && (own != there || own == Seen::Part))
+                return false;
+        }
+        return true;
+    }
 };
 
 BaseLighting::BaseLighting(const MediumLighting& medium, const Panes& panes, bool through_panes, int width)
-    : panes_(panes), through_panes_(through_panes), width_(width) {
+    : panes_(panes), through_panes_(through_panes), width_(static_cast<std::uint32_t>(width)) {
     const VisibilityRatios fire = medium.fire_visibility(), smoke = medium.smoke_visibility();
     ratios_ = {fire[0], fire[1], smoke[0], smoke[1]};
 }
@@ -127,15 +138,31 @@ BaseLighting::Seen BaseLighting::see_together(int light, const SurfaceReceiver& 
     return arrived == all ? Seen::All : (arrived == 0 ? Seen::Nothing : Seen::Part);
 }
 
-bool BaseLighting::light_together(const SurfaceReceiver& receiver, std::span<const std::uint32_t> samples,
-                                  std::span<const BasePoint> points, std::span<BaseLight> out,
-                                  std::array<Seen, kLights>& seen) const {
+BaseLighting::Together BaseLighting::light_together(const SurfaceReceiver& receiver,
+                                                    std::span<const std::uint32_t> samples,
+                                                    std::span<const BasePoint> points, std::span<BaseLight> out) const {
+    Together found{{}, points[samples[0]].pixel, false};
     if (samples.size() < kFewSamples || !std::ranges::all_of(samples, [&](auto i) { return points[i].surface; }))
-        return false;
-    Rng rng(kTogether, points[samples[0]].pixel, points[samples[0]].number);
+        return found;
+    Rng rng(kTogether, found.pixel, points[samples[0]].number);
     for (int light = 0; light < kLights; ++light)
-        seen[light] = see_together(light, receiver, samples, points, rng, out);
-    return true;
+        found.seen[light] = see_together(light, receiver, samples, points, rng, out);
+    found.tried = true;
+    return found;
+}
+
+// Whether nothing is hidden in part here or beside, in the row of pixels.
+bool BaseLighting::settled(std::span<const Together> all, std::size_t r) const {
+    const auto beside = [&](std::size_t other) {
+        const std::uint32_t a = all[r].pixel, b = all[other].pixel;
+        return a / width_ == b / width_ && (a > b ? a - b : b - a) <= kPixelsAside;
+    };
+    bool sure = all[r].tried && all[r].agrees(all[r]);
+    for (std::size_t other = r; sure && other-- > 0 && beside(other);)
+        sure = all[r].agrees(all[other]);
+    for (std::size_t other = r + 1; sure && other < all.size() && beside(other); ++other)
+        sure = all[r].agrees(all[other]);
+    return sure;
 }
 
 BaseLighting::Shares BaseLighting::measured(const VisibilityRatio& ratio, const BasePoint& p, Rng& rng) const {
@@ -184,37 +211,12 @@ std::vector<BaseLight> BaseLighting::light(std::span<const BasePoint> points, co
     const SamplesOfReceivers samples(receivers);
     std::vector<Together> together(receivers.count());
     parallel_for(
-        together.size(),
-        [&](std::size_t r) {
-            together[r].tried = light_together(receivers[r], samples.of(r), points, out, together[r].seen);
-        },
+        together.size(), [&](std::size_t r) { together[r] = light_together(receivers[r], samples.of(r), points, out); },
         kReceiversAtOnce);
-    const auto pixel = [&](std::size_t r) { return points[samples.of(r)[0]].pixel; };
-    const auto beside = [&](std::size_t r, std::size_t other) {
-        const std::uint32_t a = pixel(r), b = pixel(other);
-        return a / width_ == b / width_ && (a > b ? a - b : b - a) <= kPixelsAside;
-    };
-    // Whether both see all of each light, or both nothing of it.
-    const auto agree = [&](std::size_t r, std::size_t other) {
-        for (int light = 0; light < kLights; ++light) {
-            const Seen own = together[r].seen[light], there = together[other].seen[light];
-            if (own != Seen::NoLight && there != Seen::NoLight && (own != there || own == Seen::Part))
-                return false;
-        }
-        return true;
-    };
-    const auto settled = [&](std::size_t r) {
-        bool sure = together[r].tried && agree(r, r);
-        for (std::size_t other = r; sure && other-- > 0 && beside(r, other);)
-            sure = agree(r, other);
-        for (std::size_t other = r + 1; sure && other < together.size() && beside(r, other); ++other)
-            sure = agree(r, other);
-        return sure;
-    };
     parallel_for(
         together.size(),
         [&](std::size_t r) {
-            if (settled(r))
+            if (settled(together, r))
                 return;
             for (const std::uint32_t i : samples.of(r))
                 out[i] = light_alone(points[i], receivers[r]);

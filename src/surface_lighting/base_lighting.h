@@ -10,6 +10,7 @@
 // (1 - f)^n, so that the mean is wrong by at most 1 / (e n). n is 144 for pixels of 16 samples.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -52,9 +53,9 @@ private:
         Rgb clear{0.0f}, through_panes{0.0f};  // of a white Lambert surface's reflected light
     };
 
-    bool light_together(const SurfaceReceiver& receiver, std::span<const std::uint32_t> samples,
-                        std::span<const BasePoint> points, std::span<BaseLight> out,
-                        std::array<Seen, kLights>& seen) const;
+    Together light_together(const SurfaceReceiver& receiver, std::span<const std::uint32_t> samples,
+                            std::span<const BasePoint> points, std::span<BaseLight> out) const;
+    bool settled(std::span<const Together> all, std::size_t receiver) const;
     Seen see_together(int light, const SurfaceReceiver& receiver, std::span<const std::uint32_t> samples,
                       std::span<const BasePoint> points, Rng& rng, std::span<BaseLight> out) const;
     BaseLight light_alone(const BasePoint& point, const SurfaceReceiver& receiver) const;
@@ -63,7 +64,7 @@ private:
 
     const Panes& panes_;
     bool through_panes_;
-    int width_;
+    std::uint32_t width_;
     std::array<const VisibilityRatio*, kLights> ratios_;
 };
 

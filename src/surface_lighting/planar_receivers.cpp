@@ -38,23 +38,33 @@ struct Plane {
     bool operator==(const Plane&) const = default;
 };
 
-// Coordinates on a plane, in voxels.
+// Coordinates on a plane, in voxels. The largest cells begin at the same places of the world wherever the medium's
+// local origin lies, which another frame's bounds may move.
 class PlaneFrame {
 public:
-    PlaneFrame(const Plane& plane, float voxel) : voxel_(voxel), normal_(glm::normalize(vec3(plane.normal))) {
+    PlaneFrame(const Plane& plane, const Medium& medium)
+        : voxel_(medium.spacing), normal_(glm::normalize(vec3(plane.normal))) {
         const vec3 a = glm::abs(normal_);
         const vec3 other = a.x <= a.y && a.x <= a.z ? vec3(1, 0, 0) : (a.y <= a.z ? vec3(0, 1, 0) : vec3(0, 0, 1));
         u_ = glm::normalize(glm::cross(normal_, other));
         v_ = glm::cross(normal_, u_);
-        origin_ = normal_ * ((float(plane.offset) + 0.5f - kOffsetShift) * kOffsetStep * voxel);
+        origin_ = normal_ * ((float(plane.offset) + 0.5f - kOffsetShift) * kOffsetStep * voxel_);
+        const dvec3 from_world = dmat3(medium.local_from_index) * dvec3(medium.reference_node) / double(voxel_);
+        const double side = std::ldexp(1.0, kCoarsest);
+        shift_ =
+            vec2(std::fmod(glm::dot(from_world, dvec3(u_)), side), std::fmod(glm::dot(from_world, dvec3(v_)), side));
     }
-    vec2 on_plane(const vec3& local) const { return vec2(glm::dot(local, u_), glm::dot(local, v_)) / voxel_; }
-    vec3 local(const vec2& p) const { return origin_ + voxel_ * (p.x * u_ + p.y * v_); }
+    vec2 on_plane(const vec3& local) const { return vec2(glm::dot(local, u_), glm::dot(local, v_)) / voxel_ + shift_; }
+    vec3 local(const vec2& p) const {
+        const vec2 q = p - shift_;
+        return origin_ + voxel_ * (q.x * u_ + q.y * v_);
+    }
     const vec3& normal() const { return normal_; }
 
 private:
     float voxel_;
     vec3 normal_, u_, v_, origin_;
+    vec2 shift_;
 };
 
 // All four of a receiver's lights.
@@ -120,7 +130,7 @@ public:
              const GatherReceivers& gather)
         : bounds_(local_bounds(medium)),
           voxel_(medium.spacing),
-          frame_(plane, medium.spacing),
+          frame_(plane, medium),
           receivers_(receivers),
           gather_(gather) {}
 

@@ -122,6 +122,23 @@ TEST(PlanarReceivers, KeepAnEdgeOfTheLight) {
     }
 }
 
+// The next frame of a growing cloud may have its local origin elsewhere; a floor that did not change must not flicker.
+TEST(PlanarReceivers, AreTheSameWhereverTheLocalOriginLies) {
+    const Medium medium = small_ball();
+    Medium moved = medium;
+    moved.reference_node += ivec3(24, -40, 16);
+    const vec3 offset = medium.local_from_index * vec3(moved.reference_node - medium.reference_node);
+    const PointLight light{{0.3f, -0.2f, 0.1f}}, moved_light{light.at - offset};
+    std::vector<SurfaceReceiver> floor = square(200, 0.04f, {-4.0f, -4.0f, -2.5f}, {1, 0, 0}, {0, 1, 0});
+    std::vector<SurfaceReceiver> moved_floor = floor;
+    for (SurfaceReceiver& r : moved_floor)
+        r.local -= offset;
+    light_planar_receivers(medium, floor, light.gatherer());
+    light_planar_receivers(moved, moved_floor, moved_light.gatherer());
+    for (std::size_t i = 0; i < floor.size(); ++i)
+        EXPECT_NEAR(moved_floor[i].fire[0].x, floor[i].fire[0].x, 1e-4f * floor[i].fire[0].x);
+}
+
 TEST(PlanarReceivers, FarAwayOrWithoutAPlaceAreGatheredThemselves) {
     const Medium medium = small_ball();
     const PointLight light{{0.0f, 0.0f, 0.5f}};
