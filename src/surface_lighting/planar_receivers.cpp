@@ -169,6 +169,7 @@ private:
             sorted[{std::int32_t(p.x), std::int32_t(p.y)}].push_back(r);
         }
         std::vector<PlaneCell> cells;
+        cells.reserve(sorted.size());
         for (auto& [at, inside] : sorted)
             cells.push_back({kCoarsest, at.first, at.second, std::move(inside)});
         return cells;
@@ -289,6 +290,7 @@ void light_planar_receivers(const Medium& medium, std::vector<SurfaceReceiver>& 
         alone.insert(alone.end(), rest.begin(), rest.end());
     }
     std::vector<SurfaceReceiver> at;
+    at.reserve(alone.size());
     for (const std::uint32_t r : alone)
         at.push_back(receivers[r]);
     gather(at);
