@@ -63,7 +63,8 @@ double mean_of(const Image& image, const std::string& layer) {
     double sum = 0.0;
     for (std::size_t i = 0; i < l.pixels.size(); ++i)
         sum += i % l.channels.size() < 3 ? l.pixels[i] : 0.0f;
-    return sum / double(l.pixels.size() / l.channels.size());
+    const std::size_t pixels = l.pixels.size() / l.channels.size();
+    return sum / double(pixels);
 }
 
 // Some of the picture's pixels.
