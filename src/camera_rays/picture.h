@@ -50,8 +50,8 @@ struct SurfaceSample {
     SurfaceHit hit;
 };
 
-// Light that surfaces scatter toward the camera: fills the row S of `light`, one entry per sample. A call has whole rows
-// of a picture; which of them go together changes the result by no more than what interpolation on planes may.
+// Light that surfaces scatter toward the camera: fills the row S of `light`, one entry per sample. A call has whole
+// rows of a picture; which of them go together changes the result by no more than what interpolation on planes may.
 using LightSurfaces = std::function<void(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light)>;
 
 // The number of samples along a pixel's side that keeps neighbouring rays within a fifth of a voxel where the medium is
