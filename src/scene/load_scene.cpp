@@ -76,6 +76,7 @@ void add_file(const SceneFile& file, const std::filesystem::path& folder, double
     std::vector<LightSettings> lights = read_lights(opened.gltf, opened.nodes, progress);
     if (scene.meshes.size() == meshes && cameras.empty() && lights.empty())
         progress.warning("empty-file", opened.gltf.path.string() + ": no surface, camera or light of it can be used");
+    scene.animated = scene.animated || !opened.gltf.model.animations.empty();
     append(scene.cameras, std::move(cameras));
     append(scene.lights, std::move(lights));
 }
