@@ -8,7 +8,7 @@
 #include "emitters/surroundings.h"
 #include "film/write_image.h"
 #include "forecast/plan.h"
-#include "render/open_shutter.h"
+#include "render/shutter/open_shutter.h"
 #include "shot/shot.h"
 #include "statistics/statistics.h"
 

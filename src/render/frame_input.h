@@ -7,7 +7,7 @@
 #include "core/progress.h"
 #include "emitters/surroundings.h"
 #include "medium/medium.h"
-#include "render/animation.h"
+#include "render/shutter/animation.h"
 #include "shot/shot.h"
 #include "statistics/statistics.h"
 

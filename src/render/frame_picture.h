@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "camera_rays/picture.h"
-#include "render/moment_lights.h"
+#include "render/shutter/moment_lights.h"
 #include "surface_lighting/path_lengths.h"
 
 namespace brisance {

@@ -15,7 +15,7 @@
 #include "render/choose_method.h"
 #include "render/draw.h"
 #include "render/frame_input.h"
-#include "render/open_shutter.h"
+#include "render/shutter/open_shutter.h"
 #include "render/time_budget.h"
 
 namespace brisance {

@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "reference/trace_picture.h"
 #include "render/frame_input.h"
-#include "render/open_shutter.h"
+#include "render/shutter/open_shutter.h"
 
 namespace brisance {
 

@@ -1,4 +1,4 @@
-#include "render/open_shutter.h"
+#include "render/shutter/open_shutter.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "camera/shutter.h"
 #include "core/available_memory.h"
-#include "render/screen_movement.h"
+#include "render/shutter/screen_movement.h"
 
 namespace brisance {
 

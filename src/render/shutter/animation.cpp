@@ -1,4 +1,4 @@
-#include "render/animation.h"
+#include "render/shutter/animation.h"
 
 #include <algorithm>
 

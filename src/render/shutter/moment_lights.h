@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "render/many_lights.h"
-#include "render/open_shutter.h"
+#include "render/shutter/open_shutter.h"
 
 namespace brisance {
 

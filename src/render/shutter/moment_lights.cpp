@@ -1,4 +1,4 @@
-#include "render/moment_lights.h"
+#include "render/shutter/moment_lights.h"
 
 #include "medium/similar_medium.h"
 

@@ -13,7 +13,7 @@
 #include "core/progress.h"
 #include "motion/moving_medium.h"
 #include "reference/moment_tracers.h"
-#include "render/animation.h"
+#include "render/shutter/animation.h"
 
 namespace brisance {
 

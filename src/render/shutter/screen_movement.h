@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "render/open_shutter.h"
+#include "render/shutter/open_shutter.h"
 
 namespace brisance {
 

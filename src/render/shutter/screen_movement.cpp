@@ -1,4 +1,4 @@
-#include "render/screen_movement.h"
+#include "render/shutter/screen_movement.h"
 
 #include <algorithm>
 #include <optional>
