@@ -45,6 +45,10 @@ public:
     std::size_t near_count() const { return near_.size(); }
     const std::vector<PointEmitter>& points() const { return points_; }
 
+    // The lights at infinity, and all others as one: equal parts of the interval from which sample() chooses. Evenly
+    // spaced choices, as many, take one of each.
+    std::size_t choices() const { return far_.size() + (tree_.empty() ? 0 : 1); }
+
     // Samples one light, chosen for the point, and a point on it. None if it contributes nothing.
     std::optional<EmitterSample> sample(const LitPoint& point, Rng& rng) const {
         return sample(point, rng.next_double(), rng);

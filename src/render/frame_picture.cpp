@@ -63,8 +63,7 @@ FramePicture::FramePicture(const DrawInput& input, const ManyLights& lights, con
 
 double FramePicture::samples_per_pixel() const {
     const ScatteringMethod* const method = input_.plan.scattering_method;
-    return double(settings_.samples_per_axis) * settings_.samples_per_axis *
-           (method ? method->passes(input_.shot.scattering_methods) : 1) *
+    return double(rays_of_pixel()) * (method ? method->passes(input_.shot.scattering_methods) : 1) *
            double(stretch_ ? stretch_->shutter.moments().size() : 1);
 }
 
@@ -108,7 +107,7 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
         return render_picture(lights.field(), camera, settings_, progress_);
     const SurfaceShader shader({input_.plan.needed, lights.field(), *lights.paths(), lights_.medium().lighting(),
                                 lights_.virtual_lights(), estimator, input_.plan.emitters_by_rays, settings_.parts,
-                                camera.settings().width, lengths_ ? &*lengths_ : nullptr});
+                                camera.settings().width, rays_of_pixel(), lengths_ ? &*lengths_ : nullptr});
     return render_picture(lights.field(), camera, settings_, progress_,
                           [&](const auto& samples, auto& light) { shader.shade(samples, light); });
 }

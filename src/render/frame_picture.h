@@ -34,6 +34,7 @@ private:
     // Pictures of all moments, averaged: draw(lights, camera, surroundings, number of the moment).
     template <class Draw>
     Image mean_of_moments(const Draw& draw);
+    int rays_of_pixel() const { return settings_.samples_per_axis * settings_.samples_per_axis; }  // at one moment
     Image pass(const InScattering* estimator, int number);
     Image picture(const InScattering* estimator, int number, const MomentLights& lights, const Camera& camera,
                   const Surroundings* surroundings);

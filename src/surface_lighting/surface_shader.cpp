@@ -41,11 +41,29 @@ struct SurfaceShader::ShadedPoint {
     int vertices;
 };
 
-Rgb SurfaceShader::from_emitters(const PathVertex& vertex, Rng& rng) const {
+// The samples of a pixel divide the emitters among themselves: a sequence of evenly spread choices runs through them
+// (golden ratio), shifted at random from pixel to pixel. A sample makes several choices where a pixel has fewer samples
+// than there are kinds of light to choose from.
+Rgb SurfaceShader::from_chosen_emitters(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng) const {
+    constexpr double kGolden = 0.6180339887498949;
+    const auto samples = static_cast<std::uint64_t>(input_.samples);
+    const std::uint64_t number = (sample.number >> 32) * samples + (sample.number & 0xffffffffu);
+    const std::uint64_t choices = (surroundings_.emitters().choices() + samples - 1) / samples;
+    const double start = Rng(stream_of("surface_lighting/emitters"), sample.pixel).next_double() +
+                         std::fmod(double(number) * kGolden, 1.0);
+    Rgb sum(0.0f);
+    for (std::uint64_t k = 0; k < choices; ++k) {
+        const double at = start + double(k) / double(choices);
+        sum += input_.paths.direct().from_emitters(vertex, at - std::floor(at), rng);
+    }
+    return choices > 0 ? sum / float(choices) : sum;
+}
+
+Rgb SurfaceShader::from_emitters(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng) const {
     const DirectLight& direct = input_.paths.direct();
     Rgb sum(0.0f);
     if (!vertex.only_delta())
-        sum += direct.from_emitters(vertex, rng);
+        sum += from_chosen_emitters(sample, vertex, rng);
     const std::optional<PathVertex::Sample> turn = vertex.sample(rng);
     if (!turn)
         return sum;
@@ -165,7 +183,7 @@ void SurfaceShader::shade_point(const SurfaceSample& sample, const BaseLight& ba
     reflect_scattered(point, toward_viewer, rng, at.ray_rng, out);
     const PathVertex vertex(point, at.seen.arriving);
     if (input_.needed.contains(Cell::SA))
-        out.at(Cell::SA) += from_emitters(vertex, rng);
+        out.at(Cell::SA) += from_emitters(sample, vertex, rng);
     if (!input_.needed.contains(Cell::SS))
         return;
     if (input_.virtual_lights) {

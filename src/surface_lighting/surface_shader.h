@@ -39,6 +39,7 @@ struct SurfaceLightingInput {
     bool emitters_by_rays = false;                    // MA is estimated along rays (medium_along_ray.h)
     int parts = 2;                                    // that of PictureSettings
     int width = 0;                                    // of the picture, in pixels
+    int samples = 1;                                  // rays of a pixel
     PathLengths* lengths = nullptr;                   // counts the paths of virtual lights; null: not counted
 };
 
@@ -56,7 +57,8 @@ private:
     std::vector<BaseLight> light_bases(const std::vector<SurfaceSample>& samples,
                                        const std::vector<ShadedPoint>& points) const;
     void shade_point(const SurfaceSample& sample, const BaseLight& base, ShadedPoint& at, CellSum& light) const;
-    Rgb from_emitters(const PathVertex& vertex, Rng& rng) const;
+    Rgb from_emitters(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng) const;
+    Rgb from_chosen_emitters(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng) const;
     void reflect_scattered(const SurfacePoint& point, const dvec3& toward_viewer, Rng& rng, Rng& ray_rng,
                            CellSum& light) const;
     void reflect_medium(const SurfacePoint& point, const dvec3& toward_viewer, const GlossyLobes& lobes, Rng& rng,

@@ -65,8 +65,8 @@ float DirectLight::weight_of_sample(float fire_lines, const Ray& ray, double pdf
     return static_cast<float>(pdf / (fire_lines * fire_.pdf(ray) + pdf));
 }
 
-Rgb DirectLight::from_emitters(const PathVertex& vertex, Rng& rng) const {
-    const std::optional<EmitterSample> light = surroundings_->emitters().sample(vertex.lit(), rng);
+Rgb DirectLight::from_emitters(const PathVertex& vertex, double choice, Rng& rng) const {
+    const std::optional<EmitterSample> light = surroundings_->emitters().sample(vertex.lit(), choice, rng);
     if (!light)
         return Rgb(0.0f);
     const PathVertex::Value scattered = vertex.at(light->direction);

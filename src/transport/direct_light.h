@@ -45,7 +45,11 @@ public:
 
     // Radiance [W/(m^2 sr)] scattered from a point on one of the emitters, seen through the medium and weighted against
     // the direction that the vertex samples. There must be surroundings.
-    Rgb from_emitters(const PathVertex& vertex, Rng& rng) const;
+    Rgb from_emitters(const PathVertex& vertex, Rng& rng) const {
+        return from_emitters(vertex, rng.next_double(), rng);
+    }
+    // The same, where `choice` in [0, 1) chooses the emitter; it may come from a stratified sequence.
+    Rgb from_emitters(const PathVertex& vertex, double choice, Rng& rng) const;
     // Radiance [W/(m^2 sr)] that the surface at the segment's end, or the background, emits, weighted against
     // from_emitters(). `pdf` and `delta`: of the direction; `from`: the vertex that sampled it, null: the camera.
     Rgb at_end(const RaySegment& segment, double pdf, bool delta, const PathVertex* from) const;
