@@ -94,7 +94,8 @@ Skin GltfSkins::read(int index) const {
         checked(file_, file_.model.nodes, source.joints[j], (skin.name + ": node").c_str());
         const auto found = placed_.find(source.joints[j]);
         if (found == placed_.end())
-            file_.reject(fmt::format("{}: its joint, node {}, is not in the scene", skin.name, source.joints[j]));
+            file_.reject(fmt::format("{}: its joint, node {}, is not in the scene", skin.name, source.joints[j]),
+                         "export the joints with the mesh");
         const PlacedNode& node = nodes_[static_cast<std::size_t>(found->second)];
         skin.joints.push_back(Affine::local(node.world_from_node * inverse_bind[j], origin_));
         skin.moves = skin.moves || node.moves;
