@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "core/vec.h"
 
@@ -22,6 +23,17 @@ struct CameraSettings {
     int edge_refinement = 4;   // factor along a side where light has edges, with surfaces; 1: none
     PixelFilter filter = PixelFilter::Box;
     float filter_width_pixels = 1.0f;  // full width of the box, or four standard deviations of the Gaussian
+};
+
+enum class ShutterPosition { Start, Centre, End };
+
+// Motion blur: for how long the shutter is open, and when.
+struct ShutterSettings {
+    double length = 0.5;                                 // [frames]; 0: no motion blur
+    ShutterPosition position = ShutterPosition::Centre;  // of the frame in that time
+    std::vector<vec2> curve;  // openness over the shutter's time from 0 to 1, linear between; empty: open throughout
+    int most_moments = 16;    // at which a frame is drawn, however fast it moves
+    int lighting_times = 1;   // moments for which light is computed; the others take the nearest
 };
 
 }  // namespace brisance

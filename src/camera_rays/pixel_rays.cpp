@@ -32,13 +32,13 @@ PixelRays::PixelRays(const SourceField& field, const Camera& camera, const Pictu
     : field_(field),
       camera_(camera),
       settings_(settings),
-      samples_(pixel_samples(camera.settings(), settings.samples_per_axis)),
+      samples_(pixel_samples(camera.settings(), settings.samples_per_axis, settings.sample_shift)),
       beyond_(0.0) {
     const bool shares = settings.surroundings && !settings.light_rays && settings.medium_samples_per_axis > 0 &&
                         settings.medium_samples_per_axis < settings.samples_per_axis;
     if (!shares)
         return;
-    medium_samples_ = pixel_samples(camera.settings(), settings.medium_samples_per_axis);
+    medium_samples_ = pixel_samples(camera.settings(), settings.medium_samples_per_axis, settings.sample_shift);
     if (field.bricks().empty())
         return;
     const LocalBounds bounds = local_bounds(field.medium());

@@ -10,7 +10,6 @@
 
 #include "camera/pixel_filter.h"
 #include "core/parallel.h"
-#include "reference/path_tracer.h"
 
 namespace brisance {
 
@@ -88,8 +87,8 @@ DrawEstimate estimate_of(const dvec3& image, const dvec3& sum, const dvec3& squa
 
 class Sampler {
 public:
-    Sampler(const std::vector<Target>& targets, const PathTracer& tracer, const Camera& camera, int seed, int samples)
-        : targets_(targets), tracer_(tracer), camera_(camera), seed_(seed), samples_(samples) {}
+    Sampler(const std::vector<Target>& targets, const MomentTracers& tracers, int seed, int samples)
+        : targets_(targets), tracers_(tracers), seed_(seed), samples_(samples) {}
 
     AllEstimates sample(std::size_t number, const PixelSurvey::Draw& draw) {
         std::array<dvec3, kMostTargets> image{}, sum{}, squares{};
@@ -123,15 +122,16 @@ private:
 
     // Each sample is independent of every other: there is no sequence and no stratification.
     PathSum trace(std::size_t number, int k, std::size_t pixel) {
-        const CameraSettings& s = camera_.settings();
+        const CameraSettings& s = tracers_.camera(0).settings();
         Rng rng(Stream::Certificate, std::uint64_t(seed_) << 32 | number, std::uint64_t(k) + 1);
         const double x = rng.next_double() - 0.5, y = rng.next_double() - 0.5, position = rng.next_double();
         const double column = double(pixel % s.width) + 0.5 + x * s.filter_width_pixels;
         const std::size_t rows_above = pixel / s.width;
         const double row = double(rows_above) + 0.5 + y * s.filter_width_pixels;
+        const std::size_t moment = tracers_.count() > 1 ? tracers_.at(rng.next_double()) : 0;
         PathSum path{};
         PathStatistics ignored;
-        tracer_.trace(camera_.ray(column, row), position, rng, path, ignored);
+        tracers_.tracer(moment).trace(tracers_.camera(moment).ray(column, row), position, rng, path, ignored);
         if (!std::isfinite(sum_of(dvec3(std::accumulate(path.begin(), path.end(), Rgb(0.0f)))))) {
             ++not_finite_;
             return {};
@@ -144,8 +144,7 @@ private:
     }
 
     const std::vector<Target>& targets_;
-    const PathTracer& tracer_;
-    const Camera& camera_;
+    const MomentTracers& tracers_;
     int seed_, samples_;
     std::atomic<std::uint64_t> not_finite_ = 0;
 };
@@ -286,8 +285,14 @@ void warn(const Certificate& c, Progress& progress) {
 
 }  // namespace
 
-Certificate certify(const Image& image, const CertifiedScene& scene, const PathTracer& tracer, const SurveySize& size,
-                    Progress& progress) {
+MomentTracers tracers_of(const CertifiedScene& scene) {
+    const Moment still{&scene.medium, scene.surroundings, &scene.camera};
+    const std::span<const Moment> moments = scene.moments.empty() ? std::span(&still, 1) : scene.moments;
+    return {moments, scene.tracing, scene.bounces};
+}
+
+Certificate certify(const Image& image, const CertifiedScene& scene, const MomentTracers& tracers,
+                    const SurveySize& size, Progress& progress) {
     const std::vector<Target> targets = targets_of(image, scene.surroundings);
     const Population population(image, targets);
     const PixelSurvey survey(population.sizes(), image.width, size.draws, size.seed);
@@ -298,7 +303,7 @@ Certificate certify(const Image& image, const CertifiedScene& scene, const PathT
     out.pixels = draws.size();
     out.samples_per_pixel = draws.empty() ? 0 : std::max<std::uint64_t>(2, size.samples / out.pixels);
     out.samples = out.pixels * out.samples_per_pixel;
-    Sampler sampler(targets, tracer, scene.camera, size.seed, static_cast<int>(out.samples_per_pixel));
+    Sampler sampler(targets, tracers, size.seed, static_cast<int>(out.samples_per_pixel));
     std::vector<AllEstimates> estimates(draws.size());
     std::atomic<std::size_t> done = 0;
     parallel_for(draws.size(), [&](std::size_t i) {
@@ -317,9 +322,8 @@ Certificate certify(const Image& image, const CertifiedScene& scene, const PathT
 Certificate certify(const Image& image, const CertifiedScene& scene, const CertifySettings& settings,
                     Progress& progress) {
     progress.stage("certificate");
-    const PathTracer tracer(scene.medium, scene.tracing, scene.bounces, scene.surroundings);
     Certificate out =
-        certify(image, scene, tracer,
+        certify(image, scene, tracers_of(scene),
                 {draws_of(settings.samples), static_cast<std::size_t>(settings.samples), settings.seed}, progress);
     warn(out, progress);
     return out;

@@ -17,7 +17,7 @@
 #include "core/progress.h"
 #include "emitters/surroundings.h"
 #include "film/image.h"
-#include "reference/path_tracer.h"
+#include "reference/moment_tracers.h"
 #include "tracking/settings.h"
 
 namespace brisance {
@@ -28,8 +28,9 @@ struct CertifiedScene {
     const Camera& camera;
     const Surroundings* surroundings = nullptr;  // null: none
     TracingSettings tracing;
-    int bounces = -1;    // the most scatterings of a path; -1: all
-    bool shines = true;  // there is fire, or there are emitters
+    int bounces = -1;                      // the most scatterings of a path; -1: all
+    bool shines = true;                    // there is fire, or there are emitters
+    std::span<const Moment> moments = {};  // of the shutter; empty: nothing moves
 };
 
 // The size of a survey, and the random numbers that it draws.
@@ -48,8 +49,10 @@ struct SurveySize {
 Certificate certify(const Image& image, const CertifiedScene& scene, const CertifySettings& settings,
                     Progress& progress);
 
-// The same by a survey of the given size, without warnings. `tracer` is of the scene.
-Certificate certify(const Image& image, const CertifiedScene& scene, const PathTracer& tracer, const SurveySize& size,
-                    Progress& progress);
+// The same by a survey of the given size, without warnings. `tracers` are of the scene.
+Certificate certify(const Image& image, const CertifiedScene& scene, const MomentTracers& tracers,
+                    const SurveySize& size, Progress& progress);
+
+MomentTracers tracers_of(const CertifiedScene& scene);
 
 }  // namespace brisance

@@ -32,7 +32,8 @@ enum class Stream : std::uint32_t {
     SpecularPhotons,
     SpecularPhotonRoulette,
     VolumetricPhoton,
-    StoredTrack
+    StoredTrack,
+    PathMoment
 };
 
 // The stream of a module that names its own, apart from those above: FNV-1a (Fowler, Noll, Vo) of the name.

@@ -56,8 +56,8 @@ Sources open_sources(const MediumPart& part, const dmat4& world_from_target) {
             return std::nullopt;
         return source_grid(*g, part.half_voxel_shift, world_from_target);
     };
-    return {open(part.grids.density), open(part.grids.temperature), open(part.grids.flame), open(part.grids.colour),
-            part.settings};
+    return {open(part.grids.density), open(part.grids.temperature), open(part.grids.flame),
+            open(part.grids.colour),  open(part.grids.velocity),    part.settings};
 }
 
 void add_bricks(const Sources& sources, std::vector<ivec3>& bricks) {
@@ -103,6 +103,7 @@ void trim(Medium& medium, const BrickLattice& lattice, NodeFields& f) {
     move(f.source, medium.source);
     move(f.emission, medium.emission);
     move(f.albedo, medium.albedo_nodes);
+    move(f.velocity, medium.velocity);
     medium.albedo = f.uniform_albedo;
 }
 
@@ -148,7 +149,7 @@ vec3 Medium::local_of_world(const dvec3& p) const {
 
 std::uint64_t Medium::bytes() const {
     return lattice.bytes() + extinction.size() * sizeof(float) +
-           (source.size() + emission.size() + albedo_nodes.size()) * sizeof(Rgb);
+           (source.size() + emission.size() + albedo_nodes.size()) * sizeof(Rgb) + velocity.size() * sizeof(vec3);
 }
 
 // Light transport sums products of these in single precision.

@@ -30,6 +30,7 @@ struct MediumGrids {
     std::optional<BlockGrid> temperature;
     std::optional<BlockGrid> flame;
     std::optional<BlockGrid> colour;
+    std::optional<BlockGrid> velocity;  // of the world's axes [m per frame]; on any lattice
 };
 
 struct Medium {
@@ -45,6 +46,7 @@ struct Medium {
     std::vector<Rgb> source;        // per node, thermal source function (1 - albedo) L_e [W/(m^2 sr)]; empty: none
     std::vector<Rgb> emission;      // per node, emission coefficient [W/(m^3 sr)]; empty: none
     std::vector<Rgb> albedo_nodes;  // per node; empty: `albedo` everywhere
+    std::vector<vec3> velocity;     // per node [m per frame]; empty: nothing moves
     Rgb albedo{0.0f};
     float mean_cosine = 0.0f;
     float max_extinction = 0.0f;

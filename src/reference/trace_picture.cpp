@@ -5,10 +5,10 @@
 #include <cmath>
 #include <ctime>
 #include <fstream>
-#include <limits>
 #include <mutex>
 
 #include "camera/pixel_filter.h"
+#include "camera_rays/moment_mean.h"
 #include "camera_rays/picture.h"
 #include "camera_rays/source_field.h"
 #include "core/error.h"
@@ -16,6 +16,7 @@
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "film/whole_file.h"
+#include "reference/develop_film.h"
 
 namespace brisance {
 
@@ -23,7 +24,6 @@ namespace {
 
 constexpr int kRowsAtOnce = 32;    // between two looks at the clock
 constexpr int kPixelsAtOnce = 32;  // of a row, to a task
-const std::vector<std::string> kColour = {"R", "G", "B"};
 
 // Point k of a half in the three-dimensional sequence of Roberts (generalised golden ratio), shifted at random.
 struct SamplePoint {
@@ -55,14 +55,19 @@ Ray ray_at(const Camera& camera, std::size_t pixel, const SamplePoint& point) {
     return camera.ray(column + (point.x - 0.5) * size, row + (point.y - 0.5) * size);
 }
 
+std::vector<Moment> moments_of(const TracedScene& scene) {
+    if (scene.moments.empty())
+        return {{&scene.medium, scene.surroundings, &scene.camera}};
+    return {scene.moments.begin(), scene.moments.end()};
+}
+
 class Tracing {
 public:
     Tracing(const TracedScene& scene, const Checkpoint& checkpoint, Progress& progress)
         : settings_(scene.tracing),
-          camera_(scene.camera),
           checkpoint_(checkpoint),
           progress_(progress),
-          tracer_(scene.medium, scene.tracing, scene.bounces, scene.surroundings),
+          tracers_(moments_of(scene), scene.tracing, scene.bounces),
           film_(scene.camera.settings().width, scene.camera.settings().height, scene.output.bounce_layers,
                 scene.surroundings) {
         if (!checkpoint.file.empty() && std::filesystem::exists(checkpoint.file))
@@ -80,7 +85,7 @@ public:
     }
 
     const PathFilm& film() const { return film_; }
-    const PathTracer& tracer() const { return tracer_; }
+    std::uint64_t bytes() const { return tracers_.bytes(); }
     bool resumed() const { return restored_passes_ > 0; }
 
 private:
@@ -135,7 +140,9 @@ private:
 
     void trace_pixel(std::size_t pixel, int half, PathStatistics& statistics) {
         const std::uint64_t sample = 2 * film_.work.passes + half;
-        if (film_.add(pixel, half, trace_sample(tracer_, camera_, pixel, sample, statistics)))
+        const std::size_t moment = moment_of_sample(settings_.seed, pixel, sample, tracers_);
+        if (film_.add(pixel, half,
+                      trace_sample(tracers_.tracer(moment), tracers_.camera(moment), pixel, sample, statistics)))
             return;
         const std::lock_guard lock(mutex_);
         PathFilm::Work& w = film_.work;
@@ -166,15 +173,10 @@ private:
         since_save_ = Stopwatch();
     }
 
-public:
-    static double relative_standard_error(const PathFilm& film);
-
-private:
     const TracingSettings& settings_;
-    const Camera& camera_;
     const Checkpoint& checkpoint_;
     Progress& progress_;
-    PathTracer tracer_;
+    MomentTracers tracers_;
     PathFilm film_;
     std::uint64_t restored_passes_ = 0;
     double before_ = 0.0;
@@ -182,146 +184,22 @@ private:
     std::mutex mutex_;
 };
 
-Rgb beauty(const PathFilm& film, std::size_t pixel, int half) {
-    dvec3 sum(0.0);
-    for (int which = 0; which < film.order_sums(); ++which)
-        for (int c = 0; c < 3; ++c)
-            sum[c] += film.sum(pixel, half, which, c);
-    return Rgb(sum / double(std::max<std::uint64_t>(film.work.passes, 1)));
-}
-
-// The root of the summed squares of half the halves' difference, over that of their mean.
-double Tracing::relative_standard_error(const PathFilm& film) {
-    double noise = 0.0, norm = 0.0;
-    for (std::size_t p = 0; p < std::size_t(film.width()) * film.height(); ++p) {
-        const dvec3 a(beauty(film, p, 0)), b(beauty(film, p, 1));
-        noise += glm::dot(a - b, a - b) / 4.0;
-        norm += glm::dot(a + b, a + b) / 4.0;
-    }
-    return norm > 0.0 ? std::sqrt(noise / norm) : 0.0;
-}
-
-// The standard error of the picture's mean luminance over that mean. One pair of halves gives its order of magnitude.
-double relative_error_of_mean(const PathFilm& film) {
-    double a = 0.0, b = 0.0;
-    for (std::size_t p = 0; p < std::size_t(film.width()) * film.height(); ++p) {
-        a += luminance(beauty(film, p, 0));
-        b += luminance(beauty(film, p, 1));
-    }
-    return a + b > 0.0 ? std::abs(a - b) / (a + b) : 0.0;
-}
-
-// Writes the film's sums into the layers of pictures.
-class Developer {
-public:
-    Developer(const PathFilm& film, const Image& sampled, const CellSet& needed, const OutputSettings& output)
-        : film_(film), sampled_(sampled), needed_(needed), output_(output) {}
-
-    // half 0 or 1, or -1 for their mean.
-    Image picture(int half) const {
-        Image image;
-        image.width = film_.width();
-        image.height = film_.height();
-        Layer& colour = add(image, "", {"R", "G", "B", "A"});
-        const Layer& alpha = sampled_.layer("");
-        for (std::size_t p = 0; p < pixels(); ++p) {
-            const Rgb c = mean(p, half, 0, film_.order_sums());
-            float* out = &colour.pixels[4 * p];
-            out[0] = c.x, out[1] = c.y, out[2] = c.z, out[3] = alpha.pixels[4 * p + 3];
-        }
-        if (output_.cell_layers)
-            add_cells(image, half);
-        add_orders(image, half);
-        if (half < 0)
-            add_variance(image);
-        for (const char* name : {"Z", "albedo"})
-            image.layers.push_back(sampled_.layer(name));
-        return image;
-    }
-
-private:
-    std::size_t pixels() const { return std::size_t(film_.width()) * film_.height(); }
-
-    Layer& add(Image& image, const std::string& name, const std::vector<std::string>& channels) const {
-        image.layers.push_back({name, channels, true, std::vector<float>(pixels() * channels.size())});
-        return image.layers.back();
-    }
-
-    Rgb mean(std::size_t pixel, int half, int first, int last) const {
-        dvec3 sum(0.0);
-        for (int h = 0; h < 2; ++h)
-            for (int which = first; which < last && (half < 0 || half == h); ++which)
-                for (int c = 0; c < 3; ++c)
-                    sum[c] += film_.sum(pixel, h, which, c);
-        return Rgb(sum / (double(film_.work.passes) * (half < 0 ? 2.0 : 1.0)));
-    }
-
-    void fill(Image& image, const std::string& name, int half, int first, int last) const {
-        Layer& layer = add(image, name, kColour);
-        for (std::size_t p = 0; p < pixels(); ++p) {
-            const Rgb c = mean(p, half, first, last);
-            for (int k = 0; k < 3; ++k)
-                layer.pixels[3 * p + k] = c[k];
-        }
-    }
-
-    void add_cells(Image& image, int half) const {
-        if (film_.sums() > film_.order_sums()) {
-            for (int cell = 0; cell < kCells; ++cell)
-                if (needed_[cell])
-                    fill(image, kCellNames[cell], half, film_.order_sums() + cell, film_.order_sums() + cell + 1);
-            return;
-        }
-        fill(image, "V", half, 0, 1);
-        if (needed_.contains(Cell::MV))
-            fill(image, "MV", half, 1, 2);
-        if (needed_.contains(Cell::MM))
-            fill(image, "MM", half, 2, film_.order_sums());
-    }
-
-    void add_orders(Image& image, int half) const {
-        const bool once = needed_.contains(Cell::MV) || needed_.contains(Cell::SV) || needed_.contains(Cell::SA) ||
-                          needed_.contains(Cell::MA);
-        const bool twice = needed_.contains(Cell::MM) || needed_.contains(Cell::SS);
-        if (!output_.bounce_layers || !once)
-            return;
-        fill(image, "bounce1", half, 1, 2);
-        for (int order = 2; twice && order < kPathOrders; ++order) {
-            const bool last = order + 1 == kPathOrders;
-            fill(image, last ? "bounces_beyond" + std::to_string(order - 1) : "bounce" + std::to_string(order), half,
-                 order, order + 1);
-        }
-    }
-
-    void add_variance(Image& image) const {
-        Layer& layer = add(image, "variance", kColour);
-        constexpr double most = std::numeric_limits<float>::max();  // the square of a light of 1e20 is beyond it
-        const double n = 2.0 * film_.work.passes;
-        for (std::size_t p = 0; p < pixels(); ++p) {
-            const Rgb m = mean(p, -1, 0, film_.order_sums());
-            for (int c = 0; c < 3; ++c)
-                layer.pixels[3 * p + c] = static_cast<float>(
-                    std::clamp((film_.square(p, c) / n - double(m[c]) * m[c]) / std::max(n - 1.0, 1.0), 0.0, most));
-        }
-    }
-
-    const PathFilm& film_;
-    const Image& sampled_;
-    const CellSet& needed_;
-    const OutputSettings& output_;
-};
-
 // Alpha, depth and albedo are not random, so a few of the camera's marches give them.
-Image sampled_layers(const Medium& medium, const Surroundings* surroundings, const Camera& camera) {
+Image sampled_layers(const TracedScene& scene) {
     constexpr int kEnough = 2;  // rays along a pixel's side
-    const SourceField field(medium);
-    PictureSettings settings;
-    const int requested = camera.settings().samples_per_axis;
-    settings.samples_per_axis = requested > 0 ? requested : std::min(automatic_samples(camera, field), kEnough);
-    settings.cells = false;
-    settings.surroundings = surroundings;
-    Progress silent;
-    return render_picture(field, camera, settings, silent);
+    MomentMean mean;
+    for (const Moment& moment : moments_of(scene)) {
+        const SourceField field(*moment.medium);
+        PictureSettings settings;
+        const int requested = scene.camera.settings().samples_per_axis;
+        settings.samples_per_axis =
+            requested > 0 ? requested : std::min(automatic_samples(*moment.camera, field), kEnough);
+        settings.cells = false;
+        settings.surroundings = moment.surroundings;
+        Progress silent;
+        mean.add(render_picture(field, *moment.camera, settings, silent));
+    }
+    return mean.take();
 }
 
 void weigh(PathSum& sum, PathStatistics& statistics, float weight) {
@@ -366,12 +244,21 @@ PathSum trace_sample(const PathTracer& tracer, const Camera& camera, std::size_t
     return sum;
 }
 
+std::size_t moment_of_sample(int seed, std::size_t pixel, std::uint64_t sample, const MomentTracers& moments) {
+    if (moments.count() == 1)
+        return 0;
+    constexpr double kGolden = 0.6180339887498949;
+    Rng shift(Stream::PathMoment, seeded(seed, pixel), sample & 1);
+    const double u = shift.next_double() + std::fmod(static_cast<double>(sample >> 1) * kGolden, 1.0);
+    return moments.at(u - std::floor(u));
+}
+
 TracedPicture trace_picture(const TracedScene& scene, const Checkpoint& checkpoint, Statistics& statistics,
                             Progress& progress) {
     progress.stage("path tracing");
     const Stopwatch setup;
     Tracing tracing(scene, checkpoint, progress);
-    statistics.stages.push_back({"tracking field and light trees", setup.seconds(), tracing.tracer().bytes(), {}});
+    statistics.stages.push_back({"tracking field and light trees", setup.seconds(), tracing.bytes(), {}});
     const Stopwatch watch;
     const std::clock_t cpu = std::clock();
     tracing.run();
@@ -386,13 +273,13 @@ TracedPicture trace_picture(const TracedScene& scene, const Checkpoint& checkpoi
           {"scatterings_per_path", double(film.work.scatterings) / double(std::max<std::uint64_t>(film.work.paths, 1))},
           {"cpu_seconds", double(std::clock() - cpu) / CLOCKS_PER_SEC},
           {"seconds_in_all", film.work.seconds},
-          {"relative_standard_error", Tracing::relative_standard_error(film)},
+          {"relative_standard_error", relative_standard_error(film)},
           {"relative_standard_error_of_mean", relative_error_of_mean(film)},
           {"not_finite_paths", film.work.not_finite}}});
     const Stopwatch layers;
-    const Image sampled = sampled_layers(scene.medium, scene.surroundings, scene.camera);
-    const Developer developer(film, sampled, scene.needed, scene.output);
-    TracedPicture out{developer.picture(-1), {developer.picture(0), developer.picture(1)}, 2.0 * film.work.passes};
+    const Image sampled = sampled_layers(scene);
+    const auto picture = [&](int half) { return develop(film, half, sampled, scene.needed, scene.output); };
+    TracedPicture out{picture(-1), {picture(0), picture(1)}, 2.0 * film.work.passes};
     statistics.stages.push_back({"alpha, depth and albedo", layers.seconds(), 0, {}});
     return out;
 }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <span>
 #include <string>
 
 #include "camera/camera.h"
@@ -10,6 +11,7 @@
 #include "emitters/surroundings.h"
 #include "film/image.h"
 #include "film/settings.h"
+#include "reference/moment_tracers.h"
 #include "reference/path_film.h"
 #include "statistics/statistics.h"
 
@@ -30,6 +32,7 @@ struct TracedScene {
     int bounces = -1;  // the most scatterings of a path; -1: all
     CellSet needed;    // ledger cells that can be other than zero
     OutputSettings output;
+    std::span<const Moment> moments = {};  // of the shutter; empty: nothing moves
 };
 
 struct TracedPicture {
@@ -45,6 +48,9 @@ Ray sample_ray(const Camera& camera, int seed, std::size_t pixel, std::uint64_t 
 // first half. The light of its vertices is weighted by the pixel's filter as the sum is.
 PathSum trace_sample(const PathTracer& tracer, const Camera& camera, std::size_t pixel, std::uint64_t sample,
                      PathStatistics& statistics);
+
+// The number of the moment at which that path is traced, of `moments`: evenly spread over the paths of a pixel.
+std::size_t moment_of_sample(int seed, std::size_t pixel, std::uint64_t sample, const MomentTracers& moments);
 
 // Continues from the checkpoint if there is one. The layers are those of render_picture, all 32 bit, and "variance":
 // the variance of each pixel's mean, from the spread of its paths. Stratification makes the true one smaller. Throws

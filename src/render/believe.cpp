@@ -39,14 +39,14 @@ std::optional<Certificate> survey(const Image& image, const DrawInput& input, co
     if (!(seconds > 0.0))
         return std::nullopt;
     const CertifiedScene scene = certified_scene(input);
-    const PathTracer tracer(scene.medium, scene.tracing, scene.bounces, scene.surroundings);
-    const PathPilot pilot = trace_pilot(tracer, input.camera, kFirstPixels);
+    const MomentTracers tracers = tracers_of(scene);
+    const PathPilot pilot = trace_pilot(tracers.tracer(0), tracers.camera(0), kFirstPixels);
     const double left = seconds - pilot_seconds(pilot, kFirstPixels);
     const auto samples =
         static_cast<std::size_t>(std::clamp(left / std::max(pilot.ray_seconds(), 1e-9), 0.0, double(kMaximumSamples)));
     if (samples < kFewestSamples)
         return std::nullopt;
-    return certify(image, scene, tracer, {draws_for(samples, pilot.square_error, expected), samples, kSeed}, progress);
+    return certify(image, scene, tracers, {draws_for(samples, pilot.square_error, expected), samples, kSeed}, progress);
 }
 
 const CertifiedError* sampled(const std::optional<Certificate>& survey, const std::string& cell) {
@@ -108,7 +108,8 @@ CertifiedScene certified_scene(const DrawInput& input) {
             input.surroundings,
             input.shot.tracing,
             input.shot.scattering.bounces,
-            input.plan.emission || input.plan.emitters};
+            input.plan.emission || input.plan.emitters,
+            input.moments()};
 }
 
 Belief believe(const RenderedFrame& frame, const DrawInput& input, StageCost& cost, Progress& progress) {

@@ -8,6 +8,7 @@
 #include "emitters/surroundings.h"
 #include "film/write_image.h"
 #include "forecast/plan.h"
+#include "render/shutter/open_shutter.h"
 #include "shot/shot.h"
 #include "statistics/statistics.h"
 
@@ -20,6 +21,11 @@ struct DrawInput {
     const Medium& medium;
     const Surroundings* surroundings;  // null: none
     const Camera& camera;
+    const OpenShutter* shutter = nullptr;  // null: nothing moves
+
+    std::span<const Moment> moments() const {  // empty: nothing moves
+        return shutter ? shutter->moments() : std::span<const Moment>{};
+    }
 };
 
 struct Drawn {

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "camera/camera.h"
+#include "camera/shutter.h"
 #include "core/error.h"
 #include "core/stopwatch.h"
 #include "render/load_medium.h"
@@ -94,6 +95,32 @@ CameraSettings choose_camera(const Shot& shot, const std::optional<SceneCamera>&
     return framed_camera(input.surroundings->scene(), y_up ? dvec3(0, 1, 0) : dvec3(0, 0, 1), shot.camera);
 }
 
+// The animation of the files between the instants at which the shutter opens and closes. What is the same at both does
+// not move. Further moments are loaded in silence: what there is to say has been said.
+Animation animation_of_files(const Shot& shot, int frame, bool camera_of_file, const FrameInput& input) {
+    Animation out;
+    const double rate = shot.scene.frames_per_second;
+    const ShutterSpan span = shutter_span(shot.shutter);
+    const auto camera = [&shot, rate, frame, &like = shot.camera](double frames) {
+        Progress silent;
+        return with_file_camera(like, *camera_of_files(shot, (frame + frames) / rate), silent);
+    };
+    if (camera_of_file &&
+        !(stand_still(camera(span.opens), input.camera) && stand_still(camera(span.closes), input.camera)))
+        out.camera = camera;
+    if (!input.surroundings || !input.surroundings->scene().animated)
+        return out;
+    const auto surroundings = [&shot, rate, frame, origin = origin_of(input.medium)](double frames) {
+        Statistics ignored;
+        Progress silent;
+        return load_surroundings(shot, (frame + frames) / rate, origin, ignored, silent);
+    };
+    const Surroundings& now = *input.surroundings;
+    if (!stand_still(*surroundings(span.opens), now) || !stand_still(*surroundings(span.closes), now))
+        out.surroundings = surroundings;
+    return out;
+}
+
 }  // namespace
 
 FrameInput load_frame(const Shot& shot, const std::filesystem::path& volume, int frame, Statistics& statistics,
@@ -116,6 +143,8 @@ FrameInput load_frame(const Shot& shot, const std::filesystem::path& volume, int
     if (!shot.scene.empty())
         input.surroundings = load_surroundings(shot, seconds, origin_of(input.medium), statistics, progress);
     input.camera = choose_camera(shot, of_file, input, progress);
+    if (shot.shutter.length > 0.0)
+        input.animation = animation_of_files(shot, frame, of_file.has_value(), input);
     return input;
 }
 

@@ -7,6 +7,7 @@
 #include "core/progress.h"
 #include "emitters/surroundings.h"
 #include "medium/medium.h"
+#include "render/shutter/animation.h"
 #include "shot/shot.h"
 #include "statistics/statistics.h"
 
@@ -16,10 +17,12 @@ struct FrameInput {
     Medium medium;                               // without nodes where the shot has no volume
     std::unique_ptr<Surroundings> surroundings;  // none where it has no scene; local space as the medium's
     CameraSettings camera;
+    Animation animation;  // of files, while the shutter is open; empty where it is not
 };
 
 // `volume`: the frame's .vdb file; empty where the shot has none, and then no volume is started.
-// The camera is the shot's, else that of a glTF file, else one that sees everything. Throws Error.
+// The camera is the shot's, else that of a glTF file, else one that sees everything. Throws Error. The shot must
+// outlive the animation.
 FrameInput load_frame(const Shot& shot, const std::filesystem::path& volume, int frame, Statistics& statistics,
                       Progress& progress);
 

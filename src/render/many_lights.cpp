@@ -85,7 +85,8 @@ MediumLightingInput medium_lighting_input(const DrawInput& input, const Plan& pl
 }
 
 LitMedium::LitMedium(const DrawInput& input, const Plan& plan, int bounces, const ReflectedLight& reflected,
-                     bool orders_apart, Statistics& statistics, Progress& progress) {
+                     bool orders_apart, Statistics& statistics, Progress& progress)
+    : bounces_(bounces), forward_(forward_left_out(input.medium.mean_cosine, bounces)) {
     if (lights_medium(plan)) {
         similar_ = similar_medium(input.medium, bounces);
         lighting_ = std::make_unique<MediumLighting>(
@@ -93,8 +94,7 @@ LitMedium::LitMedium(const DrawInput& input, const Plan& plan, int bounces, cons
             statistics, progress);
     }
     static const NodeLighting none;
-    field_.emplace(input.medium, lighting_ ? lighting_->at_nodes() : none, similar(),
-                   forward_left_out(input.medium.mean_cosine, bounces));
+    field_.emplace(input.medium, lighting_ ? lighting_->at_nodes() : none, similar(), forward_);
 }
 
 ManyLights::ManyLights(const DrawInput& input, Statistics& statistics, Progress& progress) {

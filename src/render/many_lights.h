@@ -30,8 +30,12 @@ public:
     const SourceField& field() const { return *field_; }
     const MediumLighting* lighting() const { return lighting_.get(); }  // null: there is no light
     const Medium* similar() const { return similar_ ? &*similar_ : nullptr; }
+    int bounces() const { return bounces_; }    // the most scatterings; -1: no limit
+    float forward() const { return forward_; }  // the share of scattering that the field adds (SourceField)
 
 private:
+    int bounces_;
+    float forward_;
     std::optional<Medium> similar_;  // where the medium itself is too stiff (medium/similar_medium.h)
     std::unique_ptr<MediumLighting> lighting_;
     std::optional<SourceField> field_;

@@ -15,6 +15,7 @@
 #include "render/choose_method.h"
 #include "render/draw.h"
 #include "render/frame_input.h"
+#include "render/shutter/open_shutter.h"
 #include "render/time_budget.h"
 
 namespace brisance {
@@ -89,8 +90,8 @@ void add_errors(RenderedFrame& out, const DrawInput& input, Progress& progress) 
 
 void trace_into(RenderedFrame& out, const DrawInput& input, const Checkpoint& checkpoint, Progress& progress) {
     const TracedScene scene{
-        input.medium,      input.camera,     input.surroundings, input.shot.tracing, input.shot.scattering.bounces,
-        input.plan.needed, input.shot.output};
+        input.medium,      input.camera,      input.surroundings, input.shot.tracing, input.shot.scattering.bounces,
+        input.plan.needed, input.shot.output, input.moments()};
     TracedPicture traced = trace_picture(scene, checkpoint, out.statistics, progress);
     out.image = std::move(traced.image);
     out.halves = {std::move(traced.halves[0]), std::move(traced.halves[1])};
@@ -116,13 +117,15 @@ Shot with_chosen_method(const Shot& shot, const Medium& medium, const Surroundin
 }
 
 void render_into(RenderedFrame& out, const Shot& given, const Medium& medium, const Surroundings* surroundings,
-                 const CameraSettings& camera_settings, const Checkpoint& checkpoint, Progress& progress) {
+                 const CameraSettings& camera_settings, const Animation& animation, const Checkpoint& checkpoint,
+                 Progress& progress) {
     const Shot shot = with_chosen_method(given, medium, surroundings, camera_settings, out, progress);
     const Plan plan = plan_cells(shot, medium, surroundings);
     out.statistics.cells = plan.cells();
     out.statistics.skipped = plan.skipped;
     const Camera camera(camera_settings, medium);
-    const DrawInput input{shot, plan, medium, surroundings, camera};
+    const OpenShutter shutter(shot.shutter, medium, surroundings, camera_settings, animation, progress);
+    const DrawInput input{shot, plan, medium, surroundings, camera, shutter.still() ? nullptr : &shutter};
     if (shot.output.virtual_lights)
         if (const std::optional<std::string> reason = why_no_virtual_lights(shot, plan))
             progress.warning("virtual-lights", kNoLightPictures + *reason);
@@ -172,7 +175,7 @@ RenderedFrame render_frame(const Shot& given, const std::filesystem::path& volum
     FrameInput input = load_frame(given, volume, frame, out.statistics, progress);
     const Shot shot =
         with_time(given, input.medium, input.surroundings.get(), input.camera, watch.seconds(), out, progress);
-    render_into(out, shot, input.medium, input.surroundings.get(), input.camera,
+    render_into(out, shot, input.medium, input.surroundings.get(), input.camera, input.animation,
                 {checkpoint, checkpoint_key(shot, volume, frame)}, progress);
     out.metadata.frame = frame;
     finish(out, watch.seconds());
@@ -185,7 +188,7 @@ RenderedFrame render_medium(const Shot& given, const Medium& medium, Progress& t
     Recorder progress(to, out.statistics);
     CameraSettings camera = given.camera_given ? given.camera : framed_camera(medium, given.camera);
     const Shot shot = with_time(given, medium, surroundings, camera, watch.seconds(), out, progress);
-    render_into(out, shot, medium, surroundings, camera, {}, progress);
+    render_into(out, shot, medium, surroundings, camera, {}, {}, progress);
     finish(out, watch.seconds());
     return out;
 }

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "reference/trace_picture.h"
 #include "render/frame_input.h"
+#include "render/shutter/open_shutter.h"
 
 namespace brisance {
 
@@ -38,18 +39,24 @@ TracedPath trace_path(const Shot& shot, const std::filesystem::path& volume, int
     Statistics statistics;
     const FrameInput input = load_frame(shot, volume, frame, statistics, progress);
     const Camera camera(input.camera, input.medium);
-    const PathTracer tracer(input.medium, shot.tracing, shot.scattering.bounces, input.surroundings.get());
+    const OpenShutter shutter(shot.shutter, input.medium, input.surroundings.get(), input.camera, input.animation,
+                              progress);
+    const Moment frame_itself{&input.medium, input.surroundings.get(), &camera};
+    const MomentTracers tracers(shutter.still() ? std::span(&frame_itself, 1) : shutter.moments(), shot.tracing,
+                                shot.scattering.bounces);
     const std::size_t pixel = std::size_t(y) * shot.camera.width + x;
+    const std::size_t moment = moment_of_sample(shot.tracing.seed, pixel, sample, tracers);
     TracedPath out;
     PathStatistics counts;
     counts.vertices = &out.vertices;
-    out.orders = trace_sample(tracer, camera, pixel, sample, counts);
+    out.orders = trace_sample(tracers.tracer(moment), tracers.camera(moment), pixel, sample, counts);
     out.has_cells = input.surroundings != nullptr;
     out.scatterings = counts.scatterings;
     for (TracedVertex& vertex : out.vertices)
         vertex.position += input.medium.world_of_local(vec3(0.0f));
-    const Ray local = sample_ray(camera, shot.tracing.seed, pixel, sample);
-    out.ray = {dvec3(glm::inverse(camera.camera_from_world())[3]), local.direction};  // local space is not turned
+    const Camera& then = tracers.camera(moment);
+    const Ray local = sample_ray(then, shot.tracing.seed, pixel, sample);
+    out.ray = {dvec3(glm::inverse(then.camera_from_world())[3]), local.direction};  // local space is not turned
     return out;
 }
 

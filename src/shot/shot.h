@@ -41,6 +41,7 @@ struct Shot {
     CameraSettings camera;
     bool camera_given = false;    // false: framed on what there is, or a glTF file's
     bool exposure_given = false;  // false: chosen from the picture
+    ShutterSettings shutter;
     RenderMethod method = RenderMethod::LightingGrid;
     double seconds = 0.0;  // of wall time for a frame, from which settings of least error follow; 0: as they are
     LightingSettings lighting;

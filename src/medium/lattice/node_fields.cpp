@@ -22,6 +22,8 @@ void fill_node(const Sources& s, const SourceRadiance& source_radiance, const iv
     const Rgb colour = colour_at(s, node);
     if (!f.albedo.empty())
         f.albedo[i] = glm::min(s.settings.smoke.albedo * colour, Rgb(1.0f));
+    if (!f.velocity.empty())
+        f.velocity[i] = vec3(read(*s.velocity, node, 0), read(*s.velocity, node, 1), read(*s.velocity, node, 2));
     if (f.source.empty() && f.emission.empty())
         return;
     NodeValues v;
@@ -47,6 +49,7 @@ NodeFields fields_of(const BrickLattice& lattice, const Sources& s) {
     f.source.resize(fire && !direct ? lattice.node_count() : 0);
     f.emission.resize(fire && direct ? lattice.node_count() : 0);
     f.albedo.resize(s.colour && s.settings.colour_role == ColourRole::Albedo ? lattice.node_count() : 0);
+    f.velocity.resize(s.velocity ? lattice.node_count() : 0);
     const SourceRadiance source_radiance(s.settings.fire);
     parallel_for(
         lattice.brick_count(),
@@ -81,7 +84,7 @@ float second_part(const BrickLattice& lattice, const NodeFields& a, const NodeFi
     return wa + wb > 0.0f ? wb / (wa + wb) : 0.5f;
 }
 
-void give_every_node(std::vector<Rgb>& field, std::size_t nodes, const Rgb& value) {
+void give_every_node(std::vector<vec3>& field, std::size_t nodes, const vec3& value) {
     if (field.empty())
         field.assign(nodes, value);
 }
@@ -95,9 +98,12 @@ void add_fields(const BrickLattice& lattice, NodeFields& a, NodeFields& b) {
     if (!a.source.empty() || !b.source.empty())
         for (NodeFields* f : {&a, &b})
             give_every_node(f->source, nodes, Rgb(0.0f));
+    if (!a.velocity.empty() || !b.velocity.empty())
+        for (NodeFields* f : {&a, &b})
+            give_every_node(f->velocity, nodes, vec3(0.0f));
     if (!b.emission.empty())
         give_every_node(a.emission, nodes, Rgb(0.0f));
-    if (!a.albedo.empty() || !a.source.empty())
+    if (!a.albedo.empty() || !a.source.empty() || !a.velocity.empty())
         parallel_for(lattice.brick_count(), [&](std::size_t brick) {
             for (int n = 0; n < BrickLattice::kNodes; ++n) {
                 const std::size_t i = brick * BrickLattice::kNodes + n;
@@ -107,6 +113,8 @@ void add_fields(const BrickLattice& lattice, NodeFields& a, NodeFields& b) {
                     a.albedo[i] = glm::mix(a.albedo[i], b.albedo[i], t);
                 if (!a.source.empty())
                     a.source[i] = glm::mix(a.source[i], b.source[i], t);
+                if (!a.velocity.empty())
+                    a.velocity[i] = glm::mix(a.velocity[i], b.velocity[i], t);
             }
         });
     for (std::size_t i = 0; i < nodes; ++i)

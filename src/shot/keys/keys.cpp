@@ -23,6 +23,7 @@ std::vector<Key> all_keys() {
     add_medium_keys(keys);
     add_scene_keys(keys);
     add_camera_keys(keys);
+    add_shutter_keys(keys);
     add_lighting_keys(keys);
     add_virtual_light_keys(keys);
     add_tracing_keys(keys);
@@ -43,6 +44,7 @@ Sections all_sections() {
         {"fire", "what glows"},
         {"scene", "surfaces and lights around the volume"},
         {"camera", "the pinhole camera; without eye and target, or world_from_camera, it is framed on the volume"},
+        {"shutter", "motion blur"},
         {"lighting", "how the fire's light reaches the smoke"},
         {"scattering", "light scattered more than once"}};
     for (const ScatteringMethod& method : scattering_methods())
@@ -71,8 +73,8 @@ Affects affected_by(const std::string& path) {
     // Shots stored in older pictures: all keys that were renamed so far are of the method.
     if (renamed_key(path))
         return Affects::Method;
-    for (const char* key :
-         {"$schema", "name", "method", "seconds", "camera.samples_per_axis", "camera.edge_refinement"})
+    for (const char* key : {"$schema", "name", "method", "seconds", "camera.samples_per_axis", "camera.edge_refinement",
+                            "shutter.most_moments", "shutter.lighting_times"})
         if (path == key)
             return Affects::Method;
     return Affects::Picture;

@@ -69,6 +69,7 @@ void add_volume_keys(std::vector<Key>& keys);
 void add_medium_keys(std::vector<Key>& keys);
 void add_scene_keys(std::vector<Key>& keys);
 void add_camera_keys(std::vector<Key>& keys);
+void add_shutter_keys(std::vector<Key>& keys);
 void add_lighting_keys(std::vector<Key>& keys);
 void add_scattering_method_keys(std::vector<Key>& keys);
 void add_virtual_light_keys(std::vector<Key>& keys);

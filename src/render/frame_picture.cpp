@@ -1,0 +1,156 @@
+#include "render/frame_picture.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "camera_rays/moment_mean.h"
+#include "scattering_methods/scattering_pass.h"
+#include "surface_lighting/surface_shader.h"
+
+namespace brisance {
+
+namespace {
+
+// Anti-aliasing samples along a pixel's side where there are surfaces: their edges are sharp.
+constexpr int kSurfaceSamples = 4;
+
+PictureSettings picture_settings(const DrawInput& input, const ManyLights& lights) {
+    const CameraSettings& camera = input.camera.settings();
+    PictureSettings settings;
+    settings.samples_per_axis = camera.samples_per_axis;
+    if (camera.samples_per_axis == 0) {
+        const int of_medium = automatic_samples(input.camera, lights.medium().field());
+        settings.samples_per_axis = std::max(of_medium, input.plan.surfaces ? kSurfaceSamples : 1);
+        settings.medium_samples_per_axis = of_medium;
+    }
+    settings.edge_refinement = camera.edge_refinement;
+    settings.cells = input.shot.output.cell_layers;
+    settings.layers = input.plan.needed;
+    if (!input.medium.lattice.empty())
+        settings.layers.set(Cell::V, true);
+    return settings;
+}
+
+// Rays of a pixel are divided among the moments of the shutter.
+int share_of_moment(int per_axis, std::size_t moments) {
+    return per_axis == 0 ? 0 : std::max(1, static_cast<int>(std::ceil(per_axis / std::sqrt(double(moments)) - 1e-9)));
+}
+
+// Evenly spread over the unit square (Roberts' sequence), so that together the moments' rays fill a pixel.
+glm::dvec2 shift_of_moment(std::size_t moment) {
+    const glm::dvec2 p = double(moment) * glm::dvec2(0.7548776662466927, 0.5698402909980532);
+    return p - glm::floor(p);
+}
+
+}  // namespace
+
+FramePicture::FramePicture(const DrawInput& input, const ManyLights& lights, const LitStretch* stretch,
+                           Progress& progress)
+    : input_(input),
+      lights_(lights),
+      stretch_(stretch),
+      settings_(picture_settings(input, lights)),
+      progress_(progress) {
+    if (input.shot.output.virtual_lights && !why_no_virtual_lights(input.shot, input.plan))
+        lengths_.emplace(std::size_t(input.camera.settings().width) * input.camera.settings().height);
+    if (!stretch)
+        return;
+    const std::size_t moments = stretch->shutter.moments().size();
+    settings_.samples_per_axis = share_of_moment(settings_.samples_per_axis, moments);
+    settings_.medium_samples_per_axis = share_of_moment(settings_.medium_samples_per_axis, moments);
+    settings_.edge_refinement = share_of_moment(settings_.edge_refinement, moments);
+}
+
+double FramePicture::samples_per_pixel() const {
+    const ScatteringMethod* const method = input_.plan.scattering_method;
+    return double(settings_.samples_per_axis) * settings_.samples_per_axis *
+           (method ? method->passes(input_.shot.scattering_methods) : 1) *
+           double(stretch_ ? stretch_->shutter.moments().size() : 1);
+}
+
+Image FramePicture::draw(Statistics& statistics) {
+    const ScatteringMethod* const method = input_.plan.scattering_method;
+    if (!method)
+        return pass(nullptr, 0);
+    return mean_of_passes(
+        *method, input_.shot.scattering_methods, input_.shot.scattering.bounces, *lights_.direct(), input_.camera,
+        [&](const InScattering& estimator, int number) { return pass(&estimator, number); }, seconds_on_estimators_,
+        statistics, progress_);
+}
+
+template <class Draw>
+Image FramePicture::mean_of_moments(const Draw& draw) {
+    MomentMean mean;
+    for (std::size_t k = stretch_->first; k < stretch_->first + stretch_->count; ++k) {
+        settings_.sample_shift = shift_of_moment(k);
+        mean.add(draw(stretch_->shutter.instant(k), static_cast<int>(k)));
+    }
+    return mean.take();
+}
+
+Image FramePicture::pass(const InScattering* estimator, int number) {
+    if (!stretch_)
+        return picture(estimator, number, MomentLights(lights_), input_.camera, input_.surroundings);
+    const int moments = static_cast<int>(stretch_->shutter.moments().size());
+    return mean_of_moments([&](const Instant& instant, int moment) {
+        const MomentLights lights(input_, lights_, stretch_->shutter, stretch_->lit, instant);
+        return picture(estimator, number * moments + moment, lights, *instant.camera, instant.surroundings);
+    });
+}
+
+Image FramePicture::picture(const InScattering* estimator, int number, const MomentLights& lights, const Camera& camera,
+                            const Surroundings* surroundings) {
+    settings_.pass = number;
+    settings_.light_rays = light_rays_by(estimator, lights.direct(), input_.plan.emitters_by_rays);
+    settings_.surroundings = surroundings;
+    settings_.once = lights.once();
+    if (!input_.plan.surfaces)
+        return render_picture(lights.field(), camera, settings_, progress_);
+    const SurfaceShader shader({input_.plan.needed, lights.field(), *lights.paths(), lights_.medium().lighting(),
+                                lights_.virtual_lights(), estimator, input_.plan.emitters_by_rays, settings_.parts,
+                                camera.settings().width, lengths_ ? &*lengths_ : nullptr});
+    return render_picture(lights.field(), camera, settings_, progress_,
+                          [&](const auto& samples, auto& light) { shader.shade(samples, light); });
+}
+
+Image FramePicture::order_picture(const NodeSources& order, PictureSettings settings) {
+    const LitMedium& lit = lights_.medium();
+    if (!stretch_)
+        return render_picture(SourceField(input_.medium, order, lit.similar()), input_.camera, settings, progress_);
+    return mean_of_moments([&](const Instant& instant, int) {
+        settings.sample_shift = settings_.sample_shift;
+        if (instant.medium == stretch_->lit.medium)
+            return render_picture(SourceField(input_.medium, order, lit.similar()), *instant.camera, settings,
+                                  progress_);
+        const Origins origins = stretch_->shutter.origins(stretch_->lit, instant);
+        const MovedField moved(moved_sources(order, input_.medium, origins), *instant.medium, lit.bounces(), 0.0f);
+        return render_picture(moved.field(), *instant.camera, settings, progress_);
+    });
+}
+
+void FramePicture::add_order_layers(Image& image) {
+    PictureSettings settings = settings_;
+    settings.cells = true;
+    settings.once = nullptr;
+    const auto add = [&](const std::string& name, const Layer& from) {
+        Layer layer = from;
+        layer.name = name;
+        image.layers.push_back(std::move(layer));
+    };
+    const NodeLighting& nodes = lights_.medium().lighting()->at_nodes();
+    if (settings.layers.contains(Cell::MV)) {
+        NodeSources single;
+        single.single = nodes.single;
+        add("bounce1", settings_.cells ? Layer(image.layer("MV")) : order_picture(single, settings).layer("MV"));
+    }
+    settings.layers.set(Cell::MV, false);
+    for (std::size_t k = 0; k < nodes.orders.size(); ++k) {
+        NodeSources order;
+        order.multiple = nodes.orders[k];
+        const bool tail = k + 1 == nodes.orders.size() && k > 0;
+        add(tail ? "bounces_beyond" + std::to_string(k + 1) : "bounce" + std::to_string(k + 2),
+            order_picture(order, settings).layer("MM"));
+    }
+}
+
+}  // namespace brisance

@@ -1,0 +1,51 @@
+// The picture of a frame from its lights: once, or pass by pass, at one moment or at several.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "camera_rays/picture.h"
+#include "render/shutter/moment_lights.h"
+#include "surface_lighting/path_lengths.h"
+
+namespace brisance {
+
+// Moments of the open shutter that are lit together, at one of their own.
+struct LitStretch {
+    const OpenShutter& shutter;
+    const Instant& lit;
+    std::size_t first, count;  // moments
+};
+
+class FramePicture {
+public:
+    // `stretch`: null where nothing moves. Keeps references.
+    FramePicture(const DrawInput& input, const ManyLights& lights, const LitStretch* stretch, Progress& progress);
+
+    Image draw(Statistics& statistics);
+    // The layers bounce1, bounce2, ... of one order of scattering each. `image`: as drawn.
+    void add_order_layers(Image& image);
+
+    double samples_per_pixel() const;  // of all moments
+    double seconds_on_estimators() const { return seconds_on_estimators_; }
+    const PathLengths* path_lengths() const { return lengths_ ? &*lengths_ : nullptr; }
+
+private:
+    // Pictures of all moments, averaged: draw(lights, camera, surroundings, number of the moment).
+    template <class Draw>
+    Image mean_of_moments(const Draw& draw);
+    Image pass(const InScattering* estimator, int number);
+    Image picture(const InScattering* estimator, int number, const MomentLights& lights, const Camera& camera,
+                  const Surroundings* surroundings);
+    Image order_picture(const NodeSources& order, PictureSettings settings);
+
+    const DrawInput& input_;
+    const ManyLights& lights_;
+    const LitStretch* stretch_;
+    PictureSettings settings_;
+    Progress& progress_;
+    std::optional<PathLengths> lengths_;
+    double seconds_on_estimators_ = 0.0;
+};
+
+}  // namespace brisance

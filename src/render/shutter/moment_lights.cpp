@@ -1,0 +1,53 @@
+#include "render/shutter/moment_lights.h"
+
+#include "medium/similar_medium.h"
+
+namespace brisance {
+
+namespace {
+
+std::unique_ptr<MovedField> moved_field(const LitMedium& lit, const Medium& medium, const Origins& origins) {
+    const NodeSources sources =
+        lit.lighting() ? moved_sources(lit.lighting()->at_nodes(), lit.field().medium(), origins) : NodeSources{};
+    return std::make_unique<MovedField>(sources, medium, lit.bounces(), lit.forward());
+}
+
+}  // namespace
+
+MovedField::MovedField(const NodeSources& sources, const Medium& medium, int bounces, float forward)
+    : similar_(similar_medium(medium, bounces)), field_(medium, sources, similar_ ? &*similar_ : nullptr, forward) {}
+
+MomentLights::MomentLights(const ManyLights& lights)
+    : field_(&lights.medium().field()),
+      once_(lights.once() ? &lights.once()->field() : nullptr),
+      paths_(lights.paths()),
+      direct_(lights.direct()) {}
+
+MomentLights::MomentLights(const DrawInput& input, const ManyLights& lights, const OpenShutter& shutter,
+                           const Instant& lit, const Instant& moment)
+    : MomentLights(lights) {
+    if (moment.medium != lit.medium) {
+        const Origins origins = shutter.origins(lit, moment);
+        moved_ = moved_field(lights.medium(), *moment.medium, origins);
+        field_ = &moved_->field();
+        if (lights.once()) {
+            moved_once_ = moved_field(*lights.once(), *moment.medium, origins);
+            once_ = &moved_once_->field();
+        }
+    }
+    if (moment.medium != lit.medium || moment.surroundings != lit.surroundings)
+        follow_paths(input, lights, moment);
+}
+
+void MomentLights::follow_paths(const DrawInput& input, const ManyLights& lights, const Instant& moment) {
+    if (lights.paths()) {
+        own_paths_.emplace(*moment.medium, input.shot.tracing, input.shot.scattering.bounces, moment.surroundings);
+        paths_ = &*own_paths_;
+        direct_ = &paths_->direct();
+    } else if (lights.direct()) {
+        own_direct_.emplace(*moment.medium, input.shot.tracing, moment.surroundings);
+        direct_ = &*own_direct_;
+    }
+}
+
+}  // namespace brisance

@@ -1,0 +1,136 @@
+// Pictures with an open shutter: surfaces and cameras of glTF files move.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "render/render_frame.h"
+#include "volume/temp_folder.h"
+
+namespace brisance {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kDistance = 10.0, kHalfSide = 1.0;  // [m]
+constexpr double kSpeed = 1.0;                       // [m per frame]
+
+// A glTF file with a square that shines with radiance 1 toward a camera, one of which moves along x.
+class Square {
+public:
+    explicit Square(int moving_node) {
+        const float s = float(kHalfSide), d = float(kDistance), way = 100.0f * float(kSpeed);
+        const int corners = add("VEC3", {-s, -s, 0, s, -s, 0, s, s, 0, -s, -s, 0, s, s, 0, -s, s, 0});
+        const int times = add("SCALAR", {0, 100});
+        const float z = moving_node == 0 ? 0.0f : d;
+        const int places = add("VEC3", {0, 0, z, way, 0, z});
+        file_["asset"]["version"] = "2.0";
+        file_["scene"] = 0;
+        file_["scenes"] = json::array({{{"nodes", {0, 1}}}});
+        file_["nodes"] = json::array({{{"mesh", 0}}, {{"camera", 0}, {"translation", {0, 0, d}}}});
+        file_["cameras"] = json::array({{{"type", "perspective"}, {"perspective", {{"yfov", 0.4}, {"znear", 0.1}}}}});
+        file_["materials"] = json::array(
+            {{{"emissiveFactor", {1, 1, 1}}, {"pbrMetallicRoughness", {{"baseColorFactor", {0, 0, 0, 1}}}}}});
+        file_["meshes"] =
+            json::array({{{"primitives", json::array({{{"attributes", {{"POSITION", corners}}}, {"material", 0}}})}}});
+        file_["animations"] = json::array(
+            {{{"samplers", json::array({{{"input", times}, {"output", places}}})},
+              {"channels",
+               json::array({{{"sampler", 0}, {"target", {{"node", moving_node}, {"path", "translation"}}}}})}}});
+        file_["buffers"] = json::array({{{"byteLength", bytes_.size()}, {"uri", "square.bin"}}});
+        write_bytes(folder_ / "square.bin", bytes_);
+        write_bytes(folder_ / "square.gltf", file_.dump());
+    }
+
+    Shot shot() const {
+        Shot shot;
+        shot.folder = folder_.path();
+        SceneFile file;
+        file.file = "square.gltf";
+        shot.scene.files.push_back(file);
+        shot.scene.frames_per_second = 1.0;
+        shot.camera.width = 80;
+        shot.camera.height = 40;
+        shot.shutter.most_moments = 64;
+        shot.certify.belief = 0.0f;
+        return shot;
+    }
+
+private:
+    int add(const std::string& type, const std::vector<float>& numbers) {
+        const std::size_t bytes = numbers.size() * sizeof(float);
+        file_["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", bytes}});
+        bytes_.append(reinterpret_cast<const char*>(numbers.data()), bytes);
+        file_["accessors"].push_back({{"bufferView", file_["bufferViews"].size() - 1},
+                                      {"componentType", 5126},
+                                      {"count", numbers.size() / (type == "VEC3" ? 3 : 1)},
+                                      {"type", type}});
+        return static_cast<int>(file_["accessors"].size()) - 1;
+    }
+
+    TempFolder folder_;
+    json file_;
+    std::string bytes_;
+};
+
+// How long a point is covered by an edge-to-edge interval that moves evenly, as a part of the shutter's time.
+double covered(double x, double middle, double half, double way) {
+    const double from = std::max(x - half, middle - 0.5 * way), to = std::min(x + half, middle + 0.5 * way);
+    return std::clamp((to - from) / way, 0.0, 1.0);
+}
+
+// The row through the middle of a picture, against the closed form. `middle`: of the square at the frame [m].
+void expect_streak(const Image& image, double middle, double way) {
+    const double metres_per_pixel = 2.0 * kDistance * std::tan(0.2) / image.height;
+    for (int x = 0; x < image.width; ++x) {
+        const double position = (x + 0.5 - 0.5 * image.width) * metres_per_pixel;
+        const float seen = image.layer("").pixels[4 * std::size_t(20 * image.width + x)];
+        EXPECT_NEAR(seen, covered(position, middle, kHalfSide, way), 0.06) << x;
+    }
+}
+
+Image render(const Shot& shot, int frame) {
+    Progress silent;
+    return render_frame(shot, "", frame, silent).image;
+}
+
+TEST(AnimatedSets, AMovingSurfaceIsAStreak) {
+    const Square square(0);
+    Shot shot = square.shot();
+    shot.shutter.length = 0.8;
+    expect_streak(render(shot, 1), kSpeed, 0.8 * kSpeed);
+    shot.shutter.position = ShutterPosition::Start;
+    expect_streak(render(shot, 1), 1.4 * kSpeed, 0.8 * kSpeed);
+}
+
+TEST(AnimatedSets, AMovingCameraStreaksWhatRests) {
+    const Square square(1);
+    Shot shot = square.shot();
+    shot.shutter.length = 0.8;
+    expect_streak(render(shot, 1), -kSpeed, 0.8 * kSpeed);
+}
+
+TEST(AnimatedSets, PathsDrawTheSameStreak) {
+    const Square square(0);
+    Shot shot = square.shot();
+    shot.shutter.length = 0.8;
+    shot.method = RenderMethod::Path;
+    shot.tracing.samples = 1024;
+    expect_streak(render(shot, 1), kSpeed, 0.8 * kSpeed);
+}
+
+TEST(AnimatedSets, WithoutAShutterEdgesAreSharp) {
+    const Square square(0);
+    Shot shot = square.shot();
+    shot.shutter.length = 0.0;
+    const Image image = render(shot, 0);
+    int partly = 0;
+    for (int x = 0; x < image.width; ++x) {
+        const float seen = image.layer("").pixels[4 * std::size_t(20 * image.width + x)];
+        partly += seen > 0.01f && seen < 0.99f;
+    }
+    EXPECT_LE(partly, 2);
+}
+
+}  // namespace
+}  // namespace brisance
