@@ -31,7 +31,7 @@ struct Lookup {
     vec4 operator()(const TextureUse& use) const {
         if (use.texture < 0 || mesh.uv.empty())
             return vec4(1.0f);
-        return scene.textures[use.texture].at(use.texture_from_uv * vec3(uv, 1.0f));
+        return scene.textures[use.texture]->at(use.texture_from_uv * vec3(uv, 1.0f));
     }
 };
 

@@ -68,30 +68,30 @@ void append(std::vector<T>& to, std::vector<T>&& from) {
 
 // Adds what is in one file.
 void add_file(const SceneFile& file, const std::filesystem::path& folder, double seconds, Scene& scene,
-              MemoryBudget& budget, Progress& progress) {
+              MemoryBudget& budget, Progress& progress, const Scene* same_pictures) {
     const Opened opened = open(file, folder, seconds, budget, progress);
     const std::size_t meshes = scene.meshes.size();
-    read_meshes(opened.gltf, opened.nodes, scene, budget, progress);
+    read_meshes(opened.gltf, opened.nodes, scene, budget, progress, same_pictures);
     std::vector<SceneCamera> cameras = read_cameras(opened.gltf, opened.nodes, progress);
     std::vector<LightSettings> lights = read_lights(opened.gltf, opened.nodes, progress);
     if (scene.meshes.size() == meshes && cameras.empty() && lights.empty())
         progress.warning("empty-file", opened.gltf.path.string() + ": no surface, camera or light of it can be used");
-    scene.animated = scene.animated || !opened.gltf.model.animations.empty();
     append(scene.cameras, std::move(cameras));
     append(scene.lights, std::move(lights));
+    scene.animated = scene.animated || moves_camera_or_light(opened.gltf, opened.nodes);
 }
 
 }  // namespace
 
 Scene load_scene(const SceneSettings& settings, const std::filesystem::path& folder, double seconds,
-                 const dvec3& origin, std::uint64_t memory_limit, Progress& progress) {
+                 const dvec3& origin, std::uint64_t memory_limit, Progress& progress, const Scene* same_pictures) {
     Scene scene;
     scene.origin = origin;
     MemoryBudget budget(memory_limit);
     Once once(progress);
     for (const SceneFile& file : settings.files)
         try {
-            add_file(file, folder, seconds, scene, budget, once);
+            add_file(file, folder, seconds, scene, budget, once, same_pictures);
         } catch (const std::bad_alloc&) {
             out_of_memory(folder / file.file);
         } catch (const std::length_error&) {  // more than any memory holds

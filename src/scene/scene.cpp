@@ -32,8 +32,8 @@ std::uint64_t Scene::bytes() const {
     std::uint64_t sum = bytes_of(meshes) + bytes_of(materials) + bytes_of(textures) + bytes_of(cameras);
     for (const SceneMesh& mesh : meshes)
         sum += bytes_of(mesh.positions) + bytes_of(mesh.normals) + bytes_of(mesh.uv) + bytes_of(mesh.triangles);
-    for (const Texture& texture : textures)
-        sum += bytes_of(texture.bytes) + bytes_of(texture.floats);
+    for (const std::shared_ptr<const Texture>& texture : textures)
+        sum += sizeof(Texture) + bytes_of(texture->bytes) + bytes_of(texture->floats);
     return sum;
 }
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -69,16 +70,20 @@ struct SceneCamera {
 struct Scene {
     dvec3 origin{0.0};  // world [m]
     std::vector<SceneMesh> meshes;
-    std::vector<SceneMaterial> materials;  // at least one where there are meshes
-    std::vector<Texture> textures;
+    std::vector<SceneMaterial> materials;                  // at least one where there are meshes
+    std::vector<std::shared_ptr<const Texture>> textures;  // none is null; the moments of a scene may share them
     std::vector<SceneCamera> cameras;
     std::vector<LightSettings> lights;  // of the files: Point, Spot and Sun
-    bool animated = false;              // some file has animations
+    // Whether anything of it may be elsewhere, or of another shape, at another moment: an animation of a file moves a
+    // mesh, a joint of a mesh's skin, a camera or a light, or their ancestors, or changes the weights of a mesh's morph
+    // targets, with keys that differ. False: every moment has this scene. What triangles show, and whether a camera or
+    // a light is used, is not looked at.
+    bool animated = false;
 
     std::size_t triangle_count() const;
     // Whether any surface has lobes other than Lambert's.
     bool is_glossy() const;
-    std::uint64_t bytes() const;
+    std::uint64_t bytes() const;  // shared textures included
 };
 
 }  // namespace brisance

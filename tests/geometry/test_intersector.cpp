@@ -213,7 +213,7 @@ Scene half_there(AlphaMode mode, std::uint8_t alpha) {
     texture.height = 1;
     texture.nearest = true;
     texture.bytes = {255, 255, 255, 255, 255, 255, 255, alpha};
-    scene.textures.push_back(texture);
+    scene.textures.push_back(std::make_shared<const Texture>(texture));
     return scene;
 }
 

@@ -67,11 +67,12 @@ TEST(SurfacePoint, NormalMapsTurnTowardUAndAgainstV) {
     Texture texture;
     texture.width = texture.height = 1;
     texture.floats = {0.5f + 0.5f * 0.6f, 0.5f, 0.5f + 0.5f * 0.8f, 1.0f};
-    scene.textures.push_back(texture);
+    scene.textures.push_back(std::make_shared<const Texture>(texture));
     const dvec3 n = middle_of(scene, dvec3(0, 0, 1)).frame.normal;
     EXPECT_NEAR(n.x, 0.6, 1e-6);
     EXPECT_NEAR(n.y, 0.0, 1e-6);
-    scene.textures[0].floats = {0.5f, 0.5f + 0.5f * 0.6f, 0.5f + 0.5f * 0.8f, 1.0f};
+    texture.floats = {0.5f, 0.5f + 0.5f * 0.6f, 0.5f + 0.5f * 0.8f, 1.0f};
+    scene.textures[0] = std::make_shared<const Texture>(texture);
     EXPECT_NEAR(middle_of(scene, dvec3(0, 0, 1)).frame.normal.y, 0.6, 1e-6);
 }
 
@@ -86,7 +87,7 @@ TEST(SurfacePoint, TexturesMultiplyFactorsInTheirChannels) {
     Texture texture;
     texture.width = texture.height = 1;
     texture.floats = {0.5f, 0.4f, 0.25f, 1.0f};
-    scene.textures.push_back(texture);
+    scene.textures.push_back(std::make_shared<const Texture>(texture));
     const SurfaceMaterial found = middle_of(scene, dvec3(0, 0, 1)).material;
     EXPECT_EQ(found.base_colour, Rgb(0.25f, 0.4f, 0.25f));
     EXPECT_FLOAT_EQ(found.metallic, 0.8f * 0.25f);

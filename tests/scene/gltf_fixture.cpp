@@ -26,7 +26,8 @@ std::string padded(std::string text, char with) {
 }
 
 int components_of(const std::string& type) {
-    return type == "SCALAR" ? 1 : type.back() - '0';
+    const int n = type.back() - '0';
+    return type == "SCALAR" ? 1 : type.starts_with("MAT") ? n * n : n;
 }
 
 std::string encoded_by_oiio(const std::string& extension, int width, int height, int channels,
@@ -89,6 +90,14 @@ nlohmann::json& TestGltf::add_mesh(const std::vector<float>& positions, const st
     const int mesh = add("meshes", {{"primitives", nlohmann::json::array({primitive})}});
     add_node({{"mesh", mesh}});
     return json["meshes"].back()["primitives"][0];
+}
+
+void TestGltf::animate(const std::string& path, const std::string& interpolation, const std::vector<float>& times,
+                       const std::vector<float>& values, int node) {
+    const int input = add_floats("SCALAR", times);
+    const int output = add_floats(path == "weights" ? "SCALAR" : path == "rotation" ? "VEC4" : "VEC3", values);
+    add("animations", {{"samplers", {{{"input", input}, {"output", output}, {"interpolation", interpolation}}}},
+                       {"channels", {{{"sampler", 0}, {"target", {{"node", node}, {"path", path}}}}}}});
 }
 
 std::string glb_of(const std::string& json, const std::string& binary) {

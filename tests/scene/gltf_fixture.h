@@ -19,12 +19,16 @@ public:
     TestGltf();  // an asset without anything in it
 
     int add_view(const std::string& bytes);
-    int add_floats(const std::string& type, const std::vector<float>& numbers);  // "SCALAR", "VEC3", ...
+    int add_floats(const std::string& type, const std::vector<float>& numbers);  // "SCALAR", "VEC3", "MAT4", ...
     int add_indices(const std::vector<std::uint16_t>& indices);
     int add(const std::string& list, const nlohmann::json& item);  // its index
     int add_node(const nlohmann::json& node);                      // of the scene
     // A mesh of one primitive on a node of its own.
     nlohmann::json& add_mesh(const std::vector<float>& positions, const std::vector<std::uint16_t>& indices = {});
+
+    // An animation of one channel of a node; times in seconds.
+    void animate(const std::string& path, const std::string& interpolation, const std::vector<float>& times,
+                 const std::vector<float>& values, int node = 0);
 
     std::string glb() const;
     void write_glb(const std::filesystem::path& file) const;

@@ -150,8 +150,8 @@ TEST(Materials, OnlyThoseInUseAreRead) {
 TEST(MaterialTextures, EmbeddedInABuffer) {
     const Loaded loaded = load(textured());
     ASSERT_EQ(loaded.scene.textures.size(), 1u);
-    EXPECT_TRUE(loaded.scene.textures[0].srgb);
-    EXPECT_EQ(loaded.scene.textures[0].bytes, kRed);
+    EXPECT_TRUE(loaded.scene.textures[0]->srgb);
+    EXPECT_EQ(loaded.scene.textures[0]->bytes, kRed);
     EXPECT_EQ(loaded.scene.materials.at(0).base_colour.texture, 0);
     EXPECT_EQ(loaded.scene.meshes.at(0).uv, (std::vector<vec2>{{0, 0}, {1, 0}, {0, 1}}));
     EXPECT_GE(loaded.scene.bytes(), 4u);
@@ -163,7 +163,7 @@ TEST(MaterialTextures, AsDataUri) {
     gltf.json["images"][0] = {{"uri",
                                "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGP4"
                                "z8AAAAMBAQDJ/pLvAAAAAElFTkSuQmCC"}};
-    EXPECT_EQ(load(gltf).scene.textures.at(0).bytes, kRed);
+    EXPECT_EQ(load(gltf).scene.textures.at(0)->bytes, kRed);
     gltf.json["images"][0] = {{"uri", "data:image/webp;base64,AAAA"}};
     EXPECT_EQ(failure_of_loading(gltf).code, ExitCode::BadData);
 }
@@ -182,7 +182,7 @@ TEST(MaterialTextures, InFilesWithAnyName) {
             TestGltf gltf = textured();
             gltf.json["images"][0] = {{"uri", uri}};
             gltf.write_glb(folder / "scene.glb");
-            EXPECT_EQ(load_file(folder / "scene.glb").scene.textures.at(0).bytes, kRed) << uri;
+            EXPECT_EQ(load_file(folder / "scene.glb").scene.textures.at(0)->bytes, kRed) << uri;
         }
     }
 }
@@ -261,15 +261,15 @@ TEST(MaterialTextures, SamplersAndColourSpacesMakeTexturesOfTheirOwn) {
     const Loaded loaded = load(gltf);
     const SceneMaterial& m = loaded.scene.materials.at(0);
     ASSERT_EQ(loaded.scene.textures.size(), 3u) << "sRGB, linear, and linear by another sampler";
-    const Texture& rough = loaded.scene.textures.at(static_cast<std::size_t>(m.metal_rough.texture));
+    const Texture& rough = *loaded.scene.textures.at(static_cast<std::size_t>(m.metal_rough.texture));
     EXPECT_TRUE(rough.nearest);
     EXPECT_EQ(rough.wrap_u, Wrap::Clamp);
     EXPECT_EQ(rough.wrap_v, Wrap::Mirror);
     EXPECT_FALSE(rough.srgb);
     for (const TextureUse& use : {m.base_colour, m.emission_colour, m.specular_colour})
-        EXPECT_TRUE(loaded.scene.textures.at(static_cast<std::size_t>(use.texture)).srgb);
+        EXPECT_TRUE(loaded.scene.textures.at(static_cast<std::size_t>(use.texture))->srgb);
     for (const TextureUse& use : {m.normal, m.specular, m.transmission})
-        EXPECT_FALSE(loaded.scene.textures.at(static_cast<std::size_t>(use.texture)).srgb);
+        EXPECT_FALSE(loaded.scene.textures.at(static_cast<std::size_t>(use.texture))->srgb);
     EXPECT_EQ(m.normal_scale, 0.5f);
     EXPECT_TRUE(loaded.messages.noticed("occlusion"));
     EXPECT_TRUE(loaded.messages.warnings.empty());

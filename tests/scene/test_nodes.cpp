@@ -15,15 +15,6 @@ dvec3 corner_at(const TestGltf& gltf, double seconds = 0.0) {
     return load(gltf, seconds).scene.meshes.at(0).positions.at(1);
 }
 
-// An animation of one channel of node 0.
-void animate(TestGltf& gltf, const std::string& path, const std::string& interpolation, const std::vector<float>& times,
-             const std::vector<float>& values, int node = 0) {
-    const int input = gltf.add_floats("SCALAR", times);
-    const int output = gltf.add_floats(path == "rotation" ? "VEC4" : "VEC3", values);
-    gltf.add("animations", {{"samplers", {{{"input", input}, {"output", output}, {"interpolation", interpolation}}}},
-                            {"channels", {{{"sampler", 0}, {"target", {{"node", node}, {"path", path}}}}}}});
-}
-
 TEST(Nodes, TranslationRotationScaleInThatOrder) {
     TestGltf gltf = one_triangle();
     const double h = std::sqrt(0.5);  // a quarter turn about z
@@ -103,7 +94,7 @@ TEST(Nodes, AChainOfManyNodesDoesNotExhaustTheStack) {
 
 TEST(Animations, LinearIsClampedAtItsEnds) {
     TestGltf gltf = one_triangle();
-    animate(gltf, "translation", "LINEAR", {1, 3}, {0, 0, 0, 4, 0, 8});
+    gltf.animate("translation", "LINEAR", {1, 3}, {0, 0, 0, 4, 0, 8});
     expect_near(corner_at(gltf, 0.0), {1, 0, 0});
     expect_near(corner_at(gltf, 1.0), {1, 0, 0});
     expect_near(corner_at(gltf, 1.5), {2, 0, 2});
@@ -113,7 +104,7 @@ TEST(Animations, LinearIsClampedAtItsEnds) {
 
 TEST(Animations, StepHolds) {
     TestGltf gltf = one_triangle();
-    animate(gltf, "scale", "STEP", {1, 3}, {1, 1, 1, 4, 1, 1});
+    gltf.animate("scale", "STEP", {1, 3}, {1, 1, 1, 4, 1, 1});
     expect_near(corner_at(gltf, 2.999), {1, 0, 0});
     expect_near(corner_at(gltf, 3.0), {4, 0, 0});
 }
@@ -121,7 +112,7 @@ TEST(Animations, StepHolds) {
 TEST(Animations, RotationsTakeTheShorterArc) {
     TestGltf gltf = one_triangle();
     const float h = std::sqrt(0.5f);
-    animate(gltf, "rotation", "LINEAR", {0, 1}, {0, 0, 0, 1, 0, 0, -h, -h});  // a quarter turn, by its negative
+    gltf.animate("rotation", "LINEAR", {0, 1}, {0, 0, 0, 1, 0, 0, -h, -h});  // a quarter turn, by its negative
     const double angle = 0.25 * 1.5707963267948966;
     expect_near(corner_at(gltf, 0.25), {std::cos(angle), std::sin(angle), 0});
     expect_near(corner_at(gltf, 1.0), {0, 1, 0});
@@ -130,7 +121,7 @@ TEST(Animations, RotationsTakeTheShorterArc) {
 TEST(Animations, CubicSplines) {
     TestGltf gltf = one_triangle();
     // x(t) = t^3 on [0, 2]: tangents 0 and 12.
-    animate(gltf, "translation", "CUBICSPLINE", {0, 2}, {9, 9, 9, 0, 0, 0, 0, 0, 0, 12, 0, 0, 8, 0, 0, 9, 9, 9});
+    gltf.animate("translation", "CUBICSPLINE", {0, 2}, {9, 9, 9, 0, 0, 0, 0, 0, 0, 12, 0, 0, 8, 0, 0, 9, 9, 9});
     for (const double t : {0.0, 0.5, 1.3, 2.0})
         expect_near(corner_at(gltf, t), {1 + t * t * t, 0, 0});
     expect_near(corner_at(gltf, -1.0), {1, 0, 0});
@@ -140,22 +131,22 @@ TEST(Animations, CubicSplines) {
 TEST(Animations, CubicRotationsAreNormalised) {
     TestGltf gltf = one_triangle();
     const float h = std::sqrt(0.5f);
-    animate(gltf, "rotation", "CUBICSPLINE", {0, 1},
-            {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, h, h, 0, 0, 0, 0});
+    gltf.animate("rotation", "CUBICSPLINE", {0, 1},
+                 {0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, h, h, 0, 0, 0, 0});
     expect_near(corner_at(gltf, 0.5), {h, h, 0});
 }
 
 TEST(Animations, AllOfAFilePlayTogether) {
     TestGltf gltf = one_triangle();
-    animate(gltf, "translation", "LINEAR", {0, 1}, {0, 0, 0, 0, 0, 2});
-    animate(gltf, "scale", "LINEAR", {0, 1}, {1, 1, 1, 3, 1, 1});
+    gltf.animate("translation", "LINEAR", {0, 1}, {0, 0, 0, 0, 0, 2});
+    gltf.animate("scale", "LINEAR", {0, 1}, {1, 1, 1, 3, 1, 1});
     expect_near(corner_at(gltf, 1.0), {3, 0, 2});
 }
 
 TEST(Animations, OfANodeWithAMatrixAreLeftOutWithAWarning) {
     TestGltf gltf = one_triangle();
     gltf.json["nodes"][0]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-    animate(gltf, "translation", "LINEAR", {0, 1}, {0, 0, 0, 0, 0, 2});
+    gltf.animate("translation", "LINEAR", {0, 1}, {0, 0, 0, 0, 0, 2});
     const Loaded loaded = load(gltf, 1.0);
     EXPECT_TRUE(loaded.messages.warned("animated-matrix"));
     expect_near(loaded.scene.meshes.at(0).positions.at(1), {1, 0, 0});
@@ -165,7 +156,7 @@ TEST(Animations, BadOnesAreRefused) {
     const auto failure = [](const std::vector<float>& times, const std::vector<float>& values,
                             const std::string& interpolation = "LINEAR", int node = 0) {
         TestGltf gltf = one_triangle();
-        animate(gltf, "translation", interpolation, times, values, node);
+        gltf.animate("translation", interpolation, times, values, node);
         return failure_of_loading(gltf).code;
     };
     const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -177,13 +168,13 @@ TEST(Animations, BadOnesAreRefused) {
     EXPECT_EQ(failure({0}, {0, 0, 0}, "BOUNCE"), ExitCode::BadData);
     EXPECT_EQ(failure({0}, {0, 0, 0}, "LINEAR", 9), ExitCode::BadData) << "no such node";
     TestGltf no_data = one_triangle();
-    animate(no_data, "translation", "LINEAR", {0}, {0, 0, 0});
+    no_data.animate("translation", "LINEAR", {0}, {0, 0, 0});
     no_data.json["accessors"][2].erase("bufferView");
     no_data.json["accessors"][2]["sparse"] = {
         {"count", 0}, {"indices", {{"bufferView", 0}, {"componentType", 5123}}}, {"values", {{"bufferView", 0}}}};
     EXPECT_EQ(failure_of_loading(no_data).code, ExitCode::BadData);
     TestGltf no_sampler = one_triangle();
-    animate(no_sampler, "translation", "LINEAR", {0}, {0, 0, 0});
+    no_sampler.animate("translation", "LINEAR", {0}, {0, 0, 0});
     no_sampler.json["animations"][0]["channels"][0]["sampler"] = 4;
     EXPECT_EQ(failure_of_loading(no_sampler).code, ExitCode::BadData);
 }

@@ -60,11 +60,11 @@ TEST_F(RealScenes, VeachAjar) {
     if (IsSkipped())
         return;
     ASSERT_EQ(loaded_.scene.textures.size(), 4u);
-    for (const Texture& texture : loaded_.scene.textures) {
-        EXPECT_EQ(texture.nearest, texture.name == "checker");
-        EXPECT_TRUE(texture.srgb);
-        EXPECT_EQ(texture.bytes.size(),
-                  4 * static_cast<std::size_t>(texture.width) * static_cast<std::size_t>(texture.height));
+    for (const auto& texture : loaded_.scene.textures) {
+        EXPECT_EQ(texture->nearest, texture->name == "checker");
+        EXPECT_TRUE(texture->srgb);
+        EXPECT_EQ(texture->bytes.size(),
+                  4 * static_cast<std::size_t>(texture->width) * static_cast<std::size_t>(texture->height));
     }
     for (const SceneMaterial& material : loaded_.scene.materials)
         EXPECT_FALSE(material.surface.thin) << material.name;

@@ -272,6 +272,19 @@ TEST(UnreadableScenes, PartsThatAreNotGltfAreLeftOutWithAWarning) {
     EXPECT_TRUE(loaded.messages.warned("gltf-part"));
 }
 
+// A morph target and a skin of one joint for a mesh of four vertices on node 0.
+void add_shape(TestGltf& gltf, json& primitive) {
+    primitive["targets"] = {{{"POSITION", gltf.add_floats("VEC3", {0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0})}}};
+    const int joints = gltf.add_view(std::string(16, '\0'));
+    primitive["attributes"]["JOINTS_0"] =
+        gltf.add("accessors", {{"bufferView", joints}, {"componentType", 5121}, {"count", 4}, {"type", "VEC4"}});
+    primitive["attributes"]["WEIGHTS_0"] = gltf.add_floats("VEC4", {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+    const int matrix = gltf.add_floats("MAT4", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1});
+    gltf.json["nodes"][0]["skin"] = gltf.add("skins", {{"joints", {0}}, {"inverseBindMatrices", matrix}});
+    gltf.json["nodes"][0]["weights"] = {0.5};
+    gltf.animate("weights", "LINEAR", {0, 1}, {0, 1});
+}
+
 // Something of everything.
 TestGltf rich() {
     TestGltf gltf;
@@ -286,6 +299,7 @@ TestGltf rich() {
     const int positions = gltf.add_floats("VEC3", {0, 0, 0, 1, 1, 1});
     gltf.add("animations", {{"samplers", {{{"input", times}, {"output", positions}}}},
                             {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "scale"}}}}}}});
+    add_shape(gltf, primitive);
     gltf.add("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}, {"aspectRatio", 1}}}});
     gltf.json["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "spot"}, {"spot", {{"innerConeAngle", 0}}}}};
     gltf.add_node({{"camera", 0},

@@ -43,8 +43,10 @@ int components_of(const tinygltf::Accessor& accessor) {
             return 3;
         case TINYGLTF_TYPE_VEC4:
             return 4;
+        case TINYGLTF_TYPE_MAT4:
+            return 16;
         default:
-            return 0;  // matrices: nothing here reads any
+            return 0;  // smaller matrices: nothing here reads any
     }
 }
 
@@ -120,15 +122,15 @@ void convert_any(const Elements& from, std::size_t element, std::size_t componen
     }
 }
 
-std::uint32_t index_at(const Elements& from, std::size_t element) {
+std::uint32_t index_at(const Elements& from, std::size_t element, std::size_t component = 0) {
     const unsigned char* const bytes = from.first + element * from.stride;
     switch (from.component_type) {
         case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-            return load<std::uint8_t>(bytes);
+            return load<std::uint8_t>(bytes + component);
         case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-            return load<std::uint16_t>(bytes);
+            return load<std::uint16_t>(bytes + component * sizeof(std::uint16_t));
         default:
-            return load<std::uint32_t>(bytes);
+            return load<std::uint32_t>(bytes + component * sizeof(std::uint32_t));
     }
 }
 
@@ -192,14 +194,15 @@ std::vector<float> read_floats(const GltfFile& file, int accessor, int component
     return numbers;
 }
 
-std::vector<std::uint32_t> read_indices(const GltfFile& file, int accessor, const std::string& what) {
-    const Elements from = elements(file, accessor, 1, what);
+std::vector<std::uint32_t> read_indices(const GltfFile& file, int accessor, const std::string& what, int components) {
+    const Elements from = elements(file, accessor, components, what);
     check_index_type(file, from.component_type, what);
     if (file.model.accessors[static_cast<std::size_t>(accessor)].sparse.isSparse)
         file.reject(what + " are sparse, which is not supported");
-    std::vector<std::uint32_t> indices(from.count);
+    const auto n = static_cast<std::size_t>(components);
+    std::vector<std::uint32_t> indices(from.count * n);
     for (std::size_t i = 0; i < indices.size(); ++i)
-        indices[i] = index_at(from, i);
+        indices[i] = index_at(from, i / n, i % n);
     return indices;
 }
 

@@ -15,7 +15,8 @@ namespace brisance {
 // Returns the number of elements, all of which exist. Allocates nothing, so that a file may claim any number.
 std::size_t element_count(const GltfFile& file, int accessor, const std::string& what);
 
-// All elements of `components` numbers each, one after the other; normalised integers as 0..1 or -1..1.
+// All elements of `components` numbers each, one after the other; normalised integers as 0..1 or -1..1. 16 components
+// are a 4x4 matrix, column by column.
 std::vector<float> read_floats(const GltfFile& file, int accessor, int components, const std::string& what);
 
 // As read_floats, as vectors: vec2, vec3 or vec4.
@@ -28,8 +29,9 @@ std::vector<Vector> read_vectors(const GltfFile& file, int accessor, const std::
     return vectors;
 }
 
-// Unsigned integers of 8, 16 or 32 bits.
-std::vector<std::uint32_t> read_indices(const GltfFile& file, int accessor, const std::string& what);
+// Unsigned integers of 8, 16 or 32 bits, `components` an element, one after the other.
+std::vector<std::uint32_t> read_indices(const GltfFile& file, int accessor, const std::string& what,
+                                        int components = 1);
 
 // The bytes of a bufferView: an embedded picture.
 struct ByteRange {

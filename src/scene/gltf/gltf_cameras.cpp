@@ -126,4 +126,11 @@ std::vector<LightSettings> read_lights(const GltfFile& file, const std::vector<P
     return lights;
 }
 
+bool moves_camera_or_light(const GltfFile& file, const std::vector<PlacedNode>& nodes) {
+    return std::any_of(nodes.begin(), nodes.end(), [&](const PlacedNode& placed) {
+        const tinygltf::Node& node = file.model.nodes[static_cast<std::size_t>(placed.node)];
+        return placed.moves && (node.camera >= 0 || light_of(node) >= 0);
+    });
+}
+
 }  // namespace brisance

@@ -16,4 +16,7 @@ std::vector<SceneCamera> read_cameras(const GltfFile& file, const std::vector<Pl
 // 1 W/m^2. Ranges, which would cut light off, are left out with a notice.
 std::vector<LightSettings> read_lights(const GltfFile& file, const std::vector<PlacedNode>& nodes, Progress& progress);
 
+// Whether an animation moves a node with a camera or a light.
+bool moves_camera_or_light(const GltfFile& file, const std::vector<PlacedNode>& nodes);
+
 }  // namespace brisance

@@ -12,6 +12,7 @@
 #include <new>
 #include <set>
 #include <span>
+#include <sstream>
 
 #include "core/error.h"
 #include "core/input_file.h"
@@ -150,6 +151,16 @@ void check_version_and_extensions(const GltfFile& file, Progress& progress) {
         progress.notice(fmt::format("{}: extensions left out: {}", file.path.string(), fmt::join(unknown, ", ")));
 }
 
+// What tinygltf says is wrong, without what is not: glTF 2.0 lets skins be without inverse bind matrices.
+std::string without_false_alarm(const std::string& error) {
+    std::istringstream lines(error);
+    std::string kept;
+    for (std::string line; std::getline(lines, line);)
+        if (!line.starts_with("'inverseBindMatrices' property is missing"))
+            kept += line + '\n';
+    return kept;
+}
+
 // Runs tinygltf.
 void parse(GltfFile& file, Bytes& bytes, MemoryBudget& budget, Progress& progress) {
     const auto size = static_cast<unsigned int>(bytes.size());
@@ -165,6 +176,7 @@ void parse(GltfFile& file, Bytes& bytes, MemoryBudget& budget, Progress& progres
                              : reader.LoadASCIIFromString(&file.model, &error, &warning,
                                                           reinterpret_cast<const char*>(bytes.data()), size, "");
     check_version_and_extensions(file, progress);  // first: they may be why tinygltf could not go on
+    error = without_false_alarm(error);
     if (!read)
         file.reject("not glTF, or damaged: " + printable(error, 160));
     if (!error.empty())

@@ -218,13 +218,20 @@ int GltfMaterials::load(const tinygltf::Texture& texture, int index, bool srgb) 
     const std::tuple key(texture.source, static_cast<int>(u), static_cast<int>(v), nearest, srgb);
     if (const auto known = textures_.find(key); known != textures_.end())
         return known->second;
-    Texture result = decode(texture.source, srgb);
+    // Textures follow each other in the same order at all moments of a scene, since its nodes do.
+    const std::size_t next = scene_.textures.size();
+    const bool shared = same_pictures_ != nullptr && next < same_pictures_->textures.size();
+    scene_.textures.push_back(shared ? same_pictures_->textures[next] : read(texture.source, u, v, nearest, srgb));
+    return textures_[key] = static_cast<int>(next);
+}
+
+std::shared_ptr<const Texture> GltfMaterials::read(int image, Wrap u, Wrap v, bool nearest, bool srgb) {
+    Texture result = decode(image, srgb);
     result.wrap_u = u;
     result.wrap_v = v;
     result.nearest = nearest;
     budget_.claim(file_.path.string(), static_cast<double>(result.bytes.size() + sizeof(float) * result.floats.size()));
-    scene_.textures.push_back(std::move(result));
-    return textures_[key] = static_cast<int>(scene_.textures.size()) - 1;
+    return std::make_shared<const Texture>(std::move(result));
 }
 
 Texture GltfMaterials::decode(int index, bool srgb) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <tuple>
 #include <vector>
 
@@ -17,8 +18,10 @@ namespace brisance {
 // a notice.
 class GltfMaterials {
 public:
-    GltfMaterials(const GltfFile& file, Scene& scene, MemoryBudget& budget, Progress& progress)
-        : file_(file), scene_(scene), budget_(budget), progress_(progress) {}
+    // Takes the textures of `same_pictures`, as far as they go, instead of reading any; null: reads all.
+    GltfMaterials(const GltfFile& file, Scene& scene, MemoryBudget& budget, Progress& progress,
+                  const Scene* same_pictures)
+        : file_(file), scene_(scene), budget_(budget), progress_(progress), same_pictures_(same_pictures) {}
 
     // The scene's material for one of the file; -1: glTF's default material.
     int scene_material(int material);
@@ -42,6 +45,7 @@ private:
     Reference reference(const tinygltf::Value& info) const;
     TextureUse use(const Reference& reference, bool srgb);
     int load(const tinygltf::Texture& texture, int index, bool srgb);
+    std::shared_ptr<const Texture> read(int image, Wrap u, Wrap v, bool nearest, bool srgb);
     Texture decode(int image, bool srgb);
 
     float clamped(double value, double low, double high, const char* what);
@@ -51,6 +55,7 @@ private:
     Scene& scene_;
     MemoryBudget& budget_;
     Progress& progress_;
+    const Scene* same_pictures_;
     std::map<int, int> materials_;                                   // of the file to of the scene
     std::map<int, int> uv_sets_;                                     // by material of the scene
     std::map<std::tuple<int, int, int, bool, bool>, int> textures_;  // image, wraps, nearest, srgb to of the scene

@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "scene/gltf/gltf_accessor.h"
+#include "scene/gltf/gltf_morph.h"
+#include "scene/gltf/gltf_skins.h"
 
 namespace brisance {
 namespace {
@@ -25,9 +27,9 @@ dvec3 cross_of(const SceneMesh& mesh, const uvec3& t) {
 
 // One primitive of one node.
 struct Job {
+    const PlacedNode& placed;
     const tinygltf::Node& node;
     const tinygltf::Primitive& primitive;
-    dmat4 world_from_node;
     int position = -1;  // accessor
     std::string name;   // "mesh 3 (Floor), primitive 0"
 };
@@ -95,25 +97,41 @@ void repair_normals(SceneMesh& mesh, const std::string& where, Progress& progres
 
 class MeshReader {
 public:
-    MeshReader(const GltfFile& file, Scene& scene, MemoryBudget& budget, Progress& progress)
-        : file_(file), scene_(scene), budget_(budget), progress_(progress), materials_(file, scene, budget, progress) {}
+    MeshReader(const GltfFile& file, const std::vector<PlacedNode>& nodes, Scene& scene, MemoryBudget& budget,
+               Progress& progress, const Scene* same_pictures)
+        : file_(file),
+          nodes_(nodes),
+          scene_(scene),
+          budget_(budget),
+          progress_(progress),
+          materials_(file, scene, budget, progress, same_pictures),
+          skins_(file, nodes, scene.origin, budget) {}
 
-    void read(const std::vector<PlacedNode>& nodes) {
+    void read() {
         std::vector<Job> jobs;
-        for (const PlacedNode& placed : nodes)
+        for (const PlacedNode& placed : nodes_)
             add_jobs(placed, jobs);
-        double triangles = 0.0, vertices = 0.0;
-        for (const Job& job : jobs) {
-            triangles += static_cast<double>(triangle_count(job.primitive.mode, corner_count(job)));
-            vertices += static_cast<double>(element_count(file_, job.position, job.name + ": positions"));
-        }
-        budget_.claim(file_.path.string(), bytes_with_tree(triangles, vertices), triangles);
+        claim_memory(jobs);
         for (const Job& job : jobs)
             read_primitive(job);
         left_out_.warn(file_.path.string(), progress_);
     }
 
 private:
+    void claim_memory(const std::vector<Job>& jobs) {
+        double triangles = 0.0, vertices = 0.0, passing = 0.0;  // passing: what moving one primitive takes for a while
+        for (const Job& job : jobs) {
+            const auto n = static_cast<double>(element_count(file_, job.position, job.name + ": positions"));
+            triangles += static_cast<double>(triangle_count(job.primitive.mode, corner_count(job)));
+            vertices += n;
+            if (!job.primitive.targets.empty())
+                passing = std::max(passing, n * kMorphBytes);
+            if (job.node.skin >= 0)
+                passing = std::max(passing, n * skin_bytes(skin_set_count(file_, job.primitive, job.name)));
+        }
+        budget_.claim(file_.path.string(), bytes_with_tree(triangles, vertices) + passing, triangles);
+    }
+
     // The primitives of a node that are triangles.
     void add_jobs(const PlacedNode& placed, std::vector<Job>& jobs) const {
         const tinygltf::Node& node = file_.model.nodes[static_cast<std::size_t>(placed.node)];
@@ -132,7 +150,7 @@ private:
                 progress_.warning("no-positions",
                                   fmt::format("{}: {} has no positions, it is left out", file_.path.string(), name));
             else
-                jobs.push_back({node, primitive, placed.world_from_node, position, name});
+                jobs.push_back({placed, node, primitive, position, name});
         }
     }
 
@@ -152,7 +170,7 @@ private:
             mesh.normals = read_matching<vec3>(job, normal, "normals", mesh.positions.size());
         mesh.material = materials_.scene_material(job.primitive.material);
         mesh.uv = read_uv(job, mesh);
-        transform(job.world_from_node, mesh);
+        place(job, mesh);
         leave_out_unusable(mesh, left_out_);
         if (mesh.triangles.empty()) {
             progress_.warning("empty-mesh", fmt::format("{}: nothing can be seen of {}, it is left out",
@@ -160,7 +178,8 @@ private:
             return;
         }
         repair_normals(mesh, file_.path.string() + ": " + job.name, progress_);
-        tell_what_is_ignored(job);
+        if (attribute(job.primitive, "COLOR_0") >= 0)
+            progress_.notice(file_.path.string() + ": colours of vertices are left out");
         scene_.meshes.push_back(std::move(mesh));
     }
 
@@ -206,42 +225,40 @@ private:
         return {};
     }
 
-    void tell_what_is_ignored(const Job& job) const {
-        const std::string where = file_.path.string() + ": ";
-        if (job.node.skin >= 0)
-            progress_.warning("skin", where + job.name + " has a skin, its bind pose is used");
-        if (!job.primitive.targets.empty())
-            progress_.warning("morph", where + job.name + " has morph targets, its base shape is used");
-        if (attribute(job.primitive, "COLOR_0") >= 0)
-            progress_.notice(where + "colours of vertices are left out");
-    }
-
-    // From the node to local: in double until the origin is taken off.
-    void transform(const dmat4& world_from_node, SceneMesh& mesh) const {
-        const dmat3 linear(world_from_node);
-        const dvec3 offset = dvec3(world_from_node[3].x, world_from_node[3].y, world_from_node[3].z) - scene_.origin;
-        for (vec3& p : mesh.positions)
-            p = vec3(linear * dvec3(p) + offset);
-        const bool mirrored = glm::determinant(linear) < 0.0;
-        if (mirrored)
-            for (uvec3& t : mesh.triangles)
-                std::swap(t.y, t.z);
-        // Cofactors are the inverse transpose times the determinant, and exist where it is 0.
-        const double sign = mirrored ? -1.0 : 1.0;
-        const dmat3 cofactors(sign * glm::cross(linear[1], linear[2]), sign * glm::cross(linear[2], linear[0]),
-                              sign * glm::cross(linear[0], linear[1]));
-        for (vec3& n : mesh.normals) {
-            const dvec3 turned = cofactors * dvec3(n);
-            const double length = glm::length(turned);
-            n = length > 0.0 && std::isfinite(length) ? vec3(turned / length) : vec3(0.0f);
+    // From the mesh's own space to local space: morph targets first, then the skin or else the node.
+    void place(const Job& job, SceneMesh& mesh) {
+        if (!job.primitive.targets.empty()) {
+            morph(file_, job.primitive, morph_weights(file_, job.placed), job.name, mesh, progress_);
+            scene_.animated = scene_.animated || job.placed.morphs;
+        }
+        if (job.node.skin >= 0) {
+            const Skin& skin = skins_.skin(job.node.skin);
+            pose_by_skin(file_, job.primitive, skin, job.name, mesh, progress_);
+            scene_.animated = scene_.animated || skin.moves;
+        } else {
+            transform(Affine::local(job.placed.world_from_node, scene_.origin), mesh);
+            scene_.animated = scene_.animated || job.placed.moves;
         }
     }
 
+    static void transform(const Affine& local_from_node, SceneMesh& mesh) {
+        for (vec3& p : mesh.positions)
+            p = local_from_node.position(p);
+        if (local_from_node.mirrors())
+            for (uvec3& t : mesh.triangles)
+                std::swap(t.y, t.z);
+        const NormalMap map(local_from_node);
+        for (vec3& n : mesh.normals)
+            n = map.normal(n);
+    }
+
     const GltfFile& file_;
+    const std::vector<PlacedNode>& nodes_;
     Scene& scene_;
     MemoryBudget& budget_;
     Progress& progress_;
     GltfMaterials materials_;
+    GltfSkins skins_;
     LeftOut left_out_;
 };
 
@@ -274,8 +291,8 @@ double bytes_with_tree(double triangles, double vertices) {
 }
 
 void read_meshes(const GltfFile& file, const std::vector<PlacedNode>& nodes, Scene& scene, MemoryBudget& budget,
-                 Progress& progress) {
-    MeshReader(file, scene, budget, progress).read(nodes);
+                 Progress& progress, const Scene* same_pictures) {
+    MeshReader(file, nodes, scene, budget, progress, same_pictures).read();
 }
 
 }  // namespace brisance

@@ -22,9 +22,11 @@ void leave_out_unusable(SceneMesh& mesh, LeftOut& left_out);
 // What `triangles` and their vertices take, with an estimate of the tree by which rays find them.
 double bytes_with_tree(double triangles, double vertices);
 
-// Adds the triangles of all nodes to a scene, a mesh for each primitive of each node. Claims what they take before
-// anything is allocated. Skins and morph targets stay in their base shape, with a warning.
+// Adds the triangles of all nodes to a scene, a mesh for each primitive of each node, moved by morph targets, then by
+// its skin or else its node (gltf_morph.h, gltf_skins.h). Claims what they take before anything is allocated. Sets
+// scene.animated where an animation moves any of them. Takes textures from `same_pictures` where it is given
+// (load_scene.h).
 void read_meshes(const GltfFile& file, const std::vector<PlacedNode>& nodes, Scene& scene, MemoryBudget& budget,
-                 Progress& progress);
+                 Progress& progress, const Scene* same_pictures);
 
 }  // namespace brisance

@@ -11,6 +11,9 @@ namespace brisance {
 struct PlacedNode {
     int node = 0;
     dmat4 world_from_node{1.0};
+    bool moves = false;           // whether an animation moves it or one of its ancestors
+    bool morphs = false;          // whether an animation changes `weights`
+    std::vector<double> weights;  // of morph targets, by an animation; empty: not animated
 };
 
 // Every node of the default scene, else of the first, else of the file; parents before children. All animations of the
