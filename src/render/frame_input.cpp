@@ -62,10 +62,12 @@ Texture read_environment(const std::filesystem::path& file) {
 }
 
 std::unique_ptr<Surroundings> load_surroundings(const Shot& shot, double seconds, const dvec3& origin,
-                                                Statistics& statistics, Progress& progress) {
+                                                Statistics& statistics, Progress& progress,
+                                                const Surroundings* of_other_moment = nullptr) {
     progress.stage("surfaces");
     const Stopwatch watch;
-    Scene scene = load_scene(shot.scene, shot.folder, seconds, origin, kSceneMemory, progress);
+    Scene scene = load_scene(shot.scene, shot.folder, seconds, origin, kSceneMemory, progress,
+                             of_other_moment ? &of_other_moment->scene() : nullptr);
     std::vector<LightSettings> lights = shot.scene.lights;
     lights.insert(lights.end(), scene.lights.begin(), scene.lights.end());
     std::vector<Texture> pictures;
@@ -110,12 +112,12 @@ Animation animation_of_files(const Shot& shot, int frame, bool camera_of_file, c
         out.camera = camera;
     if (!input.surroundings || !input.surroundings->scene().animated)
         return out;
-    const auto surroundings = [&shot, rate, frame, origin = origin_of(input.medium)](double frames) {
+    const Surroundings& now = *input.surroundings;
+    const auto surroundings = [&shot, &now, rate, frame, origin = origin_of(input.medium)](double frames) {
         Statistics ignored;
         Progress silent;
-        return load_surroundings(shot, (frame + frames) / rate, origin, ignored, silent);
+        return load_surroundings(shot, (frame + frames) / rate, origin, ignored, silent, &now);
     };
-    const Surroundings& now = *input.surroundings;
     if (!stand_still(*surroundings(span.opens), now) || !stand_still(*surroundings(span.closes), now))
         out.surroundings = surroundings;
     return out;
