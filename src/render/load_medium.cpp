@@ -24,7 +24,8 @@ std::vector<VolumePart> parts_of(const Shot& shot, const std::filesystem::path& 
     for (const FurtherVolume& further : shot.volumes) {
         const std::string pattern = further.volume.box ? "" : (shot.folder / further.volume.file).string();
         const TimeSettings& time = time_of(shot, further);
-        VolumePart part{{}, further.volume, changed(shot.medium, further.changes), time, velocity_of(shot, further), {}};
+        VolumePart part{{}, further.volume, changed(shot.medium, further.changes), time, velocity_of(shot, further),
+                        {}};
         if (further.volume.box)
             part.look.fire.model = FireModel::None;
         else

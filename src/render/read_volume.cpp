@@ -47,7 +47,10 @@ void say_what_is_missing(const FireSettings& fire, const GridMapping& mapping, P
 class OpenVolume {
 public:
     OpenVolume(const std::filesystem::path& file, const VolumeSettings& settings)
-        : file_(file), settings_(settings), reader_(file), mapping_(map_grids(reader_.grids(), settings, file.string())) {}
+        : file_(file),
+          settings_(settings),
+          reader_(file),
+          mapping_(map_grids(reader_.grids(), settings, file.string())) {}
 
     const GridMapping& mapping() const { return mapping_; }
 
@@ -70,10 +73,10 @@ public:
         }
         CentredVelocity velocity = centred_velocity(grids);
         if (velocity.outliers > 0)
-            progress.warning("velocity", fmt::format("{}: {} of its velocities are above {:.3g}, four times the 99th "
-                                                     "percentile (up to {:.3g}), and are clamped to it",
-                                                     file_.string(), velocity.outliers, velocity.limit,
-                                                     velocity.largest));
+            progress.warning("velocity",
+                             fmt::format("{}: {} of its velocities are above {:.3g}, four times the 99th "
+                                         "percentile (up to {:.3g}), and are clamped to it",
+                                         file_.string(), velocity.outliers, velocity.limit, velocity.largest));
         return velocity;
     }
 
@@ -108,7 +111,8 @@ Fields read_between(const VolumePart& part, std::string& mapping, Progress& prog
     progress.stage(fmt::format("{} {} and {}", moves ? "advecting" : "blending", part.files.first.filename().string(),
                                part.files.second.filename().string()));
     if (moves && pair.first.velocity.empty() && pair.second.velocity.empty())
-        progress.warning("velocity", where + ": neither it nor the next frame has a velocity: they are blended in place");
+        progress.warning("velocity",
+                         where + ": neither it nor the next frame has a velocity: they are blended in place");
     return moves ? advected(pair, part.velocity) : blended(pair);
 }
 
@@ -163,8 +167,8 @@ DecidingField deciding_field(const std::string& pattern, const std::vector<int>&
     return field;
 }
 
-SourceFrame read_deciding(const std::filesystem::path& file, const VolumeSettings& settings,
-                          const DecidingField& field, Progress& progress) {
+SourceFrame read_deciding(const std::filesystem::path& file, const VolumeSettings& settings, const DecidingField& field,
+                          Progress& progress) {
     OpenVolume volume(file, settings);
     std::array<bool, kRoles> wanted{};
     wanted[field.role] = true;

@@ -38,7 +38,7 @@ DecidingField deciding_field(const std::string& pattern, const std::vector<int>&
                              const VolumeSettings& settings, const MediumSettings& look);
 
 // That field alone, with the velocity where there is one.
-SourceFrame read_deciding(const std::filesystem::path& file, const VolumeSettings& settings,
-                          const DecidingField& field, Progress& progress);
+SourceFrame read_deciding(const std::filesystem::path& file, const VolumeSettings& settings, const DecidingField& field,
+                          Progress& progress);
 
 }  // namespace brisance

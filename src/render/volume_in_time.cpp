@@ -50,23 +50,20 @@ struct Settling {
     const MediumSettings& look;
     TimeSettings time;
     VelocitySettings velocity;
-
-    bool open(const std::vector<int>& on_disk) const {
-        return !is_settled(time, velocity) && may_interpolate(time, on_disk);
-    }
 };
 
 void settle(Settling& s, Progress& progress) {
+    if (s.time.identity() || is_settled(s.time, s.velocity))
+        return;
     const std::vector<int> on_disk = frames_of(s.pattern);
-    if (!s.open(on_disk))
+    if (!may_interpolate(s.time, on_disk))
         return;
     progress.stage("time");
     const DecidingField field = deciding_field(s.pattern, on_disk, s.volume, s.look);
-    const RetimingQuestion question{s.time.retime, s.velocity, on_disk, 0, field.name, field.has_velocity,
+    const RetimingQuestion question{s.time.retime,         s.velocity, on_disk, 0, field.name, field.has_velocity,
                                     field.why_no_velocity, s.pattern};
-    const RetimingChoice choice = choose_retiming(question, [&](int frame) {
-        return read_deciding(resolve_frame(s.pattern, frame), s.volume, field, progress);
-    });
+    const RetimingChoice choice = choose_retiming(
+        question, [&](int frame) { return read_deciding(resolve_frame(s.pattern, frame), s.volume, field, progress); });
     for (const std::string& line : choice.lines)
         progress.notice(line);
     s.time.retime = choice.retime;

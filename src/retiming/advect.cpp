@@ -7,7 +7,6 @@
 namespace brisance {
 namespace {
 
-
 // One of both frames on its way to the time between them.
 struct Side {
     int frame = 0;

@@ -10,11 +10,11 @@
 namespace brisance {
 
 struct CentredVelocity {
-    BlockGrid grid;                // three channels, in the file's unit; 0 where nothing is known
-    double typical = 0.0;          // 99th percentile of the lengths above zero
-    double largest = 0.0;          // as stored
-    double limit = 0.0;            // lengths are clamped to this multiple of the typical one
-    std::uint64_t outliers = 0;    // vectors that were
+    BlockGrid grid;              // three channels, in the file's unit; 0 where nothing is known
+    double typical = 0.0;        // 99th percentile of the lengths above zero
+    double largest = 0.0;        // as stored
+    double limit = 0.0;          // lengths are clamped to this multiple of the typical one
+    std::uint64_t outliers = 0;  // vectors that were
     bool empty() const { return grid.empty() || typical <= 0.0; }
 };
 

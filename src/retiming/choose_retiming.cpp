@@ -65,9 +65,9 @@ bool settle_unit(const RetimingQuestion& question, const std::vector<Triple>& tr
         return false;
     choice.velocity.unit = VelocityUnit::Frame;
     choice.velocity.scale *= choice.fit->metres_per_frame;
-    choice.lines.push_back(fmt::format("velocity: {}; keep it with --set velocity.unit=frame --set velocity.scale={:.4g}",
-                                       choice.fit->describe(question.velocity.frames_per_second),
-                                       choice.velocity.scale));
+    choice.lines.push_back(
+        fmt::format("velocity: {}; keep it with --set velocity.unit=frame --set velocity.scale={:.4g}",
+                    choice.fit->describe(question.velocity.frames_per_second), choice.velocity.scale));
     return true;
 }
 
@@ -80,8 +80,7 @@ BetweenFrames outer(const RetimingQuestion& question, const Triple& triple) {
     return pair;
 }
 
-void measure(const RetimingQuestion& question, const std::vector<Triple>& triples, bool moves,
-             RetimingChoice& choice) {
+void measure(const RetimingQuestion& question, const std::vector<Triple>& triples, bool moves, RetimingChoice& choice) {
     for (const Triple& triple : triples) {
         const std::optional<BlockGrid>& truth = triple.frame[1].fields[question.role];
         if (!truth || truth->empty())

@@ -12,12 +12,12 @@ namespace brisance {
 
 struct RetimingChoice {
     Retime retime = Retime::Linear;
-    VelocitySettings velocity;               // with its unit settled where it was to be fitted and could be
-    std::optional<VelocityFit> fit;          // where it was
-    std::vector<int> held_out;               // frames that were predicted from their neighbours
-    double linear_error = 0.0;               // relative L2 error of the field, mean over those frames
+    VelocitySettings velocity;       // with its unit settled where it was to be fitted and could be
+    std::optional<VelocityFit> fit;  // where it was
+    std::vector<int> held_out;       // frames that were predicted from their neighbours
+    double linear_error = 0.0;       // relative L2 error of the field, mean over those frames
     double advect_error = 0.0;
-    std::vector<std::string> lines;          // what was found, for people
+    std::vector<std::string> lines;  // what was found, for people
 };
 
 struct RetimingQuestion {

@@ -8,7 +8,6 @@
 namespace brisance {
 namespace {
 
-
 void take_bounds(BlockGrid& grid) {
     if (grid.empty()) {
         grid.info.active_min = ivec3(0);

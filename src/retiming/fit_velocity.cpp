@@ -14,18 +14,17 @@
 namespace brisance {
 namespace {
 
-constexpr std::size_t kMostNodes = 12000;  // at one place
+constexpr std::size_t kMostNodes = 4000;  // at one place
 // Candidates: the 99th percentile of the velocity as voxels per frame.
-constexpr double kSlowest = 0.04, kFastest = 40.0;
-constexpr int kCandidates = 21;     // steps of the square root of two
-constexpr int kRefinements = 12;    // golden sections
-constexpr double kNamed = 1.25;     // ratio within which a scale may be one of the usual units
+constexpr double kSlowest = 0.04, kFastest = 28.0;
+constexpr int kCandidates = 20;   // steps of about the square root of two
+constexpr int kRefinements = 10;  // golden sections
+constexpr double kNamed = 1.25;   // ratio within which a scale may be one of the usual units
 
 // Two neighbours, and the nodes at which they are compared.
 class Place {
 public:
-    Place(const NeighbourFrames& frames, std::size_t role, double metres_per_unit)
-        : number_(frames.first_number) {
+    Place(const NeighbourFrames& frames, std::size_t role, double metres_per_unit) : number_(frames.first_number) {
         SourceFrame first, second;
         first.fields = {frames.first.fields[role]};
         second.fields = {frames.second.fields[role]};
@@ -98,8 +97,11 @@ double candidate(int i) {
     return kSlowest * std::pow(kFastest / kSlowest, double(i) / (kCandidates - 1));
 }
 
-// Among the candidates, whose values are given, then between the best one's neighbours.
-Minimum find_minimum(const std::vector<double>& values, const std::function<double(double)>& function) {
+// Among the candidates, then between the best one's neighbours.
+Minimum find_minimum(const std::function<double(double)>& function) {
+    std::vector<double> values;
+    for (int i = 0; i < kCandidates; ++i)
+        values.push_back(function(candidate(i)));
     const int best = static_cast<int>(std::min_element(values.begin(), values.end()) - values.begin());
     const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
     double low = std::log(candidate(std::max(best - 1, 0)));
@@ -127,13 +129,15 @@ Minimum find_minimum(const std::vector<double>& values, const std::function<doub
 
 std::string reason_against(const VelocityFit& fit, bool inside) {
     if (!inside || fit.explained < kLeastExplained)
-        return fmt::format("motion along it explains {:.0f} % of how neighbouring frames differ, and at least {:.0f} % "
-                           "are asked for",
-                           100.0 * std::max(inside ? fit.explained : 0.0, 0.0), 100.0 * kLeastExplained);
+        return fmt::format(
+            "motion along it explains {:.0f} % of how neighbouring frames differ, and at least {:.0f} % "
+            "are asked for",
+            100.0 * std::max(inside ? fit.explained : 0.0, 0.0), 100.0 * kLeastExplained);
     if (fit.high > kWidestSpread * fit.low)
-        return fmt::format("its scale is {:.3g} m per frame at one place of the sequence and {:.3g} at another, and "
-                           "at most a ratio of {} is allowed",
-                           fit.low, fit.high, kWidestSpread);
+        return fmt::format(
+            "its scale is {:.3g} m per frame at some places of the sequence and {:.3g} at others, "
+            "and at most a ratio of {} is allowed",
+            fit.low, fit.high, kWidestSpread);
     return {};
 }
 
@@ -150,29 +154,36 @@ double typical_voxels(const std::vector<NeighbourFrames>& places, double& voxel_
     return 0.0;
 }
 
+// The value that a share of the sorted values lies below.
+double quantile(const std::vector<double>& sorted, double share) {
+    const double at = share * double(sorted.size() - 1);
+    const auto low = static_cast<std::size_t>(at);
+    const std::size_t high = std::min(low + 1, sorted.size() - 1);
+    return sorted[low] + (at - double(low)) * (sorted[high] - sorted[low]);
+}
+
+// The median of the places' scales: where fire burns smoke appears that no motion brought, and draws the scale down.
 void fit_places(const std::vector<Place>& places, double metres_per_unit, VelocityFit& fit) {
-    std::vector<double> all(kCandidates, 0.0);
-    fit.low = INFINITY;
+    std::vector<double> scales;
+    std::size_t inside = 0;
     for (const Place& place : places) {
-        std::vector<double> values;
-        for (int i = 0; i < kCandidates; ++i)
-            all[static_cast<std::size_t>(i)] += values.emplace_back(place.left(candidate(i)));
-        const double here =
-            metres_per_unit * find_minimum(values, [&](double scale) { return place.left(scale); }).scale;
-        fit.low = std::min(fit.low, here);
-        fit.high = std::max(fit.high, here);
+        const Minimum minimum = find_minimum([&](double scale) { return place.left(scale); });
+        scales.push_back(minimum.scale);
+        inside += minimum.inside;
         fit.places.push_back(place.number());
     }
-    const auto mean = [&](double scale) {
-        double sum = 0.0;
-        for (const Place& place : places)
-            sum += place.left(scale);
-        return sum / double(places.size());
-    };
-    const Minimum minimum = find_minimum(all, mean);
-    fit.metres_per_frame = metres_per_unit * minimum.scale;
-    fit.explained = 1.0 - minimum.value / std::min(1.0, mean(-minimum.scale));
-    fit.why_not = reason_against(fit, minimum.inside);
+    std::sort(scales.begin(), scales.end());
+    const double scale = quantile(scales, 0.5);
+    fit.metres_per_frame = metres_per_unit * scale;
+    fit.low = metres_per_unit * quantile(scales, 0.25);
+    fit.high = metres_per_unit * quantile(scales, 0.75);
+    double forward = 0.0, backward = 0.0;
+    for (const Place& place : places) {
+        forward += place.left(scale);
+        backward += place.left(-scale);
+    }
+    fit.explained = 1.0 - forward / std::min(double(places.size()), backward);
+    fit.why_not = reason_against(fit, 2 * inside > places.size());
 }
 
 }  // namespace
@@ -182,9 +193,9 @@ std::string VelocityFit::nearest_unit(double fps) const {
         const char* name;
         double metres_per_frame;
     };
-    for (const Unit& unit : {Unit{"m/s (second)", 1.0 / fps}, Unit{"m per frame (frame)", 1.0},
-                             Unit{"voxels/s (voxel_second)", voxel_metres / fps},
-                             Unit{"voxels per frame (voxel_frame)", voxel_metres}})
+    for (const Unit& unit :
+         {Unit{"m/s (second)", 1.0 / fps}, Unit{"m per frame (frame)", 1.0},
+          Unit{"voxels/s (voxel_second)", voxel_metres / fps}, Unit{"voxels per frame (voxel_frame)", voxel_metres}})
         if (std::abs(std::log(metres_per_frame / unit.metres_per_frame)) < std::log(kNamed))
             return fmt::format("near to {} at {:g} frames per second", unit.name, fps);
     return fmt::format("none of the usual units at {:g} frames per second", fps);
@@ -192,9 +203,10 @@ std::string VelocityFit::nearest_unit(double fps) const {
 
 std::string VelocityFit::describe(double fps) const {
     return fmt::format(
-        "a unit of velocity is {:.4g} voxels per frame ({:.3g} to {:.3g} at {} place{}), {:.4g} m per frame: {}; it "
+        "a unit of velocity is {:.4g} voxels per frame (quartiles of {} place{}: {:.3g} to {:.3g}), {:.4g} m per "
+        "frame: {}; it "
         "explains {:.0f} % of how neighbouring frames differ",
-        voxels_per_frame(), low / voxel_metres, high / voxel_metres, places.size(), places.size() == 1 ? "" : "s",
+        voxels_per_frame(), places.size(), places.size() == 1 ? "" : "s", low / voxel_metres, high / voxel_metres,
         metres_per_frame, nearest_unit(fps), 100.0 * explained);
 }
 

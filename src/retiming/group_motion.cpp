@@ -9,8 +9,7 @@
 
 namespace brisance {
 
-Motion motion_of(const FieldGroup& group, const VelocityPair& velocity,
-                 const VelocitySettings& settings, int frames) {
+Motion motion_of(const FieldGroup& group, const VelocityPair& velocity, const VelocitySettings& settings, int frames) {
     // A frame without velocity, as the first of many simulations is, moves as the other.
     const int first = velocity[0]->empty() ? 1 : 0, second = velocity[1]->empty() ? 0 : 1;
     const std::array<MovingFrame, 2> moving = {
@@ -18,8 +17,8 @@ Motion motion_of(const FieldGroup& group, const VelocityPair& velocity,
     return motion_between(moving, group.lattice, group.world_from_index, settings, frames);
 }
 
-void check_speed(const FieldGroup& group, const VelocityPair& velocity,
-                 const VelocitySettings& settings, int frames, const std::string& where) {
+void check_speed(const FieldGroup& group, const VelocityPair& velocity, const VelocitySettings& settings, int frames,
+                 const std::string& where) {
     for (const CentredVelocity* v : velocity) {
         const dmat3 m = voxels_per_frame(settings, v->grid.info.world_from_index, group.world_from_index);
         const double size = std::max({glm::length(m[0]), glm::length(m[1]), glm::length(m[2])});

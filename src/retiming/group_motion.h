@@ -9,12 +9,11 @@ namespace brisance {
 // Of the first and the second frame.
 using VelocityPair = std::array<const CentredVelocity*, 2>;
 
-Motion motion_of(const FieldGroup& group, const VelocityPair& velocity,
-                 const VelocitySettings& settings, int frames);
+Motion motion_of(const FieldGroup& group, const VelocityPair& velocity, const VelocitySettings& settings, int frames);
 
 // Throws Error BadData, beginning with `where`, when the smoke would move farther than it is wide.
-void check_speed(const FieldGroup& group, const VelocityPair& velocity,
-                 const VelocitySettings& settings, int frames, const std::string& where);
+void check_speed(const FieldGroup& group, const VelocityPair& velocity, const VelocitySettings& settings, int frames,
+                 const std::string& where);
 
 // How far a motion brings each node [nodes], for all nodes of the bricks that `wanted` marks, or of all bricks where it
 // is empty.

@@ -138,8 +138,7 @@ Motion motion_between(const std::array<MovingFrame, 2>& frames, const BrickLatti
         const dmat4& world_from_velocity = frames[f].velocity.grid.info.world_from_index;
         const dmat3 voxels_of =
             static_cast<double>(frame_count) * voxels_per_frame(settings, world_from_velocity, world_from_index);
-        const std::vector<vec3> velocity =
-            velocity_on(motion.lattice, frames[f], smoke, world_from_index, voxels_of);
+        const std::vector<vec3> velocity = velocity_on(motion.lattice, frames[f], smoke, world_from_index, voxels_of);
         for (std::size_t i = 0; i < velocity.size(); ++i)
             for (int c = 0; c < 3; ++c)
                 motion.voxels[6 * i + 3 * f + c] = velocity[i][c];

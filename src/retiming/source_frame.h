@@ -11,7 +11,7 @@ namespace brisance {
 
 struct SourceFrame {
     std::vector<std::optional<BlockGrid>> fields;  // by role; the same roles at the same places in every frame
-    CentredVelocity velocity;  // empty where it has none, or none is read
+    CentredVelocity velocity;                      // empty where it has none, or none is read
 };
 
 // Reads frame number n of a sequence. Throws Error.

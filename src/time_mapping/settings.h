@@ -25,8 +25,8 @@ struct TimePoint {
 };
 
 struct TimeSettings {
-    double offset = 0.0;            // frames of the sequence, added to its time
-    double speed = 1.0;             // frames of the sequence for each frame of the picture, from its first frame on
+    double offset = 0.0;           // frames of the sequence, added to its time
+    double speed = 1.0;            // frames of the sequence for each frame of the picture, from its first frame on
     std::vector<TimePoint> curve;  // instead of the speed; frames rise, source times do not fall; held beyond its ends
     BeyondEnd before = BeyondEnd::Error;
     BeyondEnd after = BeyondEnd::Error;

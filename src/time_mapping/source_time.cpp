@@ -10,8 +10,8 @@
 namespace brisance {
 namespace {
 
-constexpr double kWhole = 1e-6;             // frames
-constexpr double kMostFrames = 1'000'000;   // of a picture; more must be a typing mistake
+constexpr double kWhole = 1e-6;              // frames
+constexpr double kMostFrames = 1'000'000;    // of a picture; more must be a typing mistake
 constexpr double kFarthest = 1'000'000'000;  // frame numbers are integers of 32 bits
 
 bool whole(double time) {
@@ -33,11 +33,11 @@ double slope(const TimeSettings& settings, double frame) {
 [[noreturn]] void throw_beyond(const char* side, double frame, double time, const std::vector<int>& on_disk,
                                const std::string& where) {
     const bool before = time < on_disk.front();
-    throw Error(ExitCode::MissingInput,
-                fmt::format("{}: frame {:g} of the picture needs its frame {:.6g}, and the {} on disk is {}; set "
-                            "time.{} to hold, repeat, ping_pong or empty, or change time.offset, speed or curve",
-                            where, frame, time, before ? "first" : "last", before ? on_disk.front() : on_disk.back(),
-                            side));
+    throw Error(
+        ExitCode::MissingInput,
+        fmt::format("{}: frame {:g} of the picture needs its frame {:.6g}, and the {} on disk is {}; set "
+                    "time.{} to hold, repeat, ping_pong or empty, or change time.offset, speed or curve",
+                    where, frame, time, before ? "first" : "last", before ? on_disk.front() : on_disk.back(), side));
 }
 
 // Brings a time beyond one of the ends to one between them. False: nothing is there.
@@ -117,7 +117,7 @@ SourceTime source_time(const TimeSettings& settings, double frame, const std::ve
                        const std::string& where) {
     double time = unbounded_time(settings, frame, on_disk.front());
     double rate = slope(settings, frame);
-    const bool before = time < on_disk.front() - kWhole, after = time > on_disk.back() + kWhole;
+    const bool before = time<on_disk.front() - kWhole, after = time> on_disk.back() + kWhole;
     if (before || after) {
         const BeyondEnd mode = before ? settings.before : settings.after;
         if (mode == BeyondEnd::Error || !(std::abs(time) < kFarthest))
@@ -132,9 +132,8 @@ SourceTime source_time(const TimeSettings& settings, double frame, const std::ve
     if (upper == time || next == on_disk.begin() || next == on_disk.end())
         return only(upper, rate);
     const int lower = *(next - 1);
-    const SourceTime between = upper - lower > 1
-                                   ? in_hole(settings, lower, upper, time, rate, frame, where)
-                                   : SourceTime{false, lower, upper, time - lower, rate};
+    const SourceTime between = upper - lower > 1 ? in_hole(settings, lower, upper, time, rate, frame, where)
+                                                 : SourceTime{false, lower, upper, time - lower, rate};
     return settings.retime == Retime::Nearest ? only(between.nearest(), rate) : between;
 }
 

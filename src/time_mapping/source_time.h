@@ -9,11 +9,11 @@
 namespace brisance {
 
 struct SourceTime {
-    bool empty = false;        // nothing is there at this time
-    int first = 0;             // frames on disk around the time; both are the same where one frame is shown as it is
+    bool empty = false;  // nothing is there at this time
+    int first = 0;       // frames on disk around the time; both are the same where one frame is shown as it is
     int second = 0;
-    double weight = 0.0;       // of `second`, in [0, 1)
-    double rate = 1.0;         // frames of the sequence per frame of the picture; negative: backward, 0: held
+    double weight = 0.0;  // of `second`, in [0, 1)
+    double rate = 1.0;    // frames of the sequence per frame of the picture; negative: backward, 0: held
     bool single() const { return first == second; }
     int nearest() const { return weight < 0.5 ? first : second; }
 };
@@ -29,8 +29,9 @@ SourceTime source_time(const TimeSettings& settings, double frame, const std::ve
                        const std::string& where);
 
 // Frames of the picture that show the sequence when nobody asks for certain ones: those of the curve, or those whose
-// time lies between the sequence's ends; one where time stands still. Those that would show a missing frame are left out where `missing` is an
-// error, as all frames of a sequence are those on disk. Throws Error Usage, beginning with `where`, where that has no end.
+// time lies between the sequence's ends; one where time stands still. Those that would show a missing frame are left
+// out where `missing` is an error, as all frames of a sequence are those on disk. Throws Error Usage, beginning with
+// `where`, where that has no end.
 std::vector<int> covering_frames(const TimeSettings& settings, const std::vector<int>& on_disk,
                                  const std::string& where);
 

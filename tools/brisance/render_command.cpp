@@ -83,11 +83,8 @@ std::vector<FrameFile> usable_frames(const Shot& shot, const RenderOptions& opti
     } else {
         for (const int frame : *requested)
             attempt(
-                "",
-                [&] {
-                    frames.push_back(resolve_frames(shot, std::vector<int>{frame}).front());
-                },
-                progress, failures);
+                "", [&] { frames.push_back(resolve_frames(shot, std::vector<int>{frame}).front()); }, progress,
+                failures);
     }
     if (pattern.empty())
         return frames;

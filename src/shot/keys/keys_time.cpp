@@ -63,9 +63,8 @@ Codec<BeyondEnd> beyond_end() {
 }
 
 Codec<MissingFrame> missing_frame() {
-    return choice<MissingFrame>({{"error", MissingFrame::Error},
-                                 {"hold", MissingFrame::Hold},
-                                 {"interpolate", MissingFrame::Interpolate}});
+    return choice<MissingFrame>(
+        {{"error", MissingFrame::Error}, {"hold", MissingFrame::Hold}, {"interpolate", MissingFrame::Interpolate}});
 }
 
 Codec<Retime> retime() {
@@ -129,34 +128,33 @@ Codec<std::optional<std::vector<std::string>>> velocity_grids() {
 
 Codec<TimeSettings> time_object() {
     using T = TimeSettings;
-    return object_of<T>(
-        "times {\"offset\": ..., \"speed\": ..., \"after\": \"hold\", ...}, as the section time",
-        {member<T>(
-             "offset", real(source_times()), [](T & t) -> auto& { return t.offset; }),
-         member<T>(
-             "speed", real(speeds()), [](T & t) -> auto& { return t.speed; }),
-         member<T>(
-             "curve", time_curve(), [](T & t) -> auto& { return t.curve; }),
-         member<T>(
-             "before", beyond_end(), [](T & t) -> auto& { return t.before; }),
-         member<T>(
-             "after", beyond_end(), [](T & t) -> auto& { return t.after; }),
-         member<T>(
-             "missing", missing_frame(), [](T & t) -> auto& { return t.missing; }),
-         member<T>(
-             "retime", retime(), [](T & t) -> auto& { return t.retime; })});
+    return object_of<T>("times {\"offset\": ..., \"speed\": ..., \"after\": \"hold\", ...}, as the section time",
+                        {member<T>(
+                             "offset", real(source_times()), [](T & t) -> auto& { return t.offset; }),
+                         member<T>(
+                             "speed", real(speeds()), [](T & t) -> auto& { return t.speed; }),
+                         member<T>(
+                             "curve", time_curve(), [](T & t) -> auto& { return t.curve; }),
+                         member<T>(
+                             "before", beyond_end(), [](T & t) -> auto& { return t.before; }),
+                         member<T>(
+                             "after", beyond_end(), [](T & t) -> auto& { return t.after; }),
+                         member<T>(
+                             "missing", missing_frame(), [](T & t) -> auto& { return t.missing; }),
+                         member<T>(
+                             "retime", retime(), [](T & t) -> auto& { return t.retime; })});
 }
 
 Codec<VelocitySettings> velocity_object() {
     using T = VelocitySettings;
-    return object_of<T>("a velocity {\"unit\": ..., \"scale\": ..., \"frames_per_second\": ...}",
-                        {member<T>(
-                             "unit", velocity_unit(), [](T & t) -> auto& { return t.unit; }),
-                         member<T>(
-                             "scale", real(grid_value()), [](T & t) -> auto& { return t.scale; }),
-                         member<T>(
-                             "frames_per_second", real(frame_rates()),
-                             [](T & t) -> auto& { return t.frames_per_second; })});
+    return object_of<T>(
+        "a velocity {\"unit\": ..., \"scale\": ..., \"frames_per_second\": ...}",
+        {member<T>(
+             "unit", velocity_unit(), [](T & t) -> auto& { return t.unit; }),
+         member<T>(
+             "scale", real(grid_value()), [](T & t) -> auto& { return t.scale; }),
+         member<T>(
+             "frames_per_second", real(frame_rates()), [](T & t) -> auto& { return t.frames_per_second; })});
 }
 
 void add_time_keys(std::vector<Key>& keys) {
