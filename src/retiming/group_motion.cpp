@@ -9,6 +9,12 @@
 
 namespace brisance {
 
+namespace {
+
+constexpr double kFarthest = 4.0;  // widths of the smoke: more than an explosion's first frames
+
+}  // namespace
+
 Motion motion_of(const FieldGroup& group, const VelocityPair& velocity, const VelocitySettings& settings, int frames) {
     // A frame without velocity, as the first of many simulations is, moves as the other.
     const int first = velocity[0]->empty() ? 1 : 0, second = velocity[1]->empty() ? 0 : 1;
@@ -24,7 +30,7 @@ void check_speed(const FieldGroup& group, const VelocityPair& velocity, const Ve
         const double size = std::max({glm::length(m[0]), glm::length(m[1]), glm::length(m[2])});
         const double voxels = frames * v->typical * size;
         const double width = glm::length(dvec3(group.lattice.brick_extent() * BrickLattice::kSize));
-        if (voxels > width)
+        if (voxels > kFarthest * width)
             throw Error(ExitCode::BadData,
                         fmt::format("{}: as velocity.unit and velocity.scale read its velocity, the smoke moves {:.3g} "
                                     "voxels between two frames, and is {:.0f} wide; set velocity.unit to auto, or a "

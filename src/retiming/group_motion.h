@@ -11,7 +11,7 @@ using VelocityPair = std::array<const CentredVelocity*, 2>;
 
 Motion motion_of(const FieldGroup& group, const VelocityPair& velocity, const VelocitySettings& settings, int frames);
 
-// Throws Error BadData, beginning with `where`, when the smoke would move farther than it is wide.
+// Throws Error BadData, beginning with `where`, when the smoke would move several times its width.
 void check_speed(const FieldGroup& group, const VelocityPair& velocity, const VelocitySettings& settings, int frames,
                  const std::string& where);
 

@@ -141,8 +141,8 @@ TEST(Advect, MovesAllRolesAndChannelsAlike) {
 TEST(Advect, RefusesVelocitiesThatCannotBeMeant) {
     const MovingSmoke smoke = straight();
     try {
-        advected(smoke.pair(0, 1, 0.5), {VelocityUnit::VoxelFrame, 50.0, 24.0});
-        ADD_FAILURE() << "300 voxels a frame in a box of 50";
+        advected(smoke.pair(0, 1, 0.5), {VelocityUnit::VoxelFrame, 100.0, 24.0});
+        ADD_FAILURE() << "650 voxels a frame in a box of 50";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ExitCode::BadData);
         EXPECT_NE(std::string(error.what()).find("set velocity.unit to auto"), std::string::npos);

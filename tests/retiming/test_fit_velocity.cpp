@@ -64,10 +64,10 @@ TEST(FitVelocity, RefusesAMotionThatTheSmokeDoesNotFollow) {
 TEST(FitVelocity, RefusesScalesThatDiffer) {
     MovingSmoke smoke = turning_smoke(0.15);
     std::vector<NeighbourFrames> places = sequence(smoke);
-    smoke.unit = 3.0;
-    places[0] = {12, 13, smoke.frame(12), smoke.frame(13)};
-    smoke.unit = 9.0;
-    places[1] = {12, 13, smoke.frame(12), smoke.frame(13)};
+    smoke.unit = 2.2;
+    places.resize(2);
+    for (const int n : {12, 15})
+        places.push_back({n, n + 1, smoke.frame(n), smoke.frame(n + 1)});
     EXPECT_NE(fit_velocity(places, 0).why_not.find("ratio"), std::string::npos);
 }
 
