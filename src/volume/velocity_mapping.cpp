@@ -94,7 +94,7 @@ std::string VelocityMapping::describe() const {
     for (const GridChoice& grid : grids)
         names += fmt::format("{}\"{}{}\"", names.empty() ? "" : ", ", printable(grid.name, kLongestName),
                              grid.index > 0 ? fmt::format("[{}]", grid.index) : "");
-    return "velocity <- " + (names.empty() ? "none" : names);
+    return names.empty() ? "none" : names;
 }
 
 VelocityMapping map_velocity(const std::vector<GridInfo>& grids, const GridRoles& roles, const std::string& file) {

@@ -11,7 +11,7 @@ namespace brisance {
 struct VelocityMapping {
     std::vector<GridChoice> grids;  // one of three channels, or three of one: x, y, z; empty: none
     std::string why_none;           // where there is none
-    std::string describe() const;   // "velocity <- \"velocity\""
+    std::string describe() const;   // the names in quotes, or none
 };
 
 // By name where `roles` name none: velocity, vel, v and the like, or three scalars vel_x, vel_y, vel_z and the like.

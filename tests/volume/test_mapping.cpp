@@ -139,9 +139,8 @@ VelocityMapping velocity_of(const std::vector<GridInfo>& grids, const GridRoles&
 }
 
 TEST(VelocityMapping, KnowsVectorsAndThreeScalarsByName) {
-    EXPECT_EQ(velocity_of({grid("density"), grid("Vel", "vec3s")}).describe(), "velocity <- \"Vel\"");
-    EXPECT_EQ(velocity_of({grid("vel_y"), grid("vel_z"), grid("VEL_X")}).describe(),
-              "velocity <- \"VEL_X\", \"vel_y\", \"vel_z\"");
+    EXPECT_EQ(velocity_of({grid("density"), grid("Vel", "vec3s")}).describe(), "\"Vel\"");
+    EXPECT_EQ(velocity_of({grid("vel_y"), grid("vel_z"), grid("VEL_X")}).describe(), "\"VEL_X\", \"vel_y\", \"vel_z\"");
     EXPECT_TRUE(velocity_of({grid("vel_y"), grid("vel_z")}).grids.empty()) << "two are none";
     EXPECT_TRUE(velocity_of({grid("velocity")}).grids.empty()) << "one value per voxel is a speed";
     EXPECT_TRUE(contains(velocity_of({grid("density")}).why_none, "volume.grids.velocity"));

@@ -81,7 +81,7 @@ std::string volume_pattern(const Shot& shot) {
 
 std::vector<FrameFile> resolve_frames(const Shot& shot, const std::optional<std::vector<int>>& requested) {
     std::vector<FrameFile> frames;
-    if (!shot.time.identity() && has_frame_token(volume_pattern(shot)))
+    if (has_frame_token(volume_pattern(shot)) && (requested || !shot.time.identity()))
         frames = frames_in_time(shot, requested);
     else if (!shot.volume.file.empty())
         frames = resolve_sequence(volume_pattern(shot), requested);
