@@ -4,6 +4,7 @@
 #include <array>
 
 #include "render/load_medium.h"
+#include "render/volume_in_time.h"
 #include "shot/keys/keys.h"
 
 namespace brisance {
@@ -33,6 +34,9 @@ std::string checkpoint_key(const Shot& shot, const std::filesystem::path& volume
             if (const std::optional<Json> value = key.get(shot))
                 text += key.path + "=" + value->dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
     text += volume.filename().string() + " " + size_of(volume) + " " + std::to_string(frame);
+    if (!volume.empty() && !shot.time.identity())
+        if (const SourceFiles files = own_files(shot, frame); !files.single())
+            text.append(" ").append(size_of(files.first)).append(" ").append(size_of(files.second));
     for (const std::filesystem::path& file : further_files(shot, frame))
         text.append(" ").append(size_of(file));
     for (const SceneFile& file : shot.scene.files)

@@ -1,84 +1,70 @@
 #include "render/load_medium.h"
 
+#include <algorithm>
+
 #include "core/stopwatch.h"
+#include "render/read_volume.h"
 #include "volume/fog_box.h"
-#include "volume/frame_path.h"
-#include "volume/mapping.h"
 
 namespace brisance {
 
 namespace {
 
-constexpr std::uint64_t kGridMemory = std::uint64_t{16} << 30;
+constexpr std::uint64_t kBoxMemory = std::uint64_t{16} << 30;
 
-// One file, and what the shot says of it.
-struct VolumePart {
-    std::filesystem::path file;
-    VolumeSettings settings;
-    MediumSettings look;
-    MediumGrids grids;
-};
+// The shot's own volume is the file that is given, or a time between it and another one.
+SourceFiles files_of_own(const Shot& shot, const std::filesystem::path& volume, int frame) {
+    return shot.time.identity() ? SourceFiles{volume, volume, {}} : own_files(shot, frame);
+}
 
 std::vector<VolumePart> parts_of(const Shot& shot, const std::filesystem::path& volume, int frame) {
     std::vector<VolumePart> parts;
-    if (!volume.empty())
-        parts.push_back({volume, shot.volume, shot.medium, {}});
-    const std::vector<std::filesystem::path> files = further_files(shot, frame);
-    for (std::size_t i = 0; i < files.size(); ++i) {
-        parts.push_back({files[i], shot.volumes[i].volume, changed(shot.medium, shot.volumes[i].changes), {}});
-        if (shot.volumes[i].volume.box)
-            parts.back().look.fire.model = FireModel::None;
+    if (const SourceFiles own = volume.empty() ? SourceFiles{} : files_of_own(shot, volume, frame); !own.first.empty())
+        parts.push_back({own, shot.volume, shot.medium, shot.time, shot.velocity, {}});
+    for (const FurtherVolume& further : shot.volumes) {
+        const std::string pattern = further.volume.box ? "" : (shot.folder / further.volume.file).string();
+        const TimeSettings& time = time_of(shot, further);
+        VolumePart part{{}, further.volume, changed(shot.medium, further.changes), time, velocity_of(shot, further),
+                        {}};
+        if (further.volume.box)
+            part.look.fire.model = FireModel::None;
+        else
+            part.files = source_files(pattern, time, frame);
+        if (further.volume.box || !part.files.first.empty())
+            parts.push_back(std::move(part));
     }
     return parts;
 }
 
-MediumGrids read_grids(const VolumePart& part, const GridMapping& mapping, VdbReader& reader, Progress& progress) {
-    const FireSettings& fire = part.look.fire;
-    const bool black_body = fire.model == FireModel::Blackbody || fire.model == FireModel::NormalizedBlackbody;
-    const dmat4 world_from_file = placement(part.settings, part.file.string());
-    const auto read = [&](const std::optional<GridChoice>& choice, bool used) -> std::optional<BlockGrid> {
-        if (!choice || !used)
-            return std::nullopt;
-        BlockGrid grid = reader.read(choice->name, choice->index, kGridMemory);
-        grid.info.world_from_index = world_from_file * grid.info.world_from_index;
-        return grid;
-    };
-    MediumGrids grids;
-    grids.density = read(mapping.density, true);
-    grids.temperature = read(mapping.temperature, black_body);
-    grids.flame = read(mapping.flame, fire.model == FireModel::Flame || (black_body && fire.modulate_by_flame));
-    grids.colour = read(mapping.colour, true);
-    if (!mapping.density)
-        progress.notice("no density grid: nothing absorbs or scatters");
-    if (black_body && !mapping.temperature)
-        progress.warning("no-temperature", "fire.model needs a temperature grid and none is mapped: nothing emits");
-    if (fire.model == FireModel::Flame && !mapping.flame)
-        progress.warning("no-flame", "fire.model is flame and no flame grid is mapped: nothing emits");
-    return grids;
+bool is_settled_part(const VolumePart& part) {
+    return part.settings.box || part.files.single() || is_settled(part.time, part.velocity);
 }
 
 void make_box(VolumePart& part) {
-    part.grids.density = fog_grid(*part.settings.box, kGridMemory, "volumes");
+    part.grids.density = fog_grid(*part.settings.box, kBoxMemory, "volumes");
     dmat4& transform = part.grids.density->info.world_from_index;
     transform = placement(part.settings, "volumes") * transform;
+}
+
+StageCost reading_cost(const VolumePart& part, const std::string& mapping, double seconds) {
+    std::uint64_t bytes = 0;
+    for (const auto* g : {&part.grids.density, &part.grids.temperature, &part.grids.flame, &part.grids.colour})
+        bytes += *g ? (*g)->values.size() * sizeof(float) : 0;
+    StageCost cost{"reading", seconds, bytes, {{"file", part.files.first.string()}, {"mapping", mapping}}};
+    if (!part.files.single()) {
+        cost.detail["second_file"] = part.files.second.string();
+        cost.detail["weight_of_second"] = part.files.time.weight;
+        cost.detail["retime"] = part.time.retime == Retime::Advect ? "advect" : "linear";
+    }
+    return cost;
 }
 
 void read_part(VolumePart& part, Statistics& statistics, Progress& progress) {
     if (part.settings.box)
         return make_box(part);
-    progress.stage("reading " + part.file.filename().string());
     const Stopwatch watch;
-    VdbReader reader(part.file);
-    const GridMapping mapping = map_grids(reader.grids(), part.settings, part.file.string());
-    progress.notice("grids: " + mapping.describe());
-    for (const std::string& note : mapping.notes)
-        progress.notice(note);
-    part.grids = read_grids(part, mapping, reader, progress);
-    std::uint64_t bytes = 0;
-    for (const auto* g : {&part.grids.density, &part.grids.temperature, &part.grids.flame, &part.grids.colour})
-        bytes += *g ? (*g)->values.size() * sizeof(float) : 0;
-    statistics.stages.push_back(
-        {"reading", watch.seconds(), bytes, {{"file", part.file.string()}, {"mapping", mapping.describe()}}});
+    const std::string mapping = read_volume(part, progress);
+    statistics.stages.push_back(reading_cost(part, mapping, watch.seconds()));
 }
 
 }  // namespace
@@ -87,7 +73,7 @@ std::vector<std::filesystem::path> further_files(const Shot& shot, int frame) {
     std::vector<std::filesystem::path> files;
     for (const FurtherVolume& v : shot.volumes) {
         const std::string pattern = v.volume.box ? "" : (shot.folder / v.volume.file).string();
-        files.push_back(has_frame_token(pattern) ? resolve_frame(pattern, frame) : std::filesystem::path(pattern));
+        files.push_back(pattern.empty() ? "" : source_files(pattern, time_of(shot, v), frame).nearest());
     }
     return files;
 }
@@ -95,6 +81,12 @@ std::vector<std::filesystem::path> further_files(const Shot& shot, int frame) {
 Medium load_medium(const Shot& shot, const std::filesystem::path& volume, int frame, Statistics& statistics,
                    Progress& progress) {
     std::vector<VolumePart> parts = parts_of(shot, volume, frame);
+    if (!std::all_of(parts.begin(), parts.end(), is_settled_part))
+        parts = parts_of(settle_time(shot, progress), volume, frame);
+    if (parts.empty()) {
+        progress.notice("no volume at this time: an empty frame");
+        return {};
+    }
     std::vector<MediumPart> media;
     for (VolumePart& part : parts) {
         read_part(part, statistics, progress);

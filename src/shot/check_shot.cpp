@@ -84,6 +84,11 @@ void check_lights(const Given& given, const SceneSettings& scene) {
     }
 }
 
+void check_time(const Given& given, const TimeSettings& time, const std::string& key) {
+    if (!time.curve.empty() && time.speed != 1.0)
+        reject(given, key, "gives time.curve and time.speed, which both say how fast time runs; remove one");
+}
+
 void check_volumes(const Given& given, const std::vector<FurtherVolume>& volumes) {
     for (std::size_t i = 0; i < volumes.size(); ++i) {
         const VolumeSettings& v = volumes[i].volume;
@@ -92,6 +97,10 @@ void check_volumes(const Given& given, const std::vector<FurtherVolume>& volumes
         };
         if (v.box.has_value() == !v.file.empty())
             refuse("needs either a file or a box");
+        if (v.box && (volumes[i].time || volumes[i].velocity))
+            refuse("is a box, which has no time; remove its time and velocity");
+        if (volumes[i].time)
+            check_time(given, *volumes[i].time, "volumes");
         if (v.box && !glm::all(glm::lessThan(v.box->low, v.box->high)))
             refuse("is a box whose low is not below its high on every axis");
         if (v.box && volumes[i].changes.model.value_or(FireModel::None) != FireModel::None)
@@ -107,6 +116,7 @@ void check_shot(const Shot& shot, const Given& given, const std::string& source)
                     fmt::format("{}: volume.file is missing, and so is a scene: which file to render", source));
     check_lights(given, shot.scene);
     check_volumes(given, shot.volumes);
+    check_time(given, shot.time, "time.curve");
     if (shot.camera.world_from_camera)
         check_matrix(given, *shot.camera.world_from_camera);
     else

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,9 +11,11 @@
 #include "film/settings.h"
 #include "gathering/settings.h"
 #include "medium/settings.h"
+#include "retiming/settings.h"
 #include "scattering/settings.h"
 #include "scattering_methods/methods.h"
 #include "scene/settings.h"
+#include "time_mapping/settings.h"
 #include "tracking/settings.h"
 #include "virtual_lights/settings.h"
 #include "volume/settings.h"
@@ -29,6 +32,8 @@ enum class RenderMethod {
 struct FurtherVolume {
     VolumeSettings volume;
     MediumChanges changes;
+    std::optional<TimeSettings> time;  // instead of the shot's
+    std::optional<VelocitySettings> velocity;
 };
 
 struct Shot {
@@ -36,6 +41,8 @@ struct Shot {
     std::filesystem::path folder;  // relative files of the shot are relative to this folder
     VolumeSettings volume;
     std::vector<FurtherVolume> volumes;
+    TimeSettings time;
+    VelocitySettings velocity;
     MediumSettings medium;
     SceneSettings scene;
     CameraSettings camera;

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/printable.h"
+#include "volume/velocity_mapping.h"
 
 namespace brisance {
 namespace {
@@ -126,18 +127,15 @@ void note_several(const std::vector<GridInfo>& grids, const GridInfo& chosen, Gr
 
 GridChoice choose_named(const std::vector<GridInfo>& grids, Role role, const std::string& text, const std::string& file,
                         GridMapping& mapping) {
-    const GridReference wanted = parse_reference(text, grids);
-    const auto found = std::find_if(grids.begin(), grids.end(), [&](const GridInfo& grid) {
-        return grid.name == wanted.name && grid.index == wanted.index;
-    });
-    if (found == grids.end())
+    const GridInfo* const found = find_named_grid(grids, text);
+    if (found == nullptr)
         throw Error(ExitCode::BadData,
                     fmt::format("{}: the shot names \"{}\" as {}, which is not in the file; grids: {}", file, text,
                                 kRoleNames[role], list_names(grids)));
     if (const std::string reason = why_not(*found, role); !reason.empty())
         throw Error(ExitCode::BadData,
                     fmt::format("{}: the shot names \"{}\" as {}, but it {}", file, text, kRoleNames[role], reason));
-    if (!wanted.index_given)
+    if (!parse_reference(text, grids).index_given)
         note_several(grids, *found, mapping);
     return {found->name, found->index, "named by the shot"};
 }
@@ -202,7 +200,7 @@ void note_leftovers(const std::vector<GridInfo>& grids, const VolumeSettings& se
     };
     std::string unused;
     for (const GridInfo& grid : grids) {
-        if (used(grid))
+        if (used(grid) || plays_velocity(grids, settings.grids, grid))
             continue;
         unused += fmt::format("{}{}", unused.empty() ? "" : ", ", shot_name(grids, grid));
         if (lower_case(grid.name) == "heat" && settings.preset == MappingPreset::Automatic)
@@ -231,6 +229,14 @@ std::string GridMapping::describe() const {
             line += fmt::format("\"{}\"", printable(choice->name, kLongestName));
     }
     return line;
+}
+
+const GridInfo* find_named_grid(const std::vector<GridInfo>& grids, const std::string& text) {
+    const GridReference wanted = parse_reference(text, grids);
+    const auto found = std::find_if(grids.begin(), grids.end(), [&](const GridInfo& grid) {
+        return grid.name == wanted.name && grid.index == wanted.index;
+    });
+    return found == grids.end() ? nullptr : &*found;
 }
 
 GridMapping map_grids(const std::vector<GridInfo>& grids, const VolumeSettings& settings, const std::string& file) {

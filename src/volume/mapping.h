@@ -29,4 +29,7 @@ struct GridMapping {
 // not), or when the shot names a grid that is absent (the message names those that are there) or unusable.
 GridMapping map_grids(const std::vector<GridInfo>& grids, const VolumeSettings& settings, const std::string& file);
 
+// The grid that a shot calls `text`, "name" or "name[index]"; null: there is none.
+const GridInfo* find_named_grid(const std::vector<GridInfo>& grids, const std::string& text);
+
 }  // namespace brisance

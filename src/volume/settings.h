@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/vec.h"
 
@@ -16,6 +17,8 @@ struct GridRoles {
     std::optional<std::string> temperature;
     std::optional<std::string> flame;
     std::optional<std::string> colour;
+    // One grid of three channels or three of one; empty: no grid.
+    std::optional<std::vector<std::string>> velocity;
 };
 
 // Homogeneous fog of density 1 instead of a file.

@@ -106,7 +106,8 @@ TEST(SceneDifferences, EveryKeyIsOfThePictureOrOfTheMethod) {
         const std::string section = key.path.substr(0, key.path.find('.'));
         const bool picture =
             section == "volume" || section == "volumes" || section == "scene" || section == "smoke" ||
-            section == "fire" || section == "colour_role" || key.path == "scattering.bounces" ||
+            section == "fire" || section == "time" || section == "velocity" || section == "colour_role" ||
+            key.path == "scattering.bounces" ||
             (section == "camera" && key.path != "camera.samples_per_axis" && key.path != "camera.edge_refinement");
         EXPECT_EQ(key.affects == Affects::Picture, picture) << key.path;
     }

@@ -3,6 +3,7 @@
 
 #include "temp_folder.h"
 #include "volume/mapping.h"
+#include "volume/velocity_mapping.h"
 
 namespace brisance {
 namespace {
@@ -131,6 +132,41 @@ TEST(Mapping, NothingToRenderListsEveryGridAndWhyNot) {
     for (const char* words :
          {"\"sdf\" is a level set", "\"vel\" holds three values", "\"a\" has no known name", "\"b\""})
         EXPECT_TRUE(contains(failure.message, words)) << failure.message;
+}
+
+VelocityMapping velocity_of(const std::vector<GridInfo>& grids, const GridRoles& roles = {}) {
+    return map_velocity(grids, roles, "file.vdb");
+}
+
+TEST(VelocityMapping, KnowsVectorsAndThreeScalarsByName) {
+    EXPECT_EQ(velocity_of({grid("density"), grid("Vel", "vec3s")}).describe(), "\"Vel\"");
+    EXPECT_EQ(velocity_of({grid("vel_y"), grid("vel_z"), grid("VEL_X")}).describe(), "\"VEL_X\", \"vel_y\", \"vel_z\"");
+    EXPECT_TRUE(velocity_of({grid("vel_y"), grid("vel_z")}).grids.empty()) << "two are none";
+    EXPECT_TRUE(velocity_of({grid("velocity")}).grids.empty()) << "one value per voxel is a speed";
+    EXPECT_TRUE(contains(velocity_of({grid("density")}).why_none, "volume.grids.velocity"));
+}
+
+TEST(VelocityMapping, TakesWhatTheShotNamesAndRefusesWhatIsNone) {
+    const std::vector<GridInfo> grids = {grid("a", "vec3s"), grid("b", "vec3s", 1), grid("u"), grid("v"),
+                                         grid("w"),          level_set("l")};
+    GridRoles roles;
+    roles.velocity = {"b[1]"};
+    EXPECT_EQ(velocity_of(grids, roles).grids[0].index, 1);
+    roles.velocity = {"u", "v", "w"};
+    EXPECT_EQ(velocity_of(grids, roles).grids.size(), 3u);
+    roles.velocity = std::vector<std::string>{};
+    EXPECT_TRUE(velocity_of(grids, roles).grids.empty());
+    const std::vector<std::vector<std::string>> wrong = {{"none"}, {"u"}, {"l"}, {"a", "u", "v"}};
+    for (const std::vector<std::string>& names : wrong) {
+        roles.velocity = names;
+        const Failure failure = failure_of([&] { velocity_of(grids, roles); });
+        EXPECT_EQ(failure.code, ExitCode::BadData);
+        EXPECT_TRUE(contains(failure.message, "name a vector grid")) << failure.message;
+    }
+}
+
+TEST(VelocityMapping, AVelocityIsNotCalledUnused) {
+    EXPECT_FALSE(contains(all_notes(map({grid("density"), grid("velocity", "vec3s")})), "velocity"));
 }
 
 }  // namespace

@@ -346,6 +346,8 @@ std::string inspection_text(const Inspection& inspection) {
         text += "  " + note + "\n";
     text += fmt::format("memory     roughly {:.1f} MiB for the mapped grids\n",
                         rough_bytes_of_mapped(inspection) / kMebibyte);
+    if (inspection.velocity)
+        text += velocity_text(*inspection.velocity);
     text += "suggestion\n";
     for (const std::string& note : inspection.look.notes)
         text += "  " + note + "\n";
@@ -369,12 +371,15 @@ std::string inspection_json(const Inspection& inspection) {
             json["mapping"][role] = {{"grid", shot_name(inspection, *choice)}, {"reason", choice->reason}};
     json["mapping"]["notes"] = inspection.mapping->notes;
     json["rough_bytes"] = std::llround(rough_bytes_of_mapped(inspection));
+    if (const std::optional<InspectedVelocity>& v = inspection.velocity; v && !v->mapping.empty())
+        json["velocity"] = {{"grids", v->mapping}, {"form", v->form}, {"unit", v->unit}};
     json["suggestion"] = {{"notes", inspection.look.notes}, {"shot", shot_json(inspection)}};
     return dump(json, 2) + "\n";
 }
 
 int run_inspect(const std::string& pattern, bool as_json) {
-    const Inspection inspection = inspect_file(telling_file(pattern));
+    Inspection inspection = inspect_file(telling_file(pattern));
+    inspection.velocity = inspect_velocity(inspection.file, inspection.pattern, inspection.frames);
     const std::string text = as_json ? inspection_json(inspection) : inspection_text(inspection);
     std::fputs(text.c_str(), stdout);
     return static_cast<int>(inspection.mapping ? ExitCode::Success : ExitCode::BadData);

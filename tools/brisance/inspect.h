@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "inspect_velocity.h"
 #include "volume/mapping.h"
 #include "volume/suggest.h"
 #include "volume/vdb_file.h"
@@ -25,8 +26,9 @@ struct Inspection {
     std::optional<GridMapping> mapping;
     std::string why_no_mapping;  // set when there is none
     SuggestedLook look;
-    std::string pattern;      // of the sequence the file belongs to; empty when it stands alone
-    std::vector<int> frames;  // of that sequence, on disk
+    std::string pattern;                        // of the sequence the file belongs to; empty when it stands alone
+    std::vector<int> frames;                    // of that sequence, on disk
+    std::optional<InspectedVelocity> velocity;  // where it was asked for: it may read several frames
 };
 
 // The file that says most about a sequence: the largest, since the first frame of an explosion is often empty. A

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "inspect.h"
 #include "render/load_medium.h"
+#include "render/volume_in_time.h"
 #include "volume/vdb_header.h"
 
 namespace brisance {
@@ -54,6 +55,18 @@ Shot suggested(const std::string& input, const ShotOptions& options, Progress& p
     return shot;
 }
 
+// Each frame with the nearer one of its files; both are looked at.
+std::vector<FrameFile> frames_in_time(const Shot& shot, const std::optional<std::vector<int>>& requested) {
+    std::vector<FrameFile> frames;
+    for (const int frame : requested ? *requested : covering_frames(shot)) {
+        const SourceFiles files = own_files(shot, frame);
+        if (!files.single())
+            read_vdb_header(files.nearest() == files.first ? files.second : files.first);
+        frames.push_back({frame, files.nearest()});
+    }
+    return frames;
+}
+
 }  // namespace
 
 Shot load_shot(const std::string& input, const ShotOptions& options, Progress& progress) {
@@ -68,7 +81,9 @@ std::string volume_pattern(const Shot& shot) {
 
 std::vector<FrameFile> resolve_frames(const Shot& shot, const std::optional<std::vector<int>>& requested) {
     std::vector<FrameFile> frames;
-    if (!shot.volume.file.empty())
+    if (has_frame_token(volume_pattern(shot)) && (requested || !shot.time.identity()))
+        frames = frames_in_time(shot, requested);
+    else if (!shot.volume.file.empty())
         frames = resolve_sequence(volume_pattern(shot), requested);
     else
         for (const int frame : requested.value_or(std::vector<int>{1}))

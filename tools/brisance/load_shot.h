@@ -19,8 +19,9 @@ Shot load_shot(const std::string& input, const ShotOptions& options, Progress& p
 // The volume's path or pattern, seen from the current folder.
 std::string volume_pattern(const Shot& shot);
 
-// Returns the frames of a shot and their .vdb files. Where the shot has no volume, files are empty, and frame 1 is the
-// default. Throws Error as resolve_sequence.
+// Returns the frames of a shot and their .vdb files; of two files that a frame is made from, the nearer. Where the shot
+// has no volume, or nothing is at a frame's time, files are empty. Without requested frames all that show the sequence,
+// or frame 1 where there is no volume. Throws Error as resolve_sequence and own_files.
 std::vector<FrameFile> resolve_frames(const Shot& shot, const std::optional<std::vector<int>>& requested);
 
 }  // namespace brisance

@@ -19,6 +19,7 @@
 #include "render/choose_method.h"
 #include "render/render_frame.h"
 #include "render/time_budget.h"
+#include "render/volume_in_time.h"
 #include "shot/write_shot.h"
 #include "volume/vdb_header.h"
 
@@ -82,20 +83,20 @@ std::vector<FrameFile> usable_frames(const Shot& shot, const RenderOptions& opti
     } else {
         for (const int frame : *requested)
             attempt(
-                "",
-                [&] {
-                    frames.push_back({frame, resolve_frame(pattern, frame)});
-                },
-                progress, failures);
+                "", [&] { frames.push_back(resolve_frames(shot, std::vector<int>{frame}).front()); }, progress,
+                failures);
     }
     if (pattern.empty())
         return frames;
     std::vector<FrameFile> usable;
     for (const FrameFile& frame : frames) {
+        const auto look = [&] {
+            if (!frame.file.empty())  // else nothing is at this time
+                read_vdb_header(frame.file);
+        };
         if (!options.keep_going)
-            read_vdb_header(frame.file);
-        if (!options.keep_going || attempt(
-                                       "", [&] { read_vdb_header(frame.file); }, progress, failures))
+            look();
+        if (!options.keep_going || attempt("", look, progress, failures))
             usable.push_back(frame);
     }
     return usable;
@@ -215,6 +216,7 @@ auto by_largest_file(const Shot& shot, const char* what, const Choose& choose, P
     if (volume_pattern(shot).empty())
         return std::nullopt;
     std::vector<FrameFile> all = resolve_frames(shot, std::nullopt);
+    std::erase_if(all, [](const FrameFile& f) { return f.file.empty(); });
     if (all.size() < 2)
         return std::nullopt;
     std::ranges::stable_sort(all, std::greater(), [](const FrameFile& f) { return fs::file_size(f.file); });
@@ -276,6 +278,7 @@ struct SharedChoice {
 
 SharedChoice choose_for_all(Shot& shot, Progress& progress) {
     SharedChoice out;
+    shot = settle_time(shot, progress);
     out.timed = one_setting(shot, progress);
     if (out.timed)
         shot = out.timed->shot;

@@ -20,6 +20,7 @@ std::vector<Key> all_keys() {
                                                "name", "of the shot, and of its files where output.path is empty",
                                                text(true), [](Shot & s) -> auto& { return s.name; })};
     add_volume_keys(keys);
+    add_time_keys(keys);
     add_medium_keys(keys);
     add_scene_keys(keys);
     add_camera_keys(keys);
@@ -40,6 +41,8 @@ Sections all_sections() {
     Sections sections = {
         {"volume", "the OpenVDB file, its grids and its position"},
         {"volume.grids", "which grid plays which role: \"name\" or \"name[index]\", null for automatic, \"\" for none"},
+        {"time", "which time of a sequence of volumes each frame of the picture shows"},
+        {"velocity", "how far a volume's velocity moves its smoke; read only where times between frames are made"},
         {"smoke", "from density to optical coefficients"},
         {"fire", "what glows"},
         {"scene", "surfaces and lights around the volume"},

@@ -66,6 +66,7 @@ Key make_flagged_key(const std::string& path, const std::string& help, const Cod
 }
 
 void add_volume_keys(std::vector<Key>& keys);
+void add_time_keys(std::vector<Key>& keys);
 void add_medium_keys(std::vector<Key>& keys);
 void add_scene_keys(std::vector<Key>& keys);
 void add_camera_keys(std::vector<Key>& keys);

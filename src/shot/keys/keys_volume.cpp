@@ -1,5 +1,6 @@
 #include "shot/keys/keys.h"
 #include "shot/keys/object_codec.h"
+#include "shot/keys/time_codecs.h"
 
 namespace brisance {
 namespace {
@@ -22,7 +23,9 @@ Codec<GridRoles> roles() {
                          member<T>(
                              "flame", optional_text(), [](T & t) -> auto& { return t.flame; }),
                          member<T>(
-                             "colour", optional_text(), [](T & t) -> auto& { return t.colour; })});
+                             "colour", optional_text(), [](T & t) -> auto& { return t.colour; }),
+                         member<T>(
+                             "velocity", velocity_grids(), [](T & t) -> auto& { return t.velocity; })});
 }
 
 Codec<FogBox> fog_box() {
@@ -54,6 +57,10 @@ Codec<FurtherVolume> further_volume() {
              "up", up_axis(), [](T & t) -> auto& { return t.volume.up; }),
          member<T>(
              "world_from_file", matrix(), [](T & t) -> auto& { return t.volume.world_from_file; }),
+         member<T>(
+             "time", if_given(time_object()), [](T & t) -> auto& { return t.time; }),
+         member<T>(
+             "velocity", if_given(velocity_object()), [](T & t) -> auto& { return t.velocity; }),
          member<T>(
              "extinction_per_metre", if_given(real_float(radiometric())),
              [](T & t) -> auto& { return t.changes.extinction_per_metre; }),
@@ -95,6 +102,9 @@ void add_volume_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "volume.grids.colour", "three channels; colour_role says of what", optional_text(),
         [](Shot & s) -> auto& { return s.volume.grids.colour; }));
+    keys.push_back(make_key(
+        "volume.grids.velocity", "a vector grid or three scalar ones [x, y, z]; moves smoke between frames",
+        velocity_grids(), [](Shot & s) -> auto& { return s.volume.grids.velocity; }));
     keys.push_back(make_key(
         "volume.half_voxel_shift", "true: the sample of index i lies at i + 1/2 (Blender means this) instead of at i",
         flag(), [](Shot & s) -> auto& { return s.volume.half_voxel_shift; }));
