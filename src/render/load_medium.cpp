@@ -4,6 +4,7 @@
 #include "volume/fog_box.h"
 #include "volume/frame_path.h"
 #include "volume/mapping.h"
+#include "volume/vector_parts.h"
 
 namespace brisance {
 
@@ -48,6 +49,10 @@ MediumGrids read_grids(const VolumePart& part, const GridMapping& mapping, VdbRe
     grids.temperature = read(mapping.temperature, black_body);
     grids.flame = read(mapping.flame, fire.model == FireModel::Flame || (black_body && fire.modulate_by_flame));
     grids.colour = read(mapping.colour, true);
+    if (mapping.colour_parts.size() == 3)
+        grids.colour = join_vector_parts({*read(mapping.colour_parts[0], true), *read(mapping.colour_parts[1], true),
+                                          *read(mapping.colour_parts[2], true)},
+                                         part.file.string());
     if (!mapping.density)
         progress.notice("no density grid: nothing absorbs or scatters");
     if (black_body && !mapping.temperature)

@@ -115,12 +115,23 @@ Shot with_chosen_method(const Shot& shot, const Medium& medium, const Surroundin
     return with_method(shot, forecast);
 }
 
+// A black picture of something that is there wants a word.
+void warn_of_darkness(const Medium& medium, const Surroundings* surroundings, Progress& progress) {
+    if (medium.emits() || (surroundings && !surroundings->emitters().empty()))
+        return;
+    if (!medium.lattice.empty() || (surroundings && surroundings->scene().triangle_count() > 0))
+        progress.warning("nothing-shines",
+                         "there is no fire and no light, the picture is black: add scene.lights, or let a first look "
+                         "choose them with --look auto");
+}
+
 void render_into(RenderedFrame& out, const Shot& given, const Medium& medium, const Surroundings* surroundings,
                  const CameraSettings& camera_settings, const Checkpoint& checkpoint, Progress& progress) {
     const Shot shot = with_chosen_method(given, medium, surroundings, camera_settings, out, progress);
     const Plan plan = plan_cells(shot, medium, surroundings);
     out.statistics.cells = plan.cells();
     out.statistics.skipped = plan.skipped;
+    warn_of_darkness(medium, surroundings, progress);
     const Camera camera(camera_settings, medium);
     const DrawInput input{shot, plan, medium, surroundings, camera};
     if (shot.output.virtual_lights)

@@ -13,7 +13,9 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "film/whole_file.h"
 #include "film/write_image.h"
+#include "first_look/look_file.h"
 #include "load_shot.h"
 #include "outputs.h"
 #include "render/choose_method.h"
@@ -32,7 +34,7 @@ struct Failures {
     ExitCode first = ExitCode::Success;
 };
 
-Shot load(const RenderOptions& options, Progress& progress) {
+LoadedShot load(const RenderOptions& options, Progress& progress) {
     ShotOptions layers{options.preset, options.overrides};
     if (!options.method.empty())
         layers.overrides.insert(layers.overrides.begin(), "method=" + options.method);
@@ -43,7 +45,7 @@ Shot load(const RenderOptions& options, Progress& progress) {
     for (const std::string& pictures : options.debug)
         if (pictures == kDebugVirtualLights)
             layers.overrides.emplace_back("output.virtual_lights=true");
-    return load_shot(options.input, layers, progress);
+    return load_shot_and_look(options.input, layers, options.look, progress);
 }
 
 // Runs `work`; what it throws becomes a line and is counted. Returns whether it came to its end.
@@ -207,6 +209,11 @@ void write_frame(RenderedFrame& frame, const Shot& shot, const fs::path& volume,
     }
 }
 
+void write_look(const Look& look, const fs::path& file) {
+    write_whole_file(file, look_to_json(look));
+    announce(file);
+}
+
 // What all frames share, by the largest file on disk that can be read, whichever frames this call renders. `choose`
 // takes a file. Nothing where there is one frame, which chooses for itself.
 template <class Choose>
@@ -292,7 +299,8 @@ SharedChoice choose_for_all(Shot& shot, Progress& progress) {
 int run_render(const RenderOptions& options) {
     TextProgress progress(options.progress);
     const ThreadLimit limit(options.threads);
-    Shot shot = load(options, progress);
+    const LoadedShot loaded = load(options, progress);
+    Shot shot = loaded.shot;
     if (options.print_config) {
         progress.finish();
         std::fputs(to_json(shot).c_str(), stdout);
@@ -304,6 +312,8 @@ int run_render(const RenderOptions& options) {
         plan_outputs(shot, options.output, frames, options.input, options.make_folders);
     const std::vector<fs::path> checkpoints =
         plan_checkpoints(shot, options.checkpoint, frames, outputs, options.input);
+    if (loaded.look && !frames.empty())
+        write_look(*loaded.look, plan_look(shot, options.output, frames.size() > 1, options.input));
     const SharedChoice choice = frames.empty() ? SharedChoice{} : choose_for_all(shot, progress);
     PngExposure exposure(shot);
     for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -329,7 +339,7 @@ int run_render(const RenderOptions& options) {
 int run_plan(const RenderOptions& options) {
     TextProgress progress(options.progress);
     const ThreadLimit limit(options.threads);
-    Shot shot = load(options, progress);
+    Shot shot = load(options, progress).shot;
     Failures failures;
     const std::vector<FrameFile> frames = usable_frames(shot, options, progress, failures);
     if (frames.empty())
