@@ -26,8 +26,8 @@ float three_digits(double value) {
 Rgb soot_colour(float share) {
     static const std::vector<RampStop> colours = {{0.0f, {1.0f, 0.06f, 0.004f}},
                                                   {0.35f, {1.0f, 0.2f, 0.02f}},
-                                                  {0.7f, {1.0f, 0.45f, 0.1f}},
-                                                  {1.0f, {1.0f, 0.72f, 0.33f}}};
+                                                  {0.7f, {1.0f, 0.42f, 0.08f}},
+                                                  {1.0f, {1.0f, 0.62f, 0.22f}}};
     const auto above = std::ranges::find_if(colours, [&](const RampStop& s) { return s.value > share; });
     const RampStop& high = above == colours.end() ? colours.back() : *above;
     const RampStop& low = above == colours.begin() ? colours.front() : *(above - 1);

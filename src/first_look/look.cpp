@@ -22,6 +22,12 @@ constexpr double kSmokeAlbedo = 0.9;     // of steam, dust and thin smoke
 constexpr double kSootAlbedo = 0.35;     // of a sooty fire's smoke
 constexpr double kFireBrightness = 3.0;  // of a fire's bright parts at 0 stops [W/(m^2 sr)]
 
+// Lights, for pictures at 0 stops.
+const Rgb kSun(5.5f, 5.2f, 4.7f);       // irradiance [W/m^2]
+const Rgb kDay(0.07f, 0.088f, 0.115f);  // radiance [W/(m^2 sr)]
+const Rgb kMoon(0.5f, 0.56f, 0.68f);
+const Rgb kDusk(0.025f, 0.031f, 0.042f);
+
 double two_digits(double value) {
     if (!(value > 0.0) || !std::isfinite(value))
         return value;
@@ -69,7 +75,7 @@ private:
     }
 
     void decide_grids() {
-        if (!survey_.mapping_of_all) {
+        if (!survey_.mapping_of_all && survey_.frames.size() > 1) {
             look_.warnings.push_back("not every frame has the same grids: roles are found by name in each frame");
             return;
         }
@@ -159,26 +165,24 @@ private:
             return;
         const double strength = two_digits(kFireBrightness / brightest);
         decide("fire.strength", strength,
-               fmt::format("the bright parts of the brightest frame get a luminance near {:g}", kFireBrightness));
+               fmt::format("the bright parts of the brightest frame get values near {:g}", kFireBrightness));
         medium_.fire.strength = static_cast<float>(strength);
     }
 
     void decide_lights() {
-        const auto light = [](const char* kind, const char* name, const Rgb& power) {
-            return Json{{"kind", kind},
-                        {"name", name},
-                        {"power", {shortest_decimal(power.x), shortest_decimal(power.y), shortest_decimal(power.z)}}};
+        const auto power = [](const Rgb& p) {
+            return Json{shortest_decimal(p.x), shortest_decimal(p.y), shortest_decimal(p.z)};
         };
-        if (burns()) {
-            decide("scene.lights", Json::array({light("environment", "sky", {0.03f, 0.037f, 0.05f})}),
-                   "a dim sky, so that smoke can be seen where its fire has gone out");
-            return;
-        }
-        Json key = light("sun", "key", {5.0f, 4.7f, 4.2f});
-        key["direction"] = {0.75, 0.4, -0.6};
-        key["angle_degrees"] = 2.0;
-        decide("scene.lights", Json::array({key, light("environment", "sky", {0.09f, 0.11f, 0.14f})}),
-               "nothing burns: a key light from the left, above and before, and a soft sky");
+        const bool fire = burns();
+        const Json key = {{"kind", "sun"},
+                          {"name", "key"},
+                          {"direction", {0.85, 0.25, -0.55}},
+                          {"angle_degrees", 2.0},
+                          {"power", power(fire ? kMoon : kSun)}};
+        const Json sky = {{"kind", "environment"}, {"name", "sky"}, {"power", power(fire ? kDusk : kDay)}};
+        decide("scene.lights", Json::array({key, sky}),
+               fire ? "a dim sky and key, so that smoke can be seen where its fire has gone out"
+                    : "nothing burns: a key light from the left and above, and a soft sky");
     }
 
     void decide_camera() {

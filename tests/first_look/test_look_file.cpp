@@ -23,8 +23,8 @@ TEST(LookFile, WhatIsWrittenIsReadAgain) {
 
 TEST(LookFile, EveryDecisionIsAKeyOfAShot) {
     const BlockGrid smoke = ball_grid(0.7), kelvin = ball_grid(1900.0);
-    for (const Look& look : {look_of_fire(), decide_look(survey_of(&smoke), {}),
-                             decide_look(survey_of(&smoke, nullptr, &kelvin), {})})
+    for (const Look& look :
+         {look_of_fire(), decide_look(survey_of(&smoke), {}), decide_look(survey_of(&smoke, nullptr, &kelvin), {})})
         EXPECT_NO_THROW(parse_shot(shot_of_look(look, {}).dump(), "look", {}, {{}, {"volume.file=a.vdb"}}));
 }
 
@@ -54,6 +54,7 @@ TEST(LookFile, EachPartCanBeOverridden) {
     for (const LookDecision& d : look.decisions) {
         Stated stated;
         stated.keys.insert(d.key);
+        stated.shot.camera_given = d.key.starts_with("camera.");
         const std::string text = shot_of_look(look, stated).dump();
         const Shot shot = parse_shot(text, "look", {}, {{}, {"volume.file=a.vdb"}}, &stated.keys);
         Stated again;

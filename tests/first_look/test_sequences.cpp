@@ -15,9 +15,8 @@ void write_frames(const TempFolder& folder, int count, int burning) {
         TestGrid density, flame;
         flame.name = "flame";
         const double radius = 0.8 * (frame - 1);
-        density.voxels = fill_box(ivec3(-10), ivec3(10), [&](const ivec3& i) {
-            return glm::length(dvec3(i)) < radius ? 1.0 : 0.0;
-        });
+        density.voxels =
+            fill_box(ivec3(-10), ivec3(10), [&](const ivec3& i) { return glm::length(dvec3(i)) < radius ? 1.0 : 0.0; });
         std::erase_if(density.voxels, [](const TestVoxel& v) { return v.value.x == 0.0; });
         if (frame == burning)
             flame.voxels = density.voxels;
