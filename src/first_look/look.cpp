@@ -20,12 +20,12 @@ constexpr double kSmokeDepth = 6.0;      // optical depth of a mean line of sigh
 constexpr double kSootDepth = 12.0;      // and through a fire's: it hides the core in places
 constexpr double kSmokeAlbedo = 0.9;     // of steam, dust and thin smoke
 constexpr double kSootAlbedo = 0.35;     // of a sooty fire's smoke
-constexpr double kFireBrightness = 3.0;  // of a fire's bright parts at 0 stops [W/(m^2 sr)]
+constexpr double kFireBrightness = 1.2;  // of a fire's bright parts at 0 stops [W/(m^2 sr)]
 
 // Lights, for pictures at 0 stops.
 const Rgb kSun(5.5f, 5.2f, 4.7f);       // irradiance [W/m^2]
 const Rgb kDay(0.07f, 0.088f, 0.115f);  // radiance [W/(m^2 sr)]
-const Rgb kMoon(0.5f, 0.56f, 0.68f);
+const Rgb kMoon(1.2f, 1.35f, 1.6f);
 const Rgb kDusk(0.025f, 0.031f, 0.042f);
 
 double two_digits(double value) {
@@ -94,13 +94,29 @@ private:
             up_ = stated_.shot.volume.up;
     }
 
+    void keep_stated(FireSettings& fire) const {
+        const FireSettings& stated = stated_.shot.medium.fire;
+        fire.threshold = stated.threshold, fire.colour = stated.colour;
+        if (stated_.has("fire.strength"))
+            fire.strength = stated.strength;
+        if (stated_.has("fire.convention"))
+            fire.convention = stated.convention;
+        if (stated_.has("fire.ramp"))
+            fire.ramp = stated.ramp;
+        if (stated_.has("fire.modulate_by_flame"))
+            fire.modulate_by_flame = stated.modulate_by_flame;
+        if (stated_.has("fire.temperature_in"))
+            fire.temperature_in = stated.temperature_in;
+        if (stated_.has("fire.temperature_kelvin"))
+            fire.temperature_kelvin = stated.temperature_kelvin;
+    }
+
     void decide_fire(const FireChoice& choice) {
         FireSettings fire = fire_of(choice, survey_);
         static constexpr const char* kModels[] = {"none", "flame", "blackbody"};
         if (!decide("fire.model", kModels[static_cast<int>(choice.fire)], choice.why))
             return;  // the rest belongs to it
-        fire.threshold = medium_.fire.threshold, fire.colour = medium_.fire.colour;
-        fire.strength = stated_.has("fire.strength") ? medium_.fire.strength : 1.0f;
+        keep_stated(fire);
         medium_.fire = fire;
         if (choice.temperature_is_smoke) {
             std::erase_if(look_.decisions, [](const LookDecision& d) { return d.key.starts_with("volume.grids."); });
@@ -165,7 +181,7 @@ private:
             return;
         const double strength = two_digits(kFireBrightness / brightest);
         decide("fire.strength", strength,
-               fmt::format("the bright parts of the brightest frame get values near {:g}", kFireBrightness));
+               fmt::format("the bright parts of the brightest frame get a luminance near {:g}", kFireBrightness));
         medium_.fire.strength = static_cast<float>(strength);
     }
 

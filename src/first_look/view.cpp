@@ -103,8 +103,7 @@ Seen look_through(const View& view, const ViewAxes& axes, const MediumSettings& 
         const double depth = double(medium.smoke.extinction_per_metre) * c.cell.density * c.volume / pixels.area();
         const double covered = transmittance[p] * -std::expm1(-depth);
         const Rgb fire = radiance({c.cell.temperature, c.cell.flame, Rgb(1.0f)});
-        const Rgb thermal = direct ? fire : fire * (Rgb(1.0f) - medium.smoke.albedo);
-        const double source = std::max({thermal.x, thermal.y, thermal.z});
+        const double source = luminance(direct ? fire : fire * (Rgb(1.0f) - medium.smoke.albedo));
         shine[i] =
             direct ? transmittance[p] * source * c.cell.flame_share * c.volume / pixels.area() : covered * source;
         glow[p] += shine[i];

@@ -39,7 +39,7 @@ double column_depth(const View& view, const ViewAxes& axes);
 // What is seen of each cell, without scattered light.
 struct Seen {
     std::vector<double> weight;  // per cell: area that it covers or makes shine [m^2]
-    double brightness = 0.0;     // of the picture's fire: greatest channel, mean weighted by itself [W/(m^2 sr)]
+    double brightness = 0.0;     // of the picture's fire: mean luminance weighted by itself [W/(m^2 sr)]
     double opacity = 0.0;        // mean over the picture, weighted by itself [1]
 };
 
