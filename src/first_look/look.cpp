@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
 
 #include "first_look/decide_fire.h"
 #include "first_look/up_axis.h"
@@ -97,18 +95,16 @@ private:
     void keep_stated(FireSettings& fire) const {
         const FireSettings& stated = stated_.shot.medium.fire;
         fire.threshold = stated.threshold, fire.colour = stated.colour;
-        if (stated_.has("fire.strength"))
-            fire.strength = stated.strength;
-        if (stated_.has("fire.convention"))
-            fire.convention = stated.convention;
-        if (stated_.has("fire.ramp"))
-            fire.ramp = stated.ramp;
-        if (stated_.has("fire.modulate_by_flame"))
-            fire.modulate_by_flame = stated.modulate_by_flame;
-        if (stated_.has("fire.temperature_in"))
-            fire.temperature_in = stated.temperature_in;
-        if (stated_.has("fire.temperature_kelvin"))
-            fire.temperature_kelvin = stated.temperature_kelvin;
+        const auto keep = [&](const char* key, auto member) {
+            if (stated_.has(key))
+                fire.*member = stated.*member;
+        };
+        keep("fire.strength", &FireSettings::strength);
+        keep("fire.convention", &FireSettings::convention);
+        keep("fire.ramp", &FireSettings::ramp);
+        keep("fire.modulate_by_flame", &FireSettings::modulate_by_flame);
+        keep("fire.temperature_in", &FireSettings::temperature_in);
+        keep("fire.temperature_kelvin", &FireSettings::temperature_kelvin);
     }
 
     void decide_fire(const FireChoice& choice) {

@@ -41,16 +41,6 @@ std::vector<int> integers(const Json& list, const char* name, const std::string&
     return out;
 }
 
-Json& at_path(Json& root, const std::string& path) {
-    Json* node = &root;
-    std::size_t begin = 0;
-    for (std::size_t dot = path.find('.'); dot != std::string::npos; dot = path.find('.', begin)) {
-        node = &(*node)[path.substr(begin, dot - begin)];
-        begin = dot + 1;
-    }
-    return (*node)[path.substr(begin)];
-}
-
 std::string dump(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

@@ -92,6 +92,8 @@ LoadedShot load_volume(const std::string& input, const ShotOptions& options, con
         out.shot.name = fs::path(volumes).stem().string();
     if (decided)
         out.look = look;
+    else if (look.volume != fs::path(volumes).filename().string())
+        progress.notice(fmt::format("{} was made for {}", look_name, look.volume));
     return out;
 }
 
