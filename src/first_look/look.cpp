@@ -186,6 +186,10 @@ private:
             return Json{shortest_decimal(p.x), shortest_decimal(p.y), shortest_decimal(p.z)};
         };
         const bool fire = burns();
+        if (fire && stated_.shot.seconds > 0.0) {
+            decide("scene.lights", Json::array(), "a time is given, and times of lamps cannot be forecast: fire alone");
+            return;
+        }
         const Json key = {{"kind", "sun"},
                           {"name", "key"},
                           {"direction", {0.85, 0.25, -0.55}},
