@@ -8,6 +8,7 @@
 #include "retiming/between_frames.h"
 #include "volume/frame_path.h"
 #include "volume/mapping.h"
+#include "volume/vector_parts.h"
 #include "volume/velocity_mapping.h"
 
 namespace brisance {
@@ -58,7 +59,11 @@ public:
         std::vector<std::optional<BlockGrid>> out(kRoles);
         for (std::size_t role = 0; role < kRoles; ++role)
             if (const std::optional<GridChoice>& choice = *choices(mapping_)[role]; choice && needed[role])
-                out[role] = reader_.read(choice->name, choice->index, kGridMemory);
+                out[role] = read(*choice);
+        if (needed[kColour] && mapping_.colour_parts.size() == 3)
+            out[kColour] = join_vector_parts({read(mapping_.colour_parts[0]), read(mapping_.colour_parts[1]),
+                                              read(mapping_.colour_parts[2])},
+                                             file_.string());
         return out;
     }
 
@@ -66,7 +71,7 @@ public:
         const VelocityMapping mapping = map_velocity(reader_.grids(), settings_.grids, file_.string());
         VelocityGrids grids;
         for (const GridChoice& choice : mapping.grids) {
-            grids.push_back(reader_.read(choice.name, choice.index, kGridMemory));
+            grids.push_back(read(choice));
             if (const std::uint64_t bad = grids.back().census.nan_voxels; bad > 0)
                 progress.warning("nan", fmt::format("{}: grid '{}': {} NaN or infinite velocities read as 0",
                                                     file_.string(), choice.name, bad));
@@ -81,6 +86,8 @@ public:
     }
 
 private:
+    BlockGrid read(const GridChoice& choice) { return reader_.read(choice.name, choice.index, kGridMemory); }
+
     std::filesystem::path file_;
     const VolumeSettings& settings_;
     VdbReader reader_;

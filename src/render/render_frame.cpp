@@ -116,6 +116,16 @@ Shot with_chosen_method(const Shot& shot, const Medium& medium, const Surroundin
     return with_method(shot, forecast);
 }
 
+// A black picture of something that is there wants a word.
+void warn_of_darkness(const Medium& medium, const Surroundings* surroundings, Progress& progress) {
+    if (medium.emits() || (surroundings && !surroundings->emitters().empty()))
+        return;
+    if (!medium.lattice.empty() || (surroundings && surroundings->scene().triangle_count() > 0))
+        progress.warning("nothing-shines",
+                         "there is no fire and no light, the picture is black: add scene.lights, or let a first look "
+                         "choose them with --look auto");
+}
+
 void render_into(RenderedFrame& out, const Shot& given, const Medium& medium, const Surroundings* surroundings,
                  const CameraSettings& camera_settings, const Animation& animation, const Checkpoint& checkpoint,
                  Progress& progress) {
@@ -123,6 +133,7 @@ void render_into(RenderedFrame& out, const Shot& given, const Medium& medium, co
     const Plan plan = plan_cells(shot, medium, surroundings);
     out.statistics.cells = plan.cells();
     out.statistics.skipped = plan.skipped;
+    warn_of_darkness(medium, surroundings, progress);
     const Camera camera(camera_settings, medium);
     const OpenShutter shutter(shot.shutter, medium, surroundings, camera_settings, animation, progress);
     const DrawInput input{shot, plan, medium, surroundings, camera, shutter.still() ? nullptr : &shutter};

@@ -138,4 +138,14 @@ JsonText parse_json_text(const std::string& text, const std::string& source) {
     return result;
 }
 
+Json& at_path(Json& root, const std::string& path) {
+    Json* node = &root;
+    std::size_t begin = 0;
+    for (std::size_t point = path.find('.'); point != std::string::npos; point = path.find('.', begin)) {
+        node = &(*node)[path.substr(begin, point - begin)];
+        begin = point + 1;
+    }
+    return (*node)[path.substr(begin)];
+}
+
 }  // namespace brisance

@@ -22,4 +22,7 @@ JsonText parse_json_text(const std::string& text, const std::string& source);
 // 10,000 keys.
 std::optional<Json> parse_json_value(const std::string& text);
 
+// The value at a dotted path; objects on the way are made.
+Json& at_path(Json& root, const std::string& path);
+
 }  // namespace brisance

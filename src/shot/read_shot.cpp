@@ -163,19 +163,23 @@ const std::vector<std::string>& shot_presets() {
     return names;
 }
 
-Shot read_shot(const std::filesystem::path& file, const ShotOptions& options) {
-    Shot shot = parse_shot(read_input(file, kLargestShot, ExitCode::Usage), file.string(), file.parent_path(), options);
+Shot read_shot(const std::filesystem::path& file, const ShotOptions& options, std::set<std::string>* given) {
+    Shot shot =
+        parse_shot(read_input(file, kLargestShot, ExitCode::Usage), file.string(), file.parent_path(), options, given);
     if (shot.name.empty())
         shot.name = file.stem().string();
     return shot;
 }
 
 Shot parse_shot(const std::string& text, const std::string& source, const std::filesystem::path& folder,
-                const ShotOptions& options) {
+                const ShotOptions& options, std::set<std::string>* given) {
     const JsonText json = parse_json_text(text, source);
     Shot shot;
     shot.folder = folder;
     Layering layering(shot);
+    if (!options.base.empty())
+        layering.apply("", parse_json_text(options.base, options.base_source).value,
+                       [&](const std::string&) { return options.base_source; });
     layering.apply("", json.value, [&](const std::string& path) {
         const auto line = json.line_of_key.find(path);
         return line == json.line_of_key.end() ? source : fmt::format("{}:{}", source, line->second);
@@ -184,6 +188,9 @@ Shot parse_shot(const std::string& text, const std::string& source, const std::f
     for (const std::string& setting : options.overrides)
         layering.override_with(setting, "--set " + setting);
     check_shot(shot, layering.given(), source);
+    if (given != nullptr)
+        for (const auto& [key, where] : layering.given())
+            given->insert(key);
     return shot;
 }
 

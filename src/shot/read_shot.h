@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -9,10 +10,12 @@
 
 namespace brisance {
 
-// Layers over the defaults: the file, then the preset, then the overrides in their order. A later one wins.
+// Layers over the defaults: the base, the file, then the preset, then the overrides in their order. A later one wins.
 struct ShotOptions {
     std::string preset;                  // a name of shot_presets(); empty: none
     std::vector<std::string> overrides;  // "smoke.albedo=0.9": JSON, or text where it is no JSON
+    std::string base = {};               // a shot in JSON, for what the file leaves open; empty: none
+    std::string base_source = {};        // stands for it in messages
 };
 
 // Names of the presets. "final" changes nothing: the shot as written, over the defaults.
@@ -20,10 +23,12 @@ const std::vector<std::string>& shot_presets();
 
 // Throws Error MissingInput (no such file) or Usage (no JSON; unknown, misplaced or doubled key; wrong type; out of
 // range; settings that contradict each other).
-Shot read_shot(const std::filesystem::path& file, const ShotOptions& options = {});
+// `given` receives the keys that are stated in any layer.
+Shot read_shot(const std::filesystem::path& file, const ShotOptions& options = {},
+               std::set<std::string>* given = nullptr);
 
 // The same from text. `source` stands for the file in messages; relative paths of the shot are relative to `folder`.
 Shot parse_shot(const std::string& text, const std::string& source, const std::filesystem::path& folder,
-                const ShotOptions& options = {});
+                const ShotOptions& options = {}, std::set<std::string>* given = nullptr);
 
 }  // namespace brisance

@@ -5,20 +5,11 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "shot/json_text.h"
 #include "shot/keys/keys.h"
 
 namespace brisance {
 namespace {
-
-Json& at_path(Json& root, const std::string& path) {
-    Json* node = &root;
-    std::size_t begin = 0;
-    for (std::size_t point = path.find('.'); point != std::string::npos; point = path.find('.', begin)) {
-        node = &(*node)[path.substr(begin, point - begin)];
-        begin = point + 1;
-    }
-    return (*node)[path.substr(begin)];
-}
 
 Json resolved(const Shot& shot) {
     Json root = Json::object();

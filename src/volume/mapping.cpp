@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/printable.h"
 #include "volume/velocity_mapping.h"
+#include "volume/vector_parts.h"
 
 namespace brisance {
 namespace {
@@ -51,7 +52,7 @@ const Preset& preset_of(MappingPreset which) {
 
 // Never density, even when nothing else is there.
 bool is_not_an_amount(const std::string& lower) {
-    static const Names names = {"heat", "shadow", "scatter", "collision", "sdf", "surface"};
+    static const Names names = {"heat", "shadow", "scatter", "collision", "sdf", "surface", "flags"};
     return std::find(names.begin(), names.end(), lower) != names.end() || lower.starts_with("vel");
 }
 
@@ -94,6 +95,15 @@ std::string why_not(const GridInfo& grid, Role role) {
         return fmt::format("holds three values per voxel ({}); {} needs one (float)", grid.value_type,
                            kRoleNames[role]);
     return {};
+}
+
+// The same for a grid that nobody has named. Whole numbers mark cells: what is in them, not how much of it.
+std::string why_not_by_itself(const GridInfo& grid, Role role) {
+    const std::string reason = why_not(grid, role);
+    if (!reason.empty() || !grid.value_type.starts_with("int"))
+        return reason;
+    return fmt::format("holds whole numbers ({}), which mark cells; name it in the shot if it is an amount",
+                       grid.value_type);
 }
 
 struct GridReference {
@@ -146,7 +156,7 @@ std::optional<GridChoice> choose_by_name(const std::vector<GridInfo>& grids, Rol
         for (const GridInfo& grid : grids) {
             if (lower_case(grid.name) != name)
                 continue;
-            if (const std::string reason = why_not(grid, role); !reason.empty()) {
+            if (const std::string reason = why_not_by_itself(grid, role); !reason.empty()) {
                 mapping.notes.push_back(
                     fmt::format("grid {} is not used as {}: it {}", shot_name(grids, grid), kRoleNames[role], reason));
                 continue;
@@ -161,11 +171,19 @@ std::optional<GridChoice> choose_by_name(const std::vector<GridInfo>& grids, Rol
     return std::nullopt;
 }
 
+// A colour as three scalar grids, where no grid holds it whole.
+void choose_colour_parts(const std::vector<GridInfo>& grids, GridMapping& mapping) {
+    static const Names stems = {"cd", "color", "colour", "albedo"};
+    if (const std::optional<VectorParts> parts = find_vector_parts(grids, stems))
+        for (const GridInfo* const part : *parts)
+            mapping.colour_parts.push_back({part->name, part->index, "automatic: one of three parts of a colour"});
+}
+
 // A file with a single amount in it, whatever its name, can only mean one thing.
 void choose_only_grid(const std::vector<GridInfo>& grids, GridMapping& mapping) {
     const GridInfo* only = nullptr;
     for (const GridInfo& grid : grids) {
-        if (!why_not(grid, Density).empty() || is_not_an_amount(lower_case(grid.name)))
+        if (!why_not_by_itself(grid, Density).empty() || is_not_an_amount(lower_case(grid.name)))
             continue;
         if (only != nullptr)
             return;
@@ -182,7 +200,7 @@ void choose_only_grid(const std::vector<GridInfo>& grids, GridMapping& mapping) 
 [[noreturn]] void throw_nothing_to_render(const std::vector<GridInfo>& grids, const std::string& file) {
     std::string reasons;
     for (const GridInfo& grid : grids) {
-        std::string reason = why_not(grid, Density);
+        std::string reason = why_not_by_itself(grid, Density);
         if (reason.empty())
             reason = "has no known name; name it in the shot's volume.grids";
         reasons += fmt::format(" {}{} {};", shot_name(grids, grid), grid.name.empty() ? " (unnamed)" : "", reason);
@@ -193,6 +211,9 @@ void choose_only_grid(const std::vector<GridInfo>& grids, GridMapping& mapping) 
 
 void note_leftovers(const std::vector<GridInfo>& grids, const VolumeSettings& settings, GridMapping& mapping) {
     const auto used = [&](const GridInfo& grid) {
+        for (const GridChoice& part : mapping.colour_parts)
+            if (part.name == grid.name && part.index == grid.index)
+                return true;
         for (const auto* choice : {&mapping.density, &mapping.temperature, &mapping.flame, &mapping.colour})
             if (*choice && (*choice)->name == grid.name && (*choice)->index == grid.index)
                 return true;
@@ -215,18 +236,24 @@ void note_leftovers(const std::vector<GridInfo>& grids, const VolumeSettings& se
 
 }  // namespace
 
+std::string GridChoice::shot_name() const {
+    return index > 0 || name.empty() ? fmt::format("{}[{}]", name, index) : name;
+}
+
 std::string GridMapping::describe() const {
     const std::array<const std::optional<GridChoice>*, 4> choices = {&density, &temperature, &flame, &colour};
     std::string line;
     for (std::size_t role = 0; role < choices.size(); ++role) {
         const std::optional<GridChoice>& choice = *choices[role];
         line += fmt::format("{}{} <- ", line.empty() ? "" : ", ", kRoleNames[role]);
-        if (!choice)
-            line += "none";
-        else if (choice->index > 0 || choice->name.empty())
-            line += fmt::format("\"{}[{}]\"", printable(choice->name, kLongestName), choice->index);
+        if (choice)
+            line += fmt::format("\"{}\"", printable(choice->shot_name(), kLongestName));
+        else if (role == Colour && !colour_parts.empty())
+            for (const GridChoice& part : colour_parts)
+                line += fmt::format("{}\"{}\"", &part == &colour_parts.front() ? "" : " + ",
+                                    printable(part.shot_name(), kLongestName));
         else
-            line += fmt::format("\"{}\"", printable(choice->name, kLongestName));
+            line += "none";
     }
     return line;
 }
@@ -252,6 +279,8 @@ GridMapping map_grids(const std::vector<GridInfo>& grids, const VolumeSettings& 
     mapping.temperature = choose(Temperature, settings.grids.temperature);
     mapping.flame = choose(Flame, settings.grids.flame);
     mapping.colour = choose(Colour, settings.grids.colour);
+    if (!mapping.colour && !settings.grids.colour)
+        choose_colour_parts(grids, mapping);
     const auto nothing = [&] { return !mapping.density && !mapping.temperature && !mapping.flame; };
     if (nothing() && !settings.grids.density)
         choose_only_grid(grids, mapping);

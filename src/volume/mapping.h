@@ -13,7 +13,8 @@ namespace brisance {
 struct GridChoice {
     std::string name;
     int index = 0;
-    std::string reason;  // "named by the shot", "preset embergen", "automatic: name matches 'density'"
+    std::string reason;             // "named by the shot", "preset embergen", "automatic: name matches 'density'"
+    std::string shot_name() const;  // as a shot names it: "name" or "name[index]"
 };
 
 struct GridMapping {
@@ -21,8 +22,9 @@ struct GridMapping {
     std::optional<GridChoice> temperature;
     std::optional<GridChoice> flame;
     std::optional<GridChoice> colour;
-    std::vector<std::string> notes;  // ambiguities and grids left unused, one line each
-    std::string describe() const;    // one line: density <- "density", flame <- "flames", ...
+    std::vector<GridChoice> colour_parts;  // three grids of one channel each, instead of `colour`; or none
+    std::vector<std::string> notes;        // ambiguities and grids left unused, one line each
+    std::string describe() const;          // one line: density <- "density", flame <- "flames", ...
 };
 
 // Throws Error BadData when no grid can serve as density, flame or temperature (the message lists every grid and why

@@ -315,6 +315,53 @@ class Rendering(VolumeCase):
     def test_sequences_are_inspected(self):
         self.assertIn("density", self.expect(0, "inspect", self.make_sequence([3, 4])).stdout)
 
+    def look_of(self, *arguments):
+        self.expect(0, "render", *arguments, *SMALL, "-o", self.out / "a.#.exr", "--set", "output.png=false")
+        return (self.out / "a.look.json").read_text(encoding="utf-8")
+
+    def test_every_chunk_of_a_sequence_decides_the_same_look(self):
+        candle = SOURCE / "volumes" / "candle.vdb"
+        for frame in (1, 2, 3):
+            shutil.copyfile(candle if frame < 3 else self.volume, self.folder / f"burst_{frame:04}.vdb")
+        looks = [self.look_of("burst_####.vdb", "-f", frames) for frames in ("1", "2", "1-2")]
+        looks.append(self.look_of(self.folder, "-f", "2"))
+        self.assertEqual(len(set(looks)), 1)
+        self.assertIn('"looked_at": [1,2,3]', looks[0])
+
+    def test_a_look_is_written_used_and_overridden(self):
+        self.expect(0, "inspect", SOURCE / "volumes" / "candle.vdb", "--write-look", "kept.look.json")
+        look = json.loads((self.folder / "kept.look.json").read_text(encoding="utf-8"))
+        look["decisions"]["smoke.extinction_per_metre"]["value"] = 77
+        self.write("kept.look.json", json.dumps(look))
+
+        def config(*arguments):
+            return json.loads(self.expect(0, "render", *arguments, "--print-config").stdout)
+
+        used = config(SOURCE / "volumes" / "candle.vdb", "--look", "kept.look.json")
+        self.assertEqual(used["smoke"]["extinction_per_metre"], 77)
+        self.assertEqual(used["camera"]["eye"], look["decisions"]["camera.eye"]["value"])
+        changed = config(SOURCE / "volumes" / "candle.vdb", "--look", "kept.look.json", "--set",
+                         "smoke.extinction_per_metre=5")
+        self.assertEqual(changed["smoke"]["extinction_per_metre"], 5)
+        self.write("a.json", json.dumps({"volume": {"file": str(SOURCE / "volumes" / "candle.vdb")},
+                                         "smoke": {"albedo": 0.5}}))
+        laid_under = config("a.json", "--look", "kept.look.json")
+        self.assertEqual(laid_under["smoke"]["albedo"], [0.5, 0.5, 0.5])
+        self.assertEqual(laid_under["smoke"]["extinction_per_metre"], 77)
+
+    def test_a_damaged_look_is_one_line(self):
+        candle = SOURCE / "volumes" / "candle.vdb"
+        self.write("bad.look.json", "{\"brisance_look\": 1")
+        self.expect(2, "render", candle, "--look", "bad.look.json", says="bad.look.json")
+        self.write("bad.look.json", "{}")
+        self.expect(2, "render", candle, "--look", "bad.look.json", says="is no look")
+        self.expect(66, "render", candle, "--look", "absent.look.json", says="absent.look.json")
+        self.expect(66, "render", self.out, says="holds no .vdb")
+
+    def test_what_does_not_shine_gets_a_warning(self):
+        self.expect(0, "render", SOURCE / "volumes" / "candle.vdb", *SMALL, "-o", self.out, "--set",
+                    "fire.model=none", "--set", "scene.lights=[]", says="nothing-shines")
+
     def test_unwritable_folder(self):
         self.out.chmod(0o555)
         self.addCleanup(self.out.chmod, 0o755)

@@ -4,6 +4,7 @@
 #include "temp_folder.h"
 #include "volume/mapping.h"
 #include "volume/velocity_mapping.h"
+#include "volume/vector_parts.h"
 
 namespace brisance {
 namespace {
@@ -114,6 +115,61 @@ TEST(Mapping, AVectorIsNoDensityAndAScalarNoColour) {
     EXPECT_FALSE(mapping.density || mapping.colour);
     EXPECT_TRUE(contains(all_notes(mapping), "three values per voxel"));
     EXPECT_TRUE(contains(all_notes(mapping), "a colour needs three"));
+}
+
+TEST(Mapping, WholeNumbersMarkCellsAndAreNoAmountUnlessTheShotSaysSo) {
+    const std::vector<GridInfo> grids = {grid("flags", "int32"), grid("density", "int32"), grid("smoke")};
+    const GridMapping mapping = map(grids);
+    EXPECT_EQ(mapping.density->name, "smoke");
+    EXPECT_TRUE(contains(all_notes(mapping), "whole numbers"));
+    EXPECT_EQ(failure_of([&] { map({grid("flags", "int32")}); }).code, ExitCode::BadData);
+    EXPECT_EQ(failure_of([&] { map({grid("flags")}); }).code, ExitCode::BadData);
+    VolumeSettings settings;
+    settings.grids.density = "density";
+    EXPECT_EQ(map(grids, settings).density->name, "density");
+}
+
+TEST(Mapping, ThreeScalarGridsAreOneColour) {
+    const std::vector<GridInfo> grids = {grid("density"), grid("color_b"), grid("Color_R"), grid("color_g")};
+    const GridMapping mapping = map(grids);
+    ASSERT_EQ(mapping.colour_parts.size(), 3u);
+    EXPECT_EQ(mapping.colour_parts[0].name, "Color_R");
+    EXPECT_EQ(mapping.colour_parts[2].name, "color_b");
+    EXPECT_TRUE(contains(mapping.describe(), "colour <- \"Color_R\" + \"color_g\" + \"color_b\""));
+    EXPECT_FALSE(contains(all_notes(mapping), "unused"));
+    EXPECT_TRUE(map({grid("density"), grid("Cd.x"), grid("Cd.y")}).colour_parts.empty()) << "a part is missing";
+    EXPECT_TRUE(
+        map({grid("Cd", "vec3s"), grid("Cd.x"), grid("Cd.y"), grid("Cd.z"), grid("density")}).colour_parts.empty());
+    VolumeSettings none;
+    none.grids.colour = "";
+    EXPECT_TRUE(map(grids, none).colour_parts.empty());
+}
+
+BlockGrid one_block(const ivec3& origin, float value) {
+    BlockGrid block;
+    block.block_origin = {origin};
+    block.values.assign(512, value);
+    return block;
+}
+
+TEST(Mapping, PartsOfAColourAreJoinedVoxelByVoxel) {
+    const BlockGrid joined = join_vector_parts(
+        {one_block(ivec3(0), 1.0f), one_block(ivec3(0), 2.0f), one_block(ivec3(8, 0, 0), 3.0f)}, "a.vdb");
+    ASSERT_EQ(joined.block_origin.size(), 2u);
+    EXPECT_EQ(joined.channels, 3);
+    for (std::size_t v = 0; v < 512; ++v) {
+        EXPECT_EQ(joined.values[3 * v], 1.0f);
+        EXPECT_EQ(joined.values[3 * v + 1], 2.0f);
+        EXPECT_EQ(joined.values[3 * v + 2], 0.0f);
+        EXPECT_EQ(joined.values[3 * (512 + v) + 2], 3.0f);
+    }
+    BlockGrid elsewhere = one_block(ivec3(0), 1.0f);
+    elsewhere.info.world_from_index[3][0] = 0.5;
+    const Failure failure = failure_of([&] {
+        join_vector_parts({one_block(ivec3(0), 1.0f), elsewhere, one_block(ivec3(0), 1.0f)}, "a.vdb");
+    });
+    EXPECT_EQ(failure.code, ExitCode::BadData);
+    EXPECT_TRUE(contains(failure.message, "a.vdb: grids"));
 }
 
 TEST(Mapping, TheOnlyScalarGridIsDensityWhateverItsName) {

@@ -6,26 +6,23 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
 #include "core/error.h"
 #include "core/printable.h"
+#include "film/whole_file.h"
+#include "first_look/look_file.h"
+#include "load_shot.h"
 #include "volume/frame_path.h"
 
 namespace brisance {
 namespace {
 
-using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
 
 constexpr int kBins = 40;
 constexpr double kMebibyte = 1048576.0;
-
-// A float as the shortest decimal that means it, not as the double next to it.
-double plain(float value) {
-    return std::stod(fmt::format("{}", value));
-}
 
 std::string dump(const Json& json, int indent = -1) {
     return json.dump(indent, ' ', false, Json::error_handler_t::replace);
@@ -134,18 +131,6 @@ std::string shot_name(const Inspection& inspection, const GridChoice& choice) {
     return bare ? choice.name : fmt::format("{}[{}]", choice.name, choice.index);
 }
 
-void guess_look(Inspection& inspection) {
-    const auto measured = [&](const std::optional<GridChoice>& choice) -> std::optional<MeasuredGrid> {
-        const InspectedGrid* const grid = find_grid(inspection, choice);
-        return grid ? std::optional<MeasuredGrid>({grid->info, grid->census}) : std::nullopt;
-    };
-    const auto pointer = [](const std::optional<MeasuredGrid>& grid) { return grid ? &*grid : nullptr; };
-    const auto density = measured(inspection.mapping->density);
-    const auto flame = measured(inspection.mapping->flame);
-    const auto temperature = measured(inspection.mapping->temperature);
-    inspection.look = suggest_look(pointer(density), pointer(flame), pointer(temperature));
-}
-
 void find_sequence(Inspection& inspection) {
     const std::optional<std::string> pattern = pattern_of(inspection.file);
     if (!pattern)
@@ -158,38 +143,10 @@ void find_sequence(Inspection& inspection) {
 }
 
 Json shot_json(const Inspection& inspection) {
-    const SuggestedLook& look = inspection.look;
-    Json grids = Json::object();
-    for (const auto& [role, choice] : roles(*inspection.mapping))
-        if (choice)
-            grids[role] = shot_name(inspection, *choice);
-    Json fire = {{"model", look.fire == SuggestedFire::Blackbody ? "blackbody"
-                           : look.fire == SuggestedFire::Flame   ? "flame"
-                                                                 : "none"}};
-    if (look.fire != SuggestedFire::None) {
-        fire["convention"] = look.emission_follows_density ? "times_absorption" : "direct";
-        fire["strength"] = 1.0;
-        fire["threshold"] = 0.0;
-    }
-    if (look.fire == SuggestedFire::Flame && look.max_flame > 0.0f) {
-        // From dull red to yellow white: what a flame without a temperature grid is expected to look like.
-        const auto stop = [&](float share, std::array<double, 3> colour) {
-            return Json::array({plain(share * look.max_flame), colour});
-        };
-        fire["ramp"] = {stop(0.0f, {0.7, 0.06, 0.006}), stop(0.3f, {1.0, 0.22, 0.03}), stop(0.65f, {1.0, 0.5, 0.12}),
-                        stop(1.0f, {1.0, 0.8, 0.42})};
-    }
-    if (look.fire == SuggestedFire::Blackbody) {
-        fire["temperature_in"] = {plain(look.temperature_in.x), plain(look.temperature_in.y)};
-        fire["temperature_kelvin"] = {plain(look.temperature_kelvin.x), plain(look.temperature_kelvin.y)};
-    }
-    const std::string file = inspection.pattern.empty() ? inspection.file.string() : inspection.pattern;
-    return {{"volume", {{"file", file}, {"preset", "automatic"}, {"grids", grids}}},
-            {"smoke",
-             {{"extinction_per_metre", plain(look.extinction_per_metre)},
-              {"albedo", {0.8, 0.8, 0.8}},
-              {"mean_cosine", 0.0}}},
-            {"fire", fire}};
+    Stated nothing;
+    Json shot = {{"volume", {{"file", inspection.volumes}}}};
+    shot.update(shot_of_look(*inspection.look, nothing), true);
+    return shot;
 }
 
 std::string transform_line(const GridInfo& info) {
@@ -308,7 +265,6 @@ Inspection inspect_file(const std::filesystem::path& file) {
     }
     try {
         result.mapping = map_grids(infos, VolumeSettings{}, file.string());
-        guess_look(result);
     } catch (const Error& error) {
         result.why_no_mapping = error.what();
     }
@@ -317,7 +273,7 @@ Inspection inspect_file(const std::filesystem::path& file) {
 }
 
 std::string suggested_shot(const Inspection& inspection) {
-    if (!inspection.mapping)
+    if (!inspection.look)
         return {};
     std::string text = "{\n";
     const Json shot = shot_json(inspection);
@@ -348,9 +304,13 @@ std::string inspection_text(const Inspection& inspection) {
                         rough_bytes_of_mapped(inspection) / kMebibyte);
     if (inspection.velocity)
         text += velocity_text(*inspection.velocity);
-    text += "suggestion\n";
-    for (const std::string& note : inspection.look.notes)
-        text += "  " + note + "\n";
+    if (!inspection.look)
+        return text;
+    text += fmt::format("first look, by frame {} (docs/first_look.md)\n", describe_frames(inspection.look->looked_at));
+    for (const std::string& line : describe_look(*inspection.look))
+        text += "  " + line + "\n";
+    for (const std::string& line : inspection.look->warnings)
+        text += "  " + line + "\n";
     return text + "shot\n" + suggested_shot(inspection);
 }
 
@@ -373,14 +333,22 @@ std::string inspection_json(const Inspection& inspection) {
     json["rough_bytes"] = std::llround(rough_bytes_of_mapped(inspection));
     if (const std::optional<InspectedVelocity>& v = inspection.velocity; v && !v->mapping.empty())
         json["velocity"] = {{"grids", v->mapping}, {"form", v->form}, {"unit", v->unit}};
-    json["suggestion"] = {{"notes", inspection.look.notes}, {"shot", shot_json(inspection)}};
+    if (inspection.look)
+        json["suggestion"] = {{"look", Json::parse(look_to_json(*inspection.look))}, {"shot", shot_json(inspection)}};
     return dump(json, 2) + "\n";
 }
 
-int run_inspect(const std::string& pattern, bool as_json) {
-    Inspection inspection = inspect_file(telling_file(pattern));
+int run_inspect(const InspectOptions& options) {
+    const std::string volumes = volume_input(options.input);
+    Inspection inspection = inspect_file(telling_file(volumes));
     inspection.velocity = inspect_velocity(inspection.file, inspection.pattern, inspection.frames);
-    const std::string text = as_json ? inspection_json(inspection) : inspection_text(inspection);
+    Progress silent;
+    if (inspection.mapping)
+        inspection.look = first_look(volumes, {}, silent);
+    inspection.volumes = fs::absolute(volumes).lexically_normal().string();
+    if (!options.write_look.empty() && inspection.look)
+        write_whole_file(options.write_look, look_to_json(*inspection.look));
+    const std::string text = options.as_json ? inspection_json(inspection) : inspection_text(inspection);
     std::fputs(text.c_str(), stdout);
     return static_cast<int>(inspection.mapping ? ExitCode::Success : ExitCode::BadData);
 }

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "first_look/look.h"
 #include "inspect_velocity.h"
 #include "volume/mapping.h"
-#include "volume/suggest.h"
 #include "volume/vdb_file.h"
 
 namespace brisance {
@@ -25,9 +25,10 @@ struct Inspection {
     std::vector<InspectedGrid> grids;
     std::optional<GridMapping> mapping;
     std::string why_no_mapping;  // set when there is none
-    SuggestedLook look;
-    std::string pattern;                        // of the sequence the file belongs to; empty when it stands alone
-    std::vector<int> frames;                    // of that sequence, on disk
+    std::string volumes;         // what the look is for: the file, or the pattern of its sequence
+    std::optional<Look> look;    // set where there is a mapping
+    std::string pattern;         // of the sequence the file belongs to; empty when it stands alone
+    std::vector<int> frames;     // of that sequence, on disk
     std::optional<InspectedVelocity> velocity;  // where it was asked for: it may read several frames
 };
 
@@ -41,11 +42,17 @@ Inspection inspect_file(const std::filesystem::path& file);
 std::string inspection_text(const Inspection& inspection);
 std::string inspection_json(const Inspection& inspection);
 
-// A shot in JSON made of the suggestions; empty when nothing in the file can be rendered.
+// A shot in JSON made of the look; empty when there is none.
 std::string suggested_shot(const Inspection& inspection);
 
-// Prints to standard output; of a sequence, the file that says most. Returns the exit code: 0, or that of BadData when
-// nothing in the file can be rendered. Throws as inspect_file.
-int run_inspect(const std::string& pattern, bool as_json);
+struct InspectOptions {
+    std::string input;       // a .vdb, a pattern or a folder
+    std::string write_look;  // file to write the first look to; empty: none
+    bool as_json = false;
+};
+
+// Prints to standard output; of a sequence, the file that says most, and the look of the whole. Returns the exit code:
+// 0, or that of BadData when nothing in the file can be rendered. Throws as inspect_file.
+int run_inspect(const InspectOptions& options);
 
 }  // namespace brisance

@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cstdint>
+#include <set>
 #include <system_error>
 
 #include "core/error.h"
-#include "inspect.h"
+#include "core/printable.h"
+#include "first_look/look_file.h"
 #include "render/load_medium.h"
 #include "render/volume_in_time.h"
 #include "volume/vdb_header.h"
@@ -31,28 +32,106 @@ bool is_scene(const std::string& input) {
     return extension == ".glb" || extension == ".gltf";
 }
 
-// A glTF file as it is: its own camera, its own lights.
-Shot shot_of_scene(const std::string& input, const ShotOptions& options) {
-    const nlohmann::json shot = {{"name", fs::path(input).stem().string()},
-                                 {"scene", {{"files", {{{"file", input}}}}}}};
-    const std::string text = shot.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-    return parse_shot(text, "shot made for " + input, {}, options);
+void tell(const std::string& whence, const Look& look, Progress& progress) {
+    progress.notice(whence);
+    for (const std::string& line : describe_look(look))
+        progress.notice("  " + line);
 }
 
-Shot suggested(const std::string& input, const ShotOptions& options, Progress& progress) {
-    const fs::path file = telling_file(input);
-    progress.stage("looking at " + file.filename().string());
-    const Inspection inspection = inspect_file(file);
-    if (!inspection.mapping)
-        throw Error(ExitCode::BadData, inspection.why_no_mapping);
-    progress.notice(fmt::format("no shot given: the look is guessed from {}; `brisance inspect` prints it as a shot",
-                                file.filename().string()));
-    ShotOptions with_file = options;
-    with_file.overrides.insert(with_file.overrides.begin(), "volume.file=" + input);
-    Shot shot = parse_shot(suggested_shot(inspection), "shot suggested for " + input, {}, with_file);
-    if (shot.name.empty())
-        shot.name = fs::path(input).stem().string();
-    return shot;
+std::string one_line_json(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+// A glTF file as it is: its own camera, its own lights.
+Shot shot_of_scene(const std::string& input, const ShotOptions& options) {
+    const Json shot = {{"name", fs::path(input).stem().string()}, {"scene", {{"files", {{{"file", input}}}}}}};
+    return parse_shot(one_line_json(shot), "shot made for " + input, {}, options);
+}
+
+ShotOptions with_volume(const std::string& volumes, const ShotOptions& options) {
+    ShotOptions out = options;
+    out.overrides.insert(out.overrides.begin(), "volume.file=" + volumes);  // whatever bytes its name holds
+    return out;
+}
+
+Stated stated_for(const std::string& volumes, const ShotOptions& options) {
+    Stated stated;
+    stated.shot = parse_shot("{}", "shot made for " + volumes, {}, with_volume(volumes, options), &stated.keys);
+    return stated;
+}
+
+Look decide_for(const Stated& stated, Progress& progress) {
+    return decide_look(survey_sequence(volume_pattern(stated.shot), stated.shot.volume, progress), stated);
+}
+
+Look look_named(const std::string& name, const Stated& stated, bool& decided, Progress& progress) {
+    decided = name.empty() || name == kDecideLook;
+    Look look = decided ? decide_for(stated, progress) : read_look(name);
+    for (const std::string& line : look.warnings)
+        progress.warning("first-look", line);
+    return look;
+}
+
+std::string whence(const std::string& look) {
+    return look.empty() || look == kDecideLook ? "first look" : look;
+}
+
+LoadedShot load_volume(const std::string& input, const ShotOptions& options, const std::string& look_name,
+                       Progress& progress) {
+    const std::string volumes = volume_input(input);
+    const Stated stated = stated_for(volumes, options);
+    bool decided = false;
+    const Look look = look_named(look_name, stated, decided, progress);
+    tell(fmt::format("no shot given: {} the look, and --set KEY=VALUE changes each part:",
+                     decided ? fmt::format("frame {} of {} decided", describe_frames(look.looked_at), look.volume)
+                             : look_name + " states"),
+         look, progress);
+    LoadedShot out;
+    out.shot =
+        parse_shot(one_line_json(shot_of_look(look, stated)), whence(look_name), {}, with_volume(volumes, options));
+    if (out.shot.name.empty())
+        out.shot.name = fs::path(volumes).stem().string();
+    if (decided)
+        out.look = look;
+    else if (look.volume != fs::path(volumes).filename().string())
+        progress.notice(fmt::format("{} was made for {}", look_name, look.volume));
+    return out;
+}
+
+bool needs_camera(const Shot& shot) {
+    return !shot.camera_given && !shot.volume.file.empty() && shot.volumes.empty() && shot.scene.files.empty() &&
+           has_frame_token(volume_pattern(shot));
+}
+
+// A shot states what it wants. The look decides the rest where it is asked for, and a camera for all frames of a
+// sequence where there is none.
+LoadedShot load_file(const std::string& input, const ShotOptions& options, const std::string& look_name,
+                     Progress& progress) {
+    Stated stated;
+    stated.shot = read_shot(input, options, &stated.keys);
+    LoadedShot out;
+    if (look_name.empty() && !needs_camera(stated.shot)) {
+        out.shot = std::move(stated.shot);
+        return out;
+    }
+    if (stated.shot.volume.file.empty())
+        throw Error(ExitCode::Usage, fmt::format("{}: has no volume.file: there is nothing to have a look at", input));
+    Look look;
+    if (look_name.empty()) {
+        look = decide_camera(survey_sequence(volume_pattern(stated.shot), stated.shot.volume, progress), stated);
+        tell("the shot has no camera: one is framed on the whole sequence:", look, progress);
+    } else {
+        bool decided = false;
+        look = look_named(look_name, stated, decided, progress);
+        tell("what the shot leaves open comes from " + whence(look_name) + ":", look, progress);
+        if (decided)
+            out.look = look;
+    }
+    ShotOptions layers = options;
+    layers.base = one_line_json(shot_of_look(look, stated));
+    layers.base_source = whence(look_name);
+    out.shot = read_shot(input, layers);
+    return out;
 }
 
 // Each frame with the nearer one of its files; both are looked at.
@@ -69,10 +148,49 @@ std::vector<FrameFile> frames_in_time(const Shot& shot, const std::optional<std:
 
 }  // namespace
 
+std::string volume_input(const std::string& input) {
+    std::error_code error;
+    if (!fs::is_directory(input, error))
+        return input;
+    std::set<std::string> sequences;
+    std::string single;
+    for (const fs::directory_entry& entry : fs::directory_iterator(input, error)) {
+        if (extension_of(entry.path().string()) != ".vdb")
+            continue;
+        single = entry.path().string();
+        sequences.insert(pattern_of(single).value_or(single));
+    }
+    if (sequences.empty())
+        throw Error(ExitCode::MissingInput, fmt::format("{}: the folder holds no .vdb file", input));
+    if (sequences.size() > 1) {
+        std::string names;
+        for (const std::string& s : sequences)
+            names += (names.empty() ? "" : ", ") + printable(fs::path(s).filename().string(), kLongestName);
+        throw Error(ExitCode::Usage,
+                    printable_line(fmt::format("{}: the folder holds {} sequences; name one of them: {}", input,
+                                               sequences.size(), names)));
+    }
+    return frames_on_disk(*sequences.begin()).size() > 1 ? *sequences.begin() : single;
+}
+
+LoadedShot load_shot_and_look(const std::string& input, const ShotOptions& options, const std::string& look,
+                              Progress& progress) {
+    std::error_code error;
+    if (extension_of(input) == ".vdb" || fs::is_directory(input, error))
+        return load_volume(input, options, look, progress);
+    if (!is_scene(input))
+        return load_file(input, options, look, progress);
+    if (!look.empty())
+        throw Error(ExitCode::Usage, input + ": a look is for volumes; a glTF file has none");
+    return {shot_of_scene(input, options), std::nullopt};
+}
+
 Shot load_shot(const std::string& input, const ShotOptions& options, Progress& progress) {
-    if (is_scene(input))
-        return shot_of_scene(input, options);
-    return extension_of(input) == ".vdb" ? suggested(input, options, progress) : read_shot(input, options);
+    return load_shot_and_look(input, options, "", progress).shot;
+}
+
+Look first_look(const std::string& volumes, const ShotOptions& options, Progress& progress) {
+    return decide_for(stated_for(volumes, options), progress);
 }
 
 std::string volume_pattern(const Shot& shot) {

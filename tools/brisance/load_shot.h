@@ -1,20 +1,39 @@
-// Loads the shot of a command line: a shot file, or a bare .vdb with settings suggested from its values.
+// Loads the shot of a command line: a shot file, or a bare volume with a first look.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/progress.h"
+#include "first_look/look.h"
 #include "shot/read_shot.h"
 #include "shot/shot.h"
 #include "volume/frame_path.h"
 
 namespace brisance {
 
-// `input` ending in .vdb, with or without frame tokens, gets the shot that `inspect` suggests for it (for the largest
-// file of a sequence, so that every frame gets the same); anything else is a shot file. Throws Error.
+inline constexpr const char* kDecideLook = "auto";
+
+struct LoadedShot {
+    Shot shot;
+    std::optional<Look> look;  // decided here, from the frames on disk
+};
+
+// The volumes of a command line: a .vdb, a pattern of several, or a folder that holds those of one sequence, which
+// gives its pattern. Throws Error: MissingInput (no .vdb in the folder), Usage (several sequences in it).
+std::string volume_input(const std::string& input);
+
+// `input`: a shot file, a glTF file, or volumes as volume_input takes them. Volumes get a first look, decided from the
+// whole sequence on disk. `look`: a file of one to use instead; with a shot, the look decides what the shot leaves
+// open, and "auto" decides one; empty: none beside a camera where the shot has none. Throws Error.
+LoadedShot load_shot_and_look(const std::string& input, const ShotOptions& options, const std::string& look,
+                              Progress& progress);
 Shot load_shot(const std::string& input, const ShotOptions& options, Progress& progress);
+
+// The look of volumes with nothing stated beside `options`.
+Look first_look(const std::string& volumes, const ShotOptions& options, Progress& progress);
 
 // The volume's path or pattern, seen from the current folder.
 std::string volume_pattern(const Shot& shot);

@@ -88,7 +88,9 @@ void add_common_options(CLI::App& command, Options& options) {
 }
 
 void add_shot_options(CLI::App& command, RenderOptions& options) {
-    command.add_option("SHOT_OR_VDB", options.input, "A shot (JSON), or a .vdb with or without frame token (####)")
+    command
+        .add_option("SHOT_OR_VDB", options.input,
+                    "A shot (JSON), a .vdb with or without frame token (####), or a folder of them")
         ->required();
     command.add_option("-o,--output", options.output,
                        "The EXR, with #### for the frame number, or a folder; PNG and statistics go beside it");
@@ -102,6 +104,11 @@ void add_shot_options(CLI::App& command, RenderOptions& options) {
                     "all frames; the same as --set seconds=...")
         ->check(CLI::PositiveNumber)
         ->type_name("S");
+    command
+        .add_option("--look", options.look,
+                    "A first look from `brisance inspect --write-look`, or auto, for what a shot leaves open; a bare "
+                    "volume has auto without it")
+        ->type_name("FILE");
     add_common_options(command, options);
     command.add_flag("--make-folders", options.make_folders, "Makes the folders of the outputs where they are missing");
     command.add_flag("--keep-going", options.keep_going, "Renders the remaining frames when one fails");
@@ -299,9 +306,15 @@ private:
             add("plan", "Prints what a render would read, run and leave out", [this] { return run_plan(options_); }),
             options_);
         CLI::App& inspect = add("inspect", "Prints a .vdb file's grids and suggests a shot",
-                                [this] { return run_inspect(file_, as_json_); });
-        inspect.add_option("FILE", file_, "The .vdb file; of a sequence (####), the largest")->required();
-        inspect.add_flag("--json", as_json_, "As JSON");
+                                [this] { return run_inspect(inspected_); });
+        inspect
+            .add_option(
+                "FILE", inspected_.input,
+                "The .vdb file, or a sequence (####, or its folder): its largest file and the look of the whole")
+            ->required();
+        inspect.add_flag("--json", inspected_.as_json, "As JSON");
+        inspect.add_option("--write-look", inspected_.write_look, "Writes the first look to a file, for render --look")
+            ->type_name("FILE");
     }
 
     void add_comparing() {
@@ -343,8 +356,8 @@ private:
     CLI::App app_{"Brisance renders OpenVDB fire and smoke: the fire lights its own smoke.", "brisance"};
     std::vector<std::pair<CLI::App*, std::function<int()>>> commands_;
     RenderOptions options_;
-    std::string file_;
-    bool as_json_ = false, keys_ = false;
+    InspectOptions inspected_;
+    bool keys_ = false;
     CompareOptions comparison_;
 #ifdef BRISANCE_REPORT
     ReportOptions reported_;

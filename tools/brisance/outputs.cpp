@@ -8,6 +8,8 @@
 
 #include "core/error.h"
 #include "film/whole_file.h"
+#include "first_look/look_file.h"
+#include "volume/frame_token.h"
 
 namespace brisance {
 namespace {
@@ -96,6 +98,22 @@ std::vector<FrameOutput> plan_outputs(const Shot& shot, const std::string& reque
         outputs.push_back(output);
     }
     return outputs;
+}
+
+fs::path plan_look(const Shot& shot, const std::string& requested, bool several, const fs::path& input) {
+    const fs::path pattern = output_pattern(shot, requested, several);
+    std::string stem = pattern.stem().string();
+    while (const std::optional<FrameToken> token = find_frame_token(stem, 0, true))
+        stem.erase(token->begin, token->end - token->begin);
+    while (!stem.empty() && std::string("._- ").find(stem.back()) != std::string::npos)
+        stem.pop_back();
+    const fs::path file = pattern.parent_path() / ((stem.empty() ? "first" : stem) + kLookSuffix);
+    std::error_code error;
+    if (fs::equivalent(file, input, error))
+        throw Error(ExitCode::Usage,
+                    fmt::format("{} is read and would be overwritten; choose another -o", file.string()));
+    check_writable(file);
+    return file;
 }
 
 std::vector<fs::path> plan_checkpoints(const Shot& shot, const std::string& requested,

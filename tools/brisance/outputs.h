@@ -29,6 +29,11 @@ std::vector<FrameOutput> plan_outputs(const Shot& shot, const std::string& reque
                                       const std::vector<FrameFile>& frames, const std::filesystem::path& input,
                                       bool make_folders);
 
+// The file of a first look beside the EXRs: their name without the frame number, and ".look.json". Arguments as of
+// plan_outputs. Throws Error CannotCreate or OutputFailed when it cannot be written.
+std::filesystem::path plan_look(const Shot& shot, const std::string& requested, bool several,
+                                const std::filesystem::path& input);
+
 // One checkpoint for each frame: `requested` with the frame's number in it, or nothing for all when it is empty. Throws
 // Error Usage (no frame token for several frames; the method keeps none; it is a file that is read or written as
 // something else), CannotCreate or OutputFailed as plan_outputs.

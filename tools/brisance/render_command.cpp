@@ -10,16 +10,18 @@
 #include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "film/whole_file.h"
 #include "film/write_image.h"
+#include "first_look/look_file.h"
 #include "load_shot.h"
 #include "outputs.h"
-#include "render/choose_method.h"
 #include "render/render_frame.h"
-#include "render/time_budget.h"
 #include "render/volume_in_time.h"
+#include "shared_choice.h"
 #include "shot/write_shot.h"
 #include "volume/vdb_header.h"
 
@@ -33,7 +35,7 @@ struct Failures {
     ExitCode first = ExitCode::Success;
 };
 
-Shot load(const RenderOptions& options, Progress& progress) {
+LoadedShot load(const RenderOptions& options, Progress& progress) {
     ShotOptions layers{options.preset, options.overrides};
     if (!options.method.empty())
         layers.overrides.insert(layers.overrides.begin(), "method=" + options.method);
@@ -44,7 +46,7 @@ Shot load(const RenderOptions& options, Progress& progress) {
     for (const std::string& pictures : options.debug)
         if (pictures == kDebugVirtualLights)
             layers.overrides.emplace_back("output.virtual_lights=true");
-    return load_shot(options.input, layers, progress);
+    return load_shot_and_look(options.input, layers, options.look, progress);
 }
 
 // Runs `work`; what it throws becomes a line and is counted. Returns whether it came to its end.
@@ -109,13 +111,15 @@ std::string without_last_newline(std::string text) {
     return text;
 }
 
-// Exposure of the PNGs. An automatic one is kept from the first frame that is not black, so that a sequence does not
-// pump.
+// Exposure of the PNGs: the shot's, or that of the whole sequence; else an automatic one is kept from the first frame
+// that is not black.
 class PngExposure {
 public:
-    explicit PngExposure(const Shot& shot) {
+    PngExposure(const Shot& shot, const SharedChoice& choice) {
         if (shot.exposure_given)
             stops_ = shot.output.exposure_stops;
+        else
+            stops_ = choice.exposure_stops;
     }
     float of(const Image& image, TextProgress& progress) {
         if (stops_)
@@ -123,10 +127,7 @@ public:
         const float stops = automatic_exposure(image);
         if (stops != 0.0f) {
             stops_ = std::round(100.0f * stops) / 100.0f;
-            progress.notice(
-                fmt::format("exposure of the PNG: {:+.2f} stops, chosen from the picture; keep it with --set "
-                            "output.exposure_stops={:.2f}",
-                            *stops_, *stops_));
+            progress.notice(exposure_notice(*stops_, "the picture"));
         }
         return stops_.value_or(0.0f);
     }
@@ -208,86 +209,9 @@ void write_frame(RenderedFrame& frame, const Shot& shot, const fs::path& volume,
     }
 }
 
-// What all frames share, by the largest file on disk that can be read, whichever frames this call renders. `choose`
-// takes a file. Nothing where there is one frame, which chooses for itself.
-template <class Choose>
-auto by_largest_file(const Shot& shot, const char* what, const Choose& choose, Progress& progress)
-    -> std::optional<decltype(choose(FrameFile{}))> {
-    if (volume_pattern(shot).empty())
-        return std::nullopt;
-    std::vector<FrameFile> all = resolve_frames(shot, std::nullopt);
-    std::erase_if(all, [](const FrameFile& f) { return f.file.empty(); });
-    if (all.size() < 2)
-        return std::nullopt;
-    std::ranges::stable_sort(all, std::greater(), [](const FrameFile& f) { return fs::file_size(f.file); });
-    for (const FrameFile& frame : all)
-        try {
-            return choose(frame);
-        } catch (const Error& error) {
-            progress.warning(what, std::string("not chosen by this frame: ") + error.what());
-        }
-    return choose(FrameFile{});
-}
-
-// method=auto: one method for all frames.
-std::optional<MethodForecast> one_method(const Shot& shot, Progress& progress) {
-    if (shot.method != RenderMethod::Automatic)
-        return std::nullopt;
-    const auto choose = [&](const FrameFile& frame) {
-        if (!frame.file.empty())
-            return forecast_methods(shot, frame.file, frame.frame, progress);
-        MethodForecast grid;
-        grid.reason = "method: the lighting grid, since no frame can be read";
-        return grid;
-    };
-    return by_largest_file(shot, "method", choose, progress);
-}
-
-// --seconds: one setting for all frames.
-std::optional<TimedSettings> one_setting(const Shot& shot, Progress& progress) {
-    if (!(shot.seconds > 0.0))
-        return std::nullopt;
-    const auto choose = [&](const FrameFile& frame) {
-        if (!frame.file.empty())
-            return settings_for_time(shot, frame.file, frame.frame, progress);
-        TimedSettings as_it_is;
-        as_it_is.shot = shot;
-        as_it_is.shot.seconds = 0.0;
-        return as_it_is;
-    };
-    return by_largest_file(shot, "seconds", choose, progress);
-}
-
-// What was chosen for all frames, before the first.
-struct SharedChoice {
-    std::optional<TimedSettings> timed;
-    std::optional<MethodForecast> method;
-
-    void note(bool first, RenderedFrame& frame) const {
-        if (method)
-            frame.metadata.text["brisance/method"] = method->name();
-        if (!first)
-            return;
-        for (const StageCost* cost : {method ? &method->cost : nullptr, timed ? &timed->cost : nullptr})
-            if (cost) {
-                frame.statistics.stages.insert(frame.statistics.stages.begin(), *cost);
-                frame.statistics.seconds += cost->seconds;
-            }
-    }
-};
-
-SharedChoice choose_for_all(Shot& shot, Progress& progress) {
-    SharedChoice out;
-    shot = settle_time(shot, progress);
-    out.timed = one_setting(shot, progress);
-    if (out.timed)
-        shot = out.timed->shot;
-    else if (shot.seconds > 0.0)
-        return out;  // its only frame chooses
-    out.method = one_method(shot, progress);
-    if (out.method)
-        shot = with_method(shot, *out.method);
-    return out;
+void write_look(const Look& look, const fs::path& file) {
+    write_whole_file(file, look_to_json(look));
+    announce(file);
 }
 
 }  // namespace
@@ -295,7 +219,8 @@ SharedChoice choose_for_all(Shot& shot, Progress& progress) {
 int run_render(const RenderOptions& options) {
     TextProgress progress(options.progress);
     const ThreadLimit limit(options.threads);
-    Shot shot = load(options, progress);
+    const LoadedShot loaded = load(options, progress);
+    Shot shot = loaded.shot;
     if (options.print_config) {
         progress.finish();
         std::fputs(to_json(shot).c_str(), stdout);
@@ -307,8 +232,15 @@ int run_render(const RenderOptions& options) {
         plan_outputs(shot, options.output, frames, options.input, options.make_folders);
     const std::vector<fs::path> checkpoints =
         plan_checkpoints(shot, options.checkpoint, frames, outputs, options.input);
-    const SharedChoice choice = frames.empty() ? SharedChoice{} : choose_for_all(shot, progress);
-    PngExposure exposure(shot);
+    fs::path look_file;
+    if (loaded.look && shot.output.statistics && !frames.empty())
+        look_file = plan_look(shot, options.output, frames.size() > 1, options.input);
+    SharedChoice choice;
+    if (!frames.empty()) {
+        choice = choose_for_all(shot, progress);
+        choice.exposure_stops = exposure_for_all(shot, progress);
+    }
+    PngExposure exposure(shot, choice);
     for (std::size_t i = 0; i < frames.size(); ++i) {
         const FrameFile& frame = frames[i];
         progress.begin_frame(frame.frame, frame.file.string(), i, frames.size());
@@ -316,6 +248,8 @@ int run_render(const RenderOptions& options) {
             RenderedFrame rendered = render_frame(shot, frame.file, frame.frame, progress, checkpoints[i]);
             choice.note(i == 0, rendered);
             write_frame(rendered, shot, frame.file, outputs[i], exposure, progress);
+            if (!look_file.empty())
+                write_look(*loaded.look, std::exchange(look_file, {}));
             if (options.explain)
                 progress.say(without_last_newline(rendered.statistics.explain()));
         };
@@ -332,7 +266,7 @@ int run_render(const RenderOptions& options) {
 int run_plan(const RenderOptions& options) {
     TextProgress progress(options.progress);
     const ThreadLimit limit(options.threads);
-    Shot shot = load(options, progress);
+    Shot shot = load(options, progress).shot;
     Failures failures;
     const std::vector<FrameFile> frames = usable_frames(shot, options, progress, failures);
     if (frames.empty())

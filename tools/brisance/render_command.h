@@ -11,10 +11,11 @@ namespace brisance {
 inline constexpr const char* kDebugVirtualLights = "virtual-lights";
 
 struct RenderOptions {
-    std::string input;   // a shot file, or a .vdb with or without frame tokens
+    std::string input;   // a shot file, a .vdb with or without frame tokens, or a folder of them
     std::string output;  // -o; empty: the shot's, or by name
     std::string frames;  // -f; empty: those on disk
     std::string preset;
+    std::string look;      // file of a first look, or "auto"; empty: decided for a bare volume, none for a shot
     std::string method;    // of rendering; empty: the shot's
     double seconds = 0.0;  // for a frame; 0: as the shot says
     std::vector<std::string> overrides;

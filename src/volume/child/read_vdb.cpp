@@ -306,6 +306,8 @@ private:
                 creator = printable(text->value());
         if (creator.empty() && grid["embergen_version"])
             creator = "EmberGen " + printable(grid["embergen_version"]->str());
+        if (creator.empty() && grid["file_base_resolution"])  // Mantaflow does not name itself
+            creator = "Blender (Mantaflow)";
         return creator;
     }
 

@@ -1,0 +1,144 @@
+#include "shared_choice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+
+#include "core/error.h"
+#include "film/write_image.h"
+#include "load_shot.h"
+#include "render/volume_in_time.h"
+
+namespace brisance {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr float kTrialError = 0.1f;  // lighting.error of a trial picture
+constexpr int kTrialSamples = 16;    // of its pixels, with method path
+
+// What all frames share, by the largest file on disk that can be read, whichever frames this call renders. `choose`
+// takes a file. Nothing where there is one frame, which chooses for itself.
+template <class Choose>
+auto by_largest_file(const Shot& shot, const char* what, const Choose& choose, Progress& progress)
+    -> std::optional<decltype(choose(FrameFile{}))> {
+    if (volume_pattern(shot).empty())
+        return std::nullopt;
+    std::vector<FrameFile> all = resolve_frames(shot, std::nullopt);
+    std::erase_if(all, [](const FrameFile& f) { return f.file.empty(); });
+    if (all.size() < 2)
+        return std::nullopt;
+    std::ranges::stable_sort(all, std::greater(), [](const FrameFile& f) { return fs::file_size(f.file); });
+    for (const FrameFile& frame : all)
+        try {
+            return choose(frame);
+        } catch (const Error& error) {
+            progress.warning(what, std::string("not chosen by this frame: ") + error.what());
+        }
+    return choose(FrameFile{});
+}
+
+// method=auto: one method for all frames.
+std::optional<MethodForecast> one_method(const Shot& shot, Progress& progress) {
+    if (shot.method != RenderMethod::Automatic)
+        return std::nullopt;
+    const auto choose = [&](const FrameFile& frame) {
+        if (!frame.file.empty())
+            return forecast_methods(shot, frame.file, frame.frame, progress);
+        MethodForecast grid;
+        grid.reason = "method: the lighting grid, since no frame can be read";
+        return grid;
+    };
+    return by_largest_file(shot, "method", choose, progress);
+}
+
+// --seconds: one setting for all frames.
+std::optional<TimedSettings> one_setting(const Shot& shot, Progress& progress) {
+    if (!(shot.seconds > 0.0))
+        return std::nullopt;
+    const auto choose = [&](const FrameFile& frame) {
+        if (!frame.file.empty())
+            return settings_for_time(shot, frame.file, frame.frame, progress);
+        TimedSettings as_it_is;
+        as_it_is.shot = shot;
+        as_it_is.shot.seconds = 0.0;
+        return as_it_is;
+    };
+    return by_largest_file(shot, "seconds", choose, progress);
+}
+
+constexpr int kTrialHeight = 72;  // pixels
+
+// A small, rough picture of the same light.
+Shot trial_of(const Shot& given) {
+    Shot shot = given;
+    CameraSettings& camera = shot.camera;
+    camera.width = std::max(1, camera.width * kTrialHeight / camera.height);
+    camera.height = kTrialHeight;
+    camera.samples_per_axis = camera.edge_refinement = 1;
+    shot.lighting.error = std::max(shot.lighting.error, kTrialError);
+    shot.tracing.samples = kTrialSamples;
+    shot.tracing.seconds = shot.tracing.error = shot.seconds = 0.0;
+    shot.certify.enabled = false;
+    if (shot.method == RenderMethod::Automatic)
+        shot.method = RenderMethod::LightingGrid;
+    shot.output.virtual_lights = shot.output.bounce_layers = false;
+    return shot;
+}
+
+}  // namespace
+
+void SharedChoice::note(bool first, RenderedFrame& frame) const {
+    if (method)
+        frame.metadata.text["brisance/method"] = method->name();
+    if (!first)
+        return;
+    for (const StageCost* cost : {method ? &method->cost : nullptr, timed ? &timed->cost : nullptr})
+        if (cost) {
+            frame.statistics.stages.insert(frame.statistics.stages.begin(), *cost);
+            frame.statistics.seconds += cost->seconds;
+        }
+}
+
+std::string exposure_notice(float stops, const std::string& chosen_from) {
+    return fmt::format(
+        "exposure of the PNG: {:+.2f} stops, chosen from {}; keep it with --set output.exposure_stops={:.2f}", stops,
+        chosen_from, stops);
+}
+
+std::optional<float> exposure_for_all(const Shot& shot, Progress& progress) {
+    if (shot.exposure_given || !(shot.output.png || shot.output.virtual_lights))
+        return std::nullopt;
+    const auto choose = [&](const FrameFile& frame) -> std::optional<float> {
+        if (frame.file.empty())
+            return std::nullopt;
+        Progress silent;
+        progress.stage("exposure of the sequence");
+        const float stops = automatic_exposure(render_frame(trial_of(shot), frame.file, frame.frame, silent).image);
+        if (stops == 0.0f)
+            throw Error(ExitCode::BadData, fmt::format("{}: its picture is black", frame.file.string()));
+        const float rounded = std::round(100.0f * stops) / 100.0f;
+        progress.notice(exposure_notice(rounded, fmt::format("a small picture of frame {}", frame.frame)));
+        return rounded;
+    };
+    return by_largest_file(shot, "exposure", choose, progress).value_or(std::nullopt);
+}
+
+SharedChoice choose_for_all(Shot& shot, Progress& progress) {
+    SharedChoice out;
+    shot = settle_time(shot, progress);
+    out.timed = one_setting(shot, progress);
+    if (out.timed)
+        shot = out.timed->shot;
+    else if (shot.seconds > 0.0)
+        return out;  // its only frame chooses
+    out.method = one_method(shot, progress);
+    if (out.method)
+        shot = with_method(shot, *out.method);
+    return out;
+}
+
+}  // namespace brisance

@@ -1,0 +1,34 @@
+// What all frames of a sequence share, decided by the files on disk, whichever frames are rendered.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/progress.h"
+#include "render/choose_method.h"
+#include "render/render_frame.h"
+#include "render/time_budget.h"
+#include "shot/shot.h"
+
+namespace brisance {
+
+// What was chosen for all frames, before the first.
+struct SharedChoice {
+    std::optional<TimedSettings> timed;
+    std::optional<MethodForecast> method;
+    std::optional<float> exposure_stops;  // of PNGs; absent where one frame chooses for itself, or the shot states it
+
+    // Adds the cost of choosing to the statistics of the first frame.
+    void note(bool first, RenderedFrame& frame) const;
+};
+
+// Replaces `shot` by one with the chosen settings.
+SharedChoice choose_for_all(Shot& shot, Progress& progress);
+
+// Of sequences with output.exposure_stops "auto" and more than one frame on disk: the exposure of a small picture of
+// the largest file that is not black. Nothing else, and nothing where no frame can be read.
+std::optional<float> exposure_for_all(const Shot& shot, Progress& progress);
+
+std::string exposure_notice(float stops, const std::string& chosen_from);
+
+}  // namespace brisance
