@@ -5,6 +5,7 @@
 #include "camera/camera.h"
 #include "core/error.h"
 #include "core/stopwatch.h"
+#include "render/kept_inputs.h"
 #include "render/load_medium.h"
 #include "scene/load_scene.h"
 #include "scene/read_texture.h"
@@ -60,10 +61,8 @@ Texture read_environment(const std::filesystem::path& file) {
     return picture;
 }
 
-std::unique_ptr<Surroundings> load_surroundings(const Shot& shot, double seconds, const dvec3& origin,
-                                                Statistics& statistics, Progress& progress) {
-    progress.stage("surfaces");
-    const Stopwatch watch;
+KeptSet load_set(const Shot& shot, double seconds, const dvec3& origin, Progress& to) {
+    SaidLines progress(to);
     Scene scene = load_scene(shot.scene, shot.folder, seconds, origin, kSceneMemory, progress);
     std::vector<LightSettings> lights = shot.scene.lights;
     lights.insert(lights.end(), scene.lights.begin(), scene.lights.end());
@@ -72,13 +71,41 @@ std::unique_ptr<Surroundings> load_surroundings(const Shot& shot, double seconds
         pictures.push_back(light.kind == LightKind::Environment && !light.file.empty()
                                ? read_environment(shot.folder / light.file)
                                : Texture{});
-    const std::size_t triangles = scene.triangle_count();
-    auto out = std::make_unique<Surroundings>(std::move(scene), std::move(lights), std::move(pictures));
-    statistics.stages.push_back({"surfaces",
-                                 watch.seconds(),
-                                 out->bytes(),
-                                 {{"triangles", triangles}, {"emitters", out->emitters().near_count()}}});
-    return out;
+    const bool animated = scene.animated;
+    auto out = std::make_shared<Surroundings>(std::move(scene), std::move(lights), std::move(pictures));
+    return {std::move(out), origin, seconds, animated, std::move(progress.lines)};
+}
+
+// The set of this frame: that of an earlier one, where nothing of it moves.
+std::shared_ptr<const Surroundings> surroundings_for(const Shot& shot, double seconds, const dvec3& origin,
+                                                     KeptInputs* kept, Statistics& statistics, Progress& progress) {
+    progress.stage("surfaces");
+    const Stopwatch watch;
+    KeptSet own;
+    KeptSet& set = kept ? kept->set : own;
+    const bool holds = set.holds_at(seconds, origin);
+    if (holds)
+        say_again(set.said, progress);
+    else
+        set = load_set(shot, seconds, origin, progress);
+    const Surroundings& out = *set.surroundings;
+    statistics.stages.push_back(
+        {"surfaces",
+         watch.seconds(),
+         out.bytes(),
+         {{"triangles", out.scene().triangle_count()}, {"emitters", out.emitters().near_count()}}});
+    if (holds)
+        statistics.stages.back().detail["kept"] = true;
+    return set.surroundings;
+}
+
+// Files without animations have the same camera at all times.
+std::optional<SceneCamera> camera_of_set(const Shot& shot, double seconds, const KeptInputs* kept) {
+    if (kept && kept->set.surroundings && !kept->set.animated)
+        for (const SceneCamera& camera : kept->set.surroundings->scene().cameras)
+            if (shot.scene.camera.empty() || camera.name == shot.scene.camera)
+                return camera;
+    return camera_of_files(shot, seconds);
 }
 
 CameraSettings choose_camera(const Shot& shot, const std::optional<SceneCamera>& of_file, const FrameInput& input,
@@ -97,12 +124,12 @@ CameraSettings choose_camera(const Shot& shot, const std::optional<SceneCamera>&
 }  // namespace
 
 FrameInput load_frame(const Shot& shot, const std::filesystem::path& volume, int frame, Statistics& statistics,
-                      Progress& progress) {
+                      Progress& progress, KeptInputs* kept) {
     FrameInput input;
     const double seconds = frame / shot.scene.frames_per_second;
     std::optional<SceneCamera> of_file;
     if (!shot.camera_given && !shot.scene.files.empty())
-        of_file = camera_of_files(shot, seconds);
+        of_file = camera_of_set(shot, seconds, kept);
     if (volume.empty() && shot.volumes.empty()) {
         dvec3 eye(0.0);
         if (shot.camera_given)
@@ -111,10 +138,10 @@ FrameInput load_frame(const Shot& shot, const std::filesystem::path& volume, int
             eye = dvec3(of_file->world_from_camera[3]);
         input.medium = empty_medium(eye);
     } else {
-        input.medium = load_medium(shot, volume, frame, statistics, progress);
+        input.medium = load_medium(shot, volume, frame, statistics, progress, kept);
     }
     if (!shot.scene.empty())
-        input.surroundings = load_surroundings(shot, seconds, origin_of(input.medium), statistics, progress);
+        input.surroundings = surroundings_for(shot, seconds, origin_of(input.medium), kept, statistics, progress);
     input.camera = choose_camera(shot, of_file, input, progress);
     return input;
 }

@@ -71,6 +71,7 @@ void add_file(const SceneFile& file, const std::filesystem::path& folder, double
               MemoryBudget& budget, Progress& progress) {
     const Opened opened = open(file, folder, seconds, budget, progress);
     const std::size_t meshes = scene.meshes.size();
+    scene.animated = scene.animated || !opened.gltf.model.animations.empty();
     read_meshes(opened.gltf, opened.nodes, scene, budget, progress);
     std::vector<SceneCamera> cameras = read_cameras(opened.gltf, opened.nodes, progress);
     std::vector<LightSettings> lights = read_lights(opened.gltf, opened.nodes, progress);

@@ -73,6 +73,7 @@ struct Scene {
     std::vector<Texture> textures;
     std::vector<SceneCamera> cameras;
     std::vector<LightSettings> lights;  // of the files: Point, Spot and Sun
+    bool animated = false;              // a file has animations: another moment may look different
 
     std::size_t triangle_count() const;
     // Whether any surface has lobes other than Lambert's.

@@ -1,0 +1,42 @@
+#include "verify_command.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "core/parallel.h"
+#include "farm/frame_stamp.h"
+#include "finished_frame.h"
+
+namespace brisance {
+
+int run_verify(const VerifyOptions& options) {
+    TextProgress progress(options.render.progress);
+    const ThreadLimit limit(options.render.threads);
+    const Shot shot = load_for(options.render, progress);
+    Failures failures;
+    const FrameJob job = usable_frames(shot, options.render, progress, failures);
+    const std::vector<FrameOutput> outputs = name_outputs(shot, options.render.output, job.frames, job.several);
+    FrameStamps stamps(shot, BRISANCE_VERSION, deciding_files(shot));
+    std::vector<int> unfinished;
+    progress.begin_sequence(job.frames.size());
+    progress.stage("verifying");
+    for (std::size_t i = 0; i < job.frames.size(); ++i) {
+        const FrameFile& frame = job.frames[i];
+        if (const auto why = why_unfinished(outputs[i], shot, stamps.of(frame))) {
+            unfinished.push_back(frame.frame);
+            fmt::print("frame {}: {}: {}\n", frame.frame, outputs[i].exr.string(), *why);
+        }
+        progress.fraction(double(i + 1) / double(job.frames.size()));
+    }
+    std::fflush(stdout);
+    progress.finish();
+    const std::size_t all = job.frames.size(), good = all - unfinished.size();
+    std::string line = fmt::format("{} of {} frame{} finished", good, all, all == 1 ? "" : "s");
+    if (!unfinished.empty())
+        line += fmt::format("; `brisance render --skip-existing` renders {}", describe_frames(unfinished));
+    progress.summary(line, {{"finished", good}, {"frames", all}, {"unfinished", unfinished}});
+    return static_cast<int>(unfinished.empty() ? ExitCode::Success : ExitCode::RenderFailed);
+}
+
+}  // namespace brisance
