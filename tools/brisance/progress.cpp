@@ -193,13 +193,13 @@ void TextProgress::finish() {
     warnings_.clear();
 }
 
-void TextProgress::summary(const std::string& line, Json counts) {
+void TextProgress::summary(const std::string& head, const std::string& tail, Json counts) {
     const std::lock_guard lock(mutex_);
     counts["seconds"] = rounded(sequence_.seconds());
     if (writes_json())
         emit("summary", std::move(counts));
     else if (style_ != ProgressStyle::None)
-        print_line(fmt::format("{} in {}", line, duration_text(sequence_.seconds())));
+        print_line(head + " in " + duration_text(sequence_.seconds()) + tail);
 }
 
 void TextProgress::emit(const char* event, Json more) {
@@ -209,6 +209,8 @@ void TextProgress::emit(const char* event, Json more) {
 }
 
 void TextProgress::emit_progress() {
+    if (sequence_.frames() == 0)
+        return;  // nothing is known of the frames yet
     Json json = {{"percent", static_cast<int>(100.0 * sequence_.share())},
                  {"frames_done", sequence_.done()},
                  {"frames", sequence_.frames()},

@@ -52,8 +52,8 @@ public:
 
     // Ends the bar, and prints how often every repeated warning occurred.
     void finish();
-    // The last line: what was written. `counts` says the same in numbers.
-    void summary(const std::string& line, nlohmann::ordered_json counts);
+    // The last line: what was written, with the time after `head`. `counts` says the same in numbers.
+    void summary(const std::string& head, const std::string& tail, nlohmann::ordered_json counts);
 
 private:
     using Clock = std::chrono::steady_clock;

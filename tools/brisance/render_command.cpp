@@ -185,17 +185,19 @@ std::vector<std::string> files_on_disk(const FrameOutput& output) {
     return files;
 }
 
-// "frames 10 to 13 written: out/f.0010.exr to out/f.0013.exr; 2 skipped, 1 failed"
+// "4 frames written in 2.4 s: out/f.0010.exr to out/f.0013.exr; 2 were finished before; 1 failed"
 void say_what_was_written(const std::vector<std::string>& images, std::size_t skipped, std::size_t failed,
                           TextProgress& progress) {
-    std::string line = fmt::format("{} frame{} written", images.size(), images.size() == 1 ? "" : "s");
+    const std::string head = fmt::format("{} frame{} written", images.size(), images.size() == 1 ? "" : "s");
+    std::string tail;
     if (!images.empty())
-        line += ": " + images.front() + (images.size() > 1 ? " to " + images.back() : "");
+        tail += ": " + images.front() + (images.size() > 1 ? " to " + images.back() : "");
     if (skipped > 0)
-        line += fmt::format("; {} skipped, which are finished", skipped);
+        tail += fmt::format("; {} {} finished before", skipped, skipped == 1 ? "was" : "were");
     if (failed > 0)
-        line += fmt::format("; {} failed", failed);
-    progress.summary(line, {{"written", images.size()}, {"skipped", skipped}, {"failed", failed}, {"images", images}});
+        tail += fmt::format("; {} failed", failed);
+    progress.summary(head, tail,
+                     {{"written", images.size()}, {"skipped", skipped}, {"failed", failed}, {"images", images}});
 }
 
 ExitCode render_all(Shot& shot, const Todo& todo, const RenderOptions& options, FrameStamps& stamps,

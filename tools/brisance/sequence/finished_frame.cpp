@@ -55,13 +55,13 @@ Why why_not_this_frame(const ExrMetadata& found, const Shot& shot, const std::st
 
 Why why_no_exr(const std::filesystem::path& file, const Shot& shot, const std::string& stamp) {
     try {
-        if (Why why = why_not_this_frame(read_exr_metadata(file), shot, stamp))
-            return why;
+        if (const Why why = why_not_this_frame(read_exr_metadata(file), shot, stamp))
+            return fmt::format("{}: {}", file.string(), *why);
         const Image image = read_exr(file);
         if (image.width != shot.camera.width || image.height != shot.camera.height)
-            return fmt::format("it has {} x {} pixels", image.width, image.height);
+            return fmt::format("{}: it has {} x {} pixels", file.string(), image.width, image.height);
     } catch (const Error& error) {
-        return fmt::format("damaged: {}", error.what());
+        return error.what();  // which names the file
     }
     return std::nullopt;
 }
@@ -94,8 +94,8 @@ std::optional<std::string> why_unfinished(const FrameOutput& output, const Shot&
         if (absent(file) && shot.method == RenderMethod::Path)
             return fmt::format("{} is not there", file.string());
         if (!file.empty() && !absent(file))
-            if (const Why why = why_no_exr(file, shot, stamp))
-                return fmt::format("{}: {}", file.string(), *why);
+            if (Why why = why_no_exr(file, shot, stamp))
+                return why;
     }
     for (const std::filesystem::path& file : {output.png, output.statistics})
         if (absent(file))

@@ -10,8 +10,9 @@ namespace brisance {
 
 inline constexpr const char* kNotThere = "it is not there";
 
-// Why the frame has to be rendered, in a few words; nothing where it is finished. Reads all pixels of its EXRs.
-// `stamp`: what decides its bits (farm/frame_stamp.h). Pictures of virtual lights are not looked at.
+// Why the frame has to be rendered: kNotThere, or the file and what is wrong; nothing where it is finished. Reads all
+// pixels of its EXRs. `stamp`: what decides its bits (farm/frame_stamp.h). Pictures of virtual lights are not looked
+// at.
 std::optional<std::string> why_unfinished(const FrameOutput& output, const Shot& shot, const std::string& stamp);
 
 }  // namespace brisance

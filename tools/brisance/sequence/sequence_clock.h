@@ -23,7 +23,7 @@ public:
     void end_frames(std::size_t count) {
         done_ += count;
         part_ = 0.0;
-        finished_at_ = Clock::now();
+        finished_at_ = frame_begin_ = Clock::now();
     }
     // What is known of the frame under way, 0 to 1. Otherwise it is taken from the time of the frames before it.
     void set_part(double part) { part_ = part; }

@@ -25,17 +25,19 @@ int run_verify(const VerifyOptions& options) {
         const FrameFile& frame = job.frames[i];
         if (const auto why = why_unfinished(outputs[i], shot, stamps.of(frame))) {
             unfinished.push_back(frame.frame);
-            fmt::print("frame {}: {}: {}\n", frame.frame, outputs[i].exr.string(), *why);
+            fmt::print("frame {}: {}\n", frame.frame,
+                       *why == kNotThere ? fmt::format("{}: {}", outputs[i].exr.string(), *why) : *why);
         }
         progress.fraction(double(i + 1) / double(job.frames.size()));
     }
     std::fflush(stdout);
     progress.finish();
     const std::size_t all = job.frames.size(), good = all - unfinished.size();
-    std::string line = fmt::format("{} of {} frame{} finished", good, all, all == 1 ? "" : "s");
+    const std::string head = fmt::format("{} of {} frame{} finished, verified", good, all, all == 1 ? "" : "s");
+    std::string tail;
     if (!unfinished.empty())
-        line += fmt::format("; `brisance render --skip-existing` renders {}", describe_frames(unfinished));
-    progress.summary(line, {{"finished", good}, {"frames", all}, {"unfinished", unfinished}});
+        tail += fmt::format("; `brisance render --skip-existing` renders {}", describe_frames(unfinished));
+    progress.summary(head, tail, {{"finished", good}, {"frames", all}, {"unfinished", unfinished}});
     return static_cast<int>(unfinished.empty() ? ExitCode::Success : ExitCode::RenderFailed);
 }
 
