@@ -110,7 +110,7 @@ void add_submit_options(CLI::App& command, SubmitOptions& options) {
         ->check(CLI::Range(0, 100));
     command
         .add_option("--memory", options.memory_mebibytes,
-                    "Of a task [MiB]; default: what the largest frame is expected to need, and half as much again")
+                    "Of a task [MiB]; default: what the frame with the largest file may need at most")
         ->check(CLI::Range(1, 1 << 30));
     command.add_option("--sbatch-option", options.engine_options, "Engine slurm: passed on to sbatch; repeatable")
         ->type_name("OPTION")

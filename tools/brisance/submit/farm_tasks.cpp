@@ -18,8 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMemoryMargin = 1.5;  // forecasts of memory err
-
 void add_option(Words& words, const char* name, const std::string& value) {
     if (!value.empty())
         words.insert(words.end(), {name, value});
@@ -48,7 +46,7 @@ int task_count(const SubmitOptions& options, std::size_t frames) {
     return std::clamp(count, 1, std::max(1, static_cast<int>(frames)));
 }
 
-// Of the largest file among the frames, with a margin. 0 where nothing can be read.
+// What the frame with the largest file may need at most. 0 where nothing can be read.
 std::uint64_t memory_of_largest(Shot shot, const std::vector<FrameFile>& frames, Progress& progress) {
     const auto size = [](const FrameFile& f) {
         std::error_code error;
@@ -57,8 +55,7 @@ std::uint64_t memory_of_largest(Shot shot, const std::vector<FrameFile>& frames,
     };
     const auto largest = std::ranges::max_element(frames, {}, size);
     choose_for_all(shot, progress);
-    const FrameForecast forecast = forecast_frame(shot, largest->file, largest->frame, machine_speed(), progress);
-    return static_cast<std::uint64_t>(kMemoryMargin * double(forecast.memory_bytes));
+    return forecast_frame(shot, largest->file, largest->frame, machine_speed(), progress).memory_bytes;
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ struct SubmitOptions {
     int tasks = 0;                       // 0: one for each frame, on this machine one for all
     int frames_a_task = 0;               // 0: by `tasks`
     int retries = 2;                     // of a task that failed
-    std::uint64_t memory_mebibytes = 0;  // of a task; 0: what the largest frame is expected to need
+    std::uint64_t memory_mebibytes = 0;  // of a task; 0: what the frame with the largest file may need
     std::vector<std::string> engine_options;
     std::string write;  // writes the job to this file instead of submitting it; empty: submits
 };
