@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <cctype>
 #include <filesystem>
 
 #include "farm/frame_chunk.h"
@@ -21,6 +21,14 @@ namespace fs = std::filesystem;
 void add_option(Words& words, const char* name, const std::string& value) {
     if (!value.empty())
         words.insert(words.end(), {name, value});
+}
+
+// For jobs and files.
+std::string plain_name(std::string name) {
+    for (char& c : name)
+        if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-' && c != '_' && c != '.')
+            c = '_';
+    return name;
 }
 
 // "10-13,15": every frame, however many.
@@ -101,7 +109,7 @@ FarmTasks plan_tasks(const SubmitOptions& options) {
     FarmTasks tasks;
     for (const FrameFile& frame : job.frames)
         tasks.frame_list.push_back(frame.frame);
-    tasks.name = shot.name.empty() ? fs::path(options.render.input).stem().string() : shot.name;
+    tasks.name = plain_name(shot.name.empty() ? fs::path(options.render.input).stem().string() : shot.name);
     tasks.program = fs::read_symlink("/proc/self/exe").string();
     tasks.folder = fs::current_path().string();
     tasks.output_folder = fs::absolute(outputs.front().exr).parent_path().string();
