@@ -20,6 +20,11 @@ find_path(NANOFLANN_INCLUDE_DIR nanoflann.hpp REQUIRED)
 add_library(nanoflann INTERFACE)
 target_include_directories(nanoflann SYSTEM INTERFACE ${NANOFLANN_INCLUDE_DIR})
 
+# Used as a header alone, too.
+find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
+add_library(xxhash INTERFACE)
+target_include_directories(xxhash SYSTEM INTERFACE ${XXHASH_INCLUDE_DIR})
+
 # OpenVDB's find module is not on CMake's own path, and asks for boost's iostreams.
 if(CMAKE_LIBRARY_ARCHITECTURE)
     list(APPEND CMAKE_MODULE_PATH /usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB)

@@ -12,7 +12,7 @@ import sys
 ROW = re.compile(r"^\| `(\w+)` \|[^|]*\|([^|]*)\|([^|]*)\|\s*$")
 INCLUDE = re.compile(r"^\s*#\s*include\s*([<\"])([^>\"]+)[>\"]", re.MULTILINE)
 # Other names under which a library's headers are found.
-ALIASES = {"oneapi": "tbb", "nanovdb": "openvdb", "tiny_gltf.h": "tinygltf"}
+ALIASES = {"oneapi": "tbb", "nanovdb": "openvdb", "tiny_gltf.h": "tinygltf", "xxhash.h": "xxhash"}
 SOURCES = {".h", ".hpp", ".cpp", ".cc", ".inl"}
 MOST_FILES, MOST_LINES, MOST_LINES_OF_FILE = 25, 2500, 400
 

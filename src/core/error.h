@@ -13,6 +13,7 @@ enum class ExitCode : int {
     Usage = 2,          // command line, shot file: unknown key, wrong type
     BadData = 65,       // a file that exists but cannot be used
     MissingInput = 66,  // a file or frame that is not there
+    Unavailable = 69,   // a program or service that was asked for is not there, or refuses
     CannotCreate = 73,  // output folder or file cannot be made
     OutputFailed = 74,  // writing failed half way: the disk is full
     Temporary = 75,     // out of memory: a retry on a larger machine may succeed

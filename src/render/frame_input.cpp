@@ -6,6 +6,7 @@
 #include "camera/shutter.h"
 #include "core/error.h"
 #include "core/stopwatch.h"
+#include "render/kept_inputs.h"
 #include "render/load_medium.h"
 #include "scene/load_scene.h"
 #include "scene/read_texture.h"
@@ -61,13 +62,11 @@ Texture read_environment(const std::filesystem::path& file) {
     return picture;
 }
 
-std::unique_ptr<Surroundings> load_surroundings(const Shot& shot, double seconds, const dvec3& origin,
-                                                Statistics& statistics, Progress& progress,
-                                                const Surroundings* of_other_moment = nullptr) {
-    progress.stage("surfaces");
-    const Stopwatch watch;
-    Scene scene = load_scene(shot.scene, shot.folder, seconds, origin, kSceneMemory, progress,
-                             of_other_moment ? &of_other_moment->scene() : nullptr);
+// `same_pictures`: as load_scene.
+KeptSet load_set(const Shot& shot, double seconds, const dvec3& origin, Progress& to,
+                 const Scene* same_pictures = nullptr) {
+    SaidLines progress(to);
+    Scene scene = load_scene(shot.scene, shot.folder, seconds, origin, kSceneMemory, progress, same_pictures);
     std::vector<LightSettings> lights = shot.scene.lights;
     lights.insert(lights.end(), scene.lights.begin(), scene.lights.end());
     std::vector<Texture> pictures;
@@ -75,13 +74,41 @@ std::unique_ptr<Surroundings> load_surroundings(const Shot& shot, double seconds
         pictures.push_back(light.kind == LightKind::Environment && !light.file.empty()
                                ? read_environment(shot.folder / light.file)
                                : Texture{});
-    const std::size_t triangles = scene.triangle_count();
-    auto out = std::make_unique<Surroundings>(std::move(scene), std::move(lights), std::move(pictures));
-    statistics.stages.push_back({"surfaces",
-                                 watch.seconds(),
-                                 out->bytes(),
-                                 {{"triangles", triangles}, {"emitters", out->emitters().near_count()}}});
-    return out;
+    const bool animated = scene.animated;
+    auto out = std::make_shared<Surroundings>(std::move(scene), std::move(lights), std::move(pictures));
+    return {std::move(out), origin, seconds, animated, std::move(progress.lines)};
+}
+
+// The set of this frame: that of an earlier one, where nothing of it moves.
+std::shared_ptr<const Surroundings> surroundings_for(const Shot& shot, double seconds, const dvec3& origin,
+                                                     KeptInputs* kept, Statistics& statistics, Progress& progress) {
+    progress.stage("surfaces");
+    const Stopwatch watch;
+    KeptSet own;
+    KeptSet& set = kept ? kept->set : own;
+    const bool holds = set.holds_at(seconds, origin);
+    if (holds)
+        say_again(set.said, progress);
+    else
+        set = load_set(shot, seconds, origin, progress);
+    const Surroundings& out = *set.surroundings;
+    statistics.stages.push_back(
+        {"surfaces",
+         watch.seconds(),
+         out.bytes(),
+         {{"triangles", out.scene().triangle_count()}, {"emitters", out.emitters().near_count()}}});
+    if (holds)
+        statistics.stages.back().detail["kept"] = true;
+    return set.surroundings;
+}
+
+// Files without animations have the same camera at all times.
+std::optional<SceneCamera> camera_of_set(const Shot& shot, double seconds, const KeptInputs* kept) {
+    if (kept && kept->set.surroundings && !kept->set.animated)
+        for (const SceneCamera& camera : kept->set.surroundings->scene().cameras)
+            if (shot.scene.camera.empty() || camera.name == shot.scene.camera)
+                return camera;
+    return camera_of_files(shot, seconds);
 }
 
 CameraSettings choose_camera(const Shot& shot, const std::optional<SceneCamera>& of_file, const FrameInput& input,
@@ -114,9 +141,8 @@ Animation animation_of_files(const Shot& shot, int frame, bool camera_of_file, c
         return out;
     const Surroundings& now = *input.surroundings;
     const auto surroundings = [&shot, &now, rate, frame, origin = origin_of(input.medium)](double frames) {
-        Statistics ignored;
         Progress silent;
-        return load_surroundings(shot, (frame + frames) / rate, origin, ignored, silent, &now);
+        return load_set(shot, (frame + frames) / rate, origin, silent, &now.scene()).surroundings;
     };
     if (!stand_still(*surroundings(span.opens), now) || !stand_still(*surroundings(span.closes), now))
         out.surroundings = surroundings;
@@ -126,12 +152,12 @@ Animation animation_of_files(const Shot& shot, int frame, bool camera_of_file, c
 }  // namespace
 
 FrameInput load_frame(const Shot& shot, const std::filesystem::path& volume, int frame, Statistics& statistics,
-                      Progress& progress) {
+                      Progress& progress, KeptInputs* kept) {
     FrameInput input;
     const double seconds = frame / shot.scene.frames_per_second;
     std::optional<SceneCamera> of_file;
     if (!shot.camera_given && !shot.scene.files.empty())
-        of_file = camera_of_files(shot, seconds);
+        of_file = camera_of_set(shot, seconds, kept);
     if (volume.empty() && shot.volumes.empty()) {
         dvec3 eye(0.0);
         if (shot.camera_given)
@@ -140,10 +166,10 @@ FrameInput load_frame(const Shot& shot, const std::filesystem::path& volume, int
             eye = dvec3(of_file->world_from_camera[3]);
         input.medium = empty_medium(eye);
     } else {
-        input.medium = load_medium(shot, volume, frame, statistics, progress);
+        input.medium = load_medium(shot, volume, frame, statistics, progress, kept);
     }
     if (!shot.scene.empty())
-        input.surroundings = load_surroundings(shot, seconds, origin_of(input.medium), statistics, progress);
+        input.surroundings = surroundings_for(shot, seconds, origin_of(input.medium), kept, statistics, progress);
     input.camera = choose_camera(shot, of_file, input, progress);
     if (shot.shutter.length > 0.0)
         input.animation = animation_of_files(shot, frame, of_file.has_value(), input);

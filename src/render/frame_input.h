@@ -13,17 +13,19 @@
 
 namespace brisance {
 
+struct KeptInputs;
+
 struct FrameInput {
-    Medium medium;                               // without nodes where the shot has no volume
-    std::unique_ptr<Surroundings> surroundings;  // none where it has no scene; local space as the medium's
+    Medium medium;                                     // without nodes where the shot has no volume
+    std::shared_ptr<const Surroundings> surroundings;  // none where it has no scene; local space as the medium's
     CameraSettings camera;
     Animation animation;  // of files, while the shutter is open; empty where it is not
 };
 
 // `volume`: the frame's .vdb file; empty where the shot has none, and then no volume is started.
-// The camera is the shot's, else that of a glTF file, else one that sees everything. Throws Error. The shot must
-// outlive the animation.
+// The camera is the shot's, else that of a glTF file, else one that sees everything. `kept`: what earlier frames of the
+// shot hand on (kept_inputs.h). Throws Error. The shot must outlive the animation.
 FrameInput load_frame(const Shot& shot, const std::filesystem::path& volume, int frame, Statistics& statistics,
-                      Progress& progress);
+                      Progress& progress, KeptInputs* kept = nullptr);
 
 }  // namespace brisance

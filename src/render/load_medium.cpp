@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/stopwatch.h"
+#include "render/kept_inputs.h"
 #include "render/read_volume.h"
 #include "volume/fog_box.h"
 
@@ -46,25 +47,37 @@ void make_box(VolumePart& part) {
     transform = placement(part.settings, "volumes") * transform;
 }
 
-StageCost reading_cost(const VolumePart& part, const std::string& mapping, double seconds) {
-    std::uint64_t bytes = 0;
-    for (const auto* g : {&part.grids.density, &part.grids.temperature, &part.grids.flame, &part.grids.colour})
-        bytes += *g ? (*g)->values.size() * sizeof(float) : 0;
-    StageCost cost{"reading", seconds, bytes, {{"file", part.files.first.string()}, {"mapping", mapping}}};
+StageCost reading_cost(const VolumePart& part, const ReadVolume& read, double seconds) {
+    StageCost cost{"reading", seconds, read.bytes, {{"file", part.files.first.string()}, {"mapping", read.mapping}}};
     if (!part.files.single()) {
         cost.detail["second_file"] = part.files.second.string();
         cost.detail["weight_of_second"] = part.files.time.weight;
         cost.detail["retime"] = part.time.retime == Retime::Advect ? "advect" : "linear";
     }
+    if (read.seconds_ahead)
+        cost.detail["seconds_ahead"] = *read.seconds_ahead;
     return cost;
 }
 
-void read_part(VolumePart& part, Statistics& statistics, Progress& progress) {
-    if (part.settings.box)
+void note_what_was_read(const ReadVolume& read, const VolumePart& part, KeptInputs& kept) {
+    std::error_code error;
+    const std::uintmax_t of_file = std::filesystem::file_size(part.files.first, error);
+    kept.grids.push_back(read.names);
+    kept.bytes_read += read.bytes;
+    kept.bytes_of_files += error ? 0 : of_file;
+}
+
+void read_part(VolumePart& part, Statistics& statistics, Progress& progress, KeptInputs* kept) {
+    if (part.settings.box) {
+        if (kept)
+            kept->grids.emplace_back();
         return make_box(part);
+    }
     const Stopwatch watch;
-    const std::string mapping = read_volume(part, progress);
-    statistics.stages.push_back(reading_cost(part, mapping, watch.seconds()));
+    const ReadVolume read = read_volume(part, kept ? &kept->volumes : nullptr, progress);
+    statistics.stages.push_back(reading_cost(part, read, watch.seconds()));
+    if (kept)
+        note_what_was_read(read, part, *kept);
 }
 
 }  // namespace
@@ -79,7 +92,11 @@ std::vector<std::filesystem::path> further_files(const Shot& shot, int frame) {
 }
 
 Medium load_medium(const Shot& shot, const std::filesystem::path& volume, int frame, Statistics& statistics,
-                   Progress& progress) {
+                   Progress& progress, KeptInputs* kept) {
+    if (kept) {
+        kept->grids.clear();
+        kept->bytes_read = kept->bytes_of_files = 0;
+    }
     std::vector<VolumePart> parts = parts_of(shot, volume, frame);
     if (!std::all_of(parts.begin(), parts.end(), is_settled_part))
         parts = parts_of(settle_time(shot, progress), volume, frame);
@@ -89,7 +106,7 @@ Medium load_medium(const Shot& shot, const std::filesystem::path& volume, int fr
     }
     std::vector<MediumPart> media;
     for (VolumePart& part : parts) {
-        read_part(part, statistics, progress);
+        read_part(part, statistics, progress, kept);
         media.push_back({part.grids, part.look, part.settings.half_voxel_shift});
     }
     progress.stage("medium");

@@ -47,11 +47,12 @@ void say_what_is_missing(const FireSettings& fire, const GridMapping& mapping, P
 // One file, open.
 class OpenVolume {
 public:
-    OpenVolume(const std::filesystem::path& file, const VolumeSettings& settings)
-        : file_(file),
-          settings_(settings),
-          reader_(file),
-          mapping_(map_grids(reader_.grids(), settings, file.string())) {}
+    OpenVolume(const std::filesystem::path& file, const VolumeSettings& settings, ReadAhead* ahead = nullptr)
+        : file_(file), settings_(settings), ahead_(ahead ? ahead->take(file) : std::nullopt) {
+        if (!ahead_)
+            reader_.emplace(file);
+        mapping_ = map_grids(grids(), settings, file.string());
+    }
 
     const GridMapping& mapping() const { return mapping_; }
 
@@ -61,22 +62,22 @@ public:
             if (const std::optional<GridChoice>& choice = *choices(mapping_)[role]; choice && needed[role])
                 out[role] = read(*choice);
         if (needed[kColour] && mapping_.colour_parts.size() == 3)
-            out[kColour] = join_vector_parts({read(mapping_.colour_parts[0]), read(mapping_.colour_parts[1]),
-                                              read(mapping_.colour_parts[2])},
-                                             file_.string());
+            out[kColour] = join_vector_parts(
+                {read(mapping_.colour_parts[0]), read(mapping_.colour_parts[1]), read(mapping_.colour_parts[2])},
+                file_.string());
         return out;
     }
 
     CentredVelocity velocity(Progress& progress) {
-        const VelocityMapping mapping = map_velocity(reader_.grids(), settings_.grids, file_.string());
-        VelocityGrids grids;
+        const VelocityMapping mapping = map_velocity(grids(), settings_.grids, file_.string());
+        VelocityGrids found;
         for (const GridChoice& choice : mapping.grids) {
-            grids.push_back(read(choice));
-            if (const std::uint64_t bad = grids.back().census.nan_voxels; bad > 0)
+            found.push_back(read(choice));
+            if (const std::uint64_t bad = found.back().census.nan_voxels; bad > 0)
                 progress.warning("nan", fmt::format("{}: grid '{}': {} NaN or infinite velocities read as 0",
                                                     file_.string(), choice.name, bad));
         }
-        CentredVelocity velocity = centred_velocity(grids);
+        CentredVelocity velocity = centred_velocity(found);
         if (velocity.outliers > 0)
             progress.warning("velocity",
                              fmt::format("{}: {} of its velocities are above {:.3g}, four times the 99th "
@@ -85,13 +86,29 @@ public:
         return velocity;
     }
 
+    const std::vector<GridName>& names() const { return names_; }
+    std::optional<double> seconds_ahead() const { return ahead_ ? std::optional(ahead_->seconds) : std::nullopt; }
+
 private:
-    BlockGrid read(const GridChoice& choice) { return reader_.read(choice.name, choice.index, kGridMemory); }
+    const std::vector<GridInfo>& grids() const { return ahead_ ? ahead_->grids : reader_->grids(); }
+
+    // What was read ahead, or now.
+    BlockGrid read(const GridChoice& choice) {
+        names_.emplace_back(choice.name, choice.index);
+        if (ahead_)
+            if (auto found = ahead_->voxels.extract(names_.back()))
+                return std::move(found.mapped());
+        if (!reader_)
+            reader_.emplace(file_);
+        return reader_->read(choice.name, choice.index, kGridMemory);
+    }
 
     std::filesystem::path file_;
     const VolumeSettings& settings_;
-    VdbReader reader_;
+    std::optional<ReadAhead::File> ahead_;
+    std::optional<VdbReader> reader_;
     GridMapping mapping_;
+    std::vector<GridName> names_;
 };
 
 SourceFrame read_frame(const std::filesystem::path& file, const VolumePart& part, bool moves, Progress& progress) {
@@ -125,26 +142,30 @@ Fields read_between(const VolumePart& part, std::string& mapping, Progress& prog
 
 }  // namespace
 
-std::string read_volume(VolumePart& part, Progress& progress) {
+ReadVolume read_volume(VolumePart& part, ReadAhead* ahead, Progress& progress) {
     const dmat4 world_from_file = placement(part.settings, part.files.first.string());
-    std::string mapping;
+    ReadVolume out;
     Fields fields;
     if (part.files.single()) {
         progress.stage("reading " + part.files.first.filename().string());
-        OpenVolume volume(part.files.first, part.settings);
-        mapping = describe_all(volume.mapping(), part, progress);
+        OpenVolume volume(part.files.first, part.settings, ahead);
+        out.mapping = describe_all(volume.mapping(), part, progress);
         fields = volume.fields(needed_roles(part.look.fire));
+        out.names = volume.names();
+        out.seconds_ahead = volume.seconds_ahead();
     } else {
         progress.stage("reading " + part.files.first.filename().string() + " and " +
                        part.files.second.filename().string());
-        fields = read_between(part, mapping, progress);
+        fields = read_between(part, out.mapping, progress);
     }
     for (std::optional<BlockGrid>& field : fields)
-        if (field)
+        if (field) {
             field->info.world_from_index = world_from_file * field->info.world_from_index;
+            out.bytes += field->values.size() * sizeof(float);
+        }
     part.grids = {std::move(fields[kDensity]), std::move(fields[kTemperature]), std::move(fields[kFlame]),
                   std::move(fields[kColour])};
-    return mapping;
+    return out;
 }
 
 DecidingField deciding_field(const std::string& pattern, const std::vector<int>& on_disk,

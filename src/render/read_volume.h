@@ -7,6 +7,7 @@
 #include "medium/medium.h"
 #include "render/volume_in_time.h"
 #include "retiming/source_frame.h"
+#include "volume/read_ahead.h"
 #include "volume/settings.h"
 
 namespace brisance {
@@ -21,9 +22,16 @@ struct VolumePart {
     MediumGrids grids;
 };
 
+struct ReadVolume {
+    std::string mapping;                  // in words
+    std::uint64_t bytes = 0;              // of the grids
+    std::vector<GridName> names;          // read of the file; none where there were two
+    std::optional<double> seconds_ahead;  // that it took to read, where that was done before
+};
+
 // Reads the grids that the part's look needs, in the world's space: those of one file as they are, or a time between
-// two. Velocity is read only where it moves them. Returns the mapping in words. Throws Error.
-std::string read_volume(VolumePart& part, Progress& progress);
+// two. Velocity is read only where it moves them. `ahead`: files that were read before, or null. Throws Error.
+ReadVolume read_volume(VolumePart& part, ReadAhead* ahead, Progress& progress);
 
 // The field by which retiming is chosen: density, or the first other one that the look needs.
 struct DecidingField {

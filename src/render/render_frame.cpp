@@ -15,6 +15,7 @@
 #include "render/choose_method.h"
 #include "render/draw.h"
 #include "render/frame_input.h"
+#include "render/kept_inputs.h"
 #include "render/shutter/open_shutter.h"
 #include "render/time_budget.h"
 
@@ -179,11 +180,13 @@ void finish(RenderedFrame& out, double seconds) {
 }  // namespace
 
 RenderedFrame render_frame(const Shot& given, const std::filesystem::path& volume, int frame, Progress& to,
-                           const std::filesystem::path& checkpoint) {
+                           const std::filesystem::path& checkpoint, KeptInputs* kept) {
     const Stopwatch watch;
     RenderedFrame out;
     Recorder progress(to, out.statistics);
-    FrameInput input = load_frame(given, volume, frame, out.statistics, progress);
+    FrameInput input = load_frame(given, volume, frame, out.statistics, progress, kept);
+    if (kept)
+        read_next_frame(given, input.medium, *kept);
     const Shot shot =
         with_time(given, input.medium, input.surroundings.get(), input.camera, watch.seconds(), out, progress);
     render_into(out, shot, input.medium, input.surroundings.get(), input.camera, input.animation,

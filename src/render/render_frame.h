@@ -13,6 +13,8 @@
 
 namespace brisance {
 
+struct KeptInputs;
+
 struct RenderedFrame {
     Image image;
     std::vector<Image> halves;                    // method path: two independent ones, whose mean is `image`
@@ -24,8 +26,9 @@ struct RenderedFrame {
 // `volume` is the resolved .vdb file of this frame; empty where the shot has none. Throws Error. The shot may leave
 // camera and exposure to be chosen (frame_input.h). The same shot gives the same bits, whatever the number of threads.
 // `checkpoint` (method path): the file that stores the state of a long render, and from which it resumes; empty: none.
+// `kept`: what frames of a sequence hand on (kept_inputs.h); without, each is loaded by itself.
 RenderedFrame render_frame(const Shot& shot, const std::filesystem::path& volume, int frame, Progress& progress,
-                           const std::filesystem::path& checkpoint = {});
+                           const std::filesystem::path& checkpoint = {}, KeptInputs* kept = nullptr);
 
 // The same for a medium that is already loaded.
 RenderedFrame render_medium(const Shot& shot, const Medium& medium, Progress& progress,

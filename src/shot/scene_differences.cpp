@@ -76,19 +76,30 @@ std::string shown(const std::optional<Json>& value) {
     return "[" + text + "]";
 }
 
-}  // namespace
-
-std::vector<std::string> scene_differences(const std::string& shot_json_a, const std::string& shot_json_b) {
+template <class Counts>
+std::vector<std::string> differences_where(const std::string& shot_json_a, const std::string& shot_json_b,
+                                           const Counts& counts) {
     const Values a = values_of(shot_json_a), b = values_of(shot_json_b);
     std::vector<std::string> lines;
     for (const std::string& path : paths_of(a, b)) {
-        if (affected_by(path) != Affects::Picture)
+        if (!counts(path))
             continue;
         const std::optional<Json> in_a = value_at(path, a), in_b = value_at(path, b);
         if (in_a != in_b)
             lines.push_back(fmt::format("{}: {} against {}", path, shown(in_a), shown(in_b)));
     }
     return lines;
+}
+
+}  // namespace
+
+std::vector<std::string> scene_differences(const std::string& shot_json_a, const std::string& shot_json_b) {
+    return differences_where(shot_json_a, shot_json_b,
+                             [](const std::string& path) { return affected_by(path) == Affects::Picture; });
+}
+
+std::vector<std::string> setting_differences(const std::string& shot_json_a, const std::string& shot_json_b) {
+    return differences_where(shot_json_a, shot_json_b, [](const std::string& path) { return path != "output.path"; });
 }
 
 }  // namespace brisance

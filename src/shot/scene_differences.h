@@ -12,4 +12,7 @@ namespace brisance {
 // between machines. Empty: one and the same picture is meant. Throws Error BadData for text that is no JSON object.
 std::vector<std::string> scene_differences(const std::string& shot_json_a, const std::string& shot_json_b);
 
+// The same of all keys but output.path, whatever they affect.
+std::vector<std::string> setting_differences(const std::string& shot_json_a, const std::string& shot_json_b);
+
 }  // namespace brisance

@@ -9,8 +9,8 @@
 
 #include "core/error.h"
 #include "core/printable.h"
-#include "volume/velocity_mapping.h"
 #include "volume/vector_parts.h"
+#include "volume/velocity_mapping.h"
 
 namespace brisance {
 namespace {

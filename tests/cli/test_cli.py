@@ -938,10 +938,9 @@ class RealFiles(Case):
                 self.assertIn("error: ", done.stderr)
 
 
-def main():
+def main(module):
     names = sys.argv[3:]
     loader = unittest.TestLoader()
-    module = sys.modules[__name__]
     suite = loader.loadTestsFromNames(names, module) if names else loader.loadTestsFromModule(module)
     result = unittest.TextTestRunner(verbosity=2).run(suite)
     if not result.wasSuccessful():
@@ -950,4 +949,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.modules[__name__])

@@ -3,8 +3,8 @@
 
 #include "temp_folder.h"
 #include "volume/mapping.h"
-#include "volume/velocity_mapping.h"
 #include "volume/vector_parts.h"
+#include "volume/velocity_mapping.h"
 
 namespace brisance {
 namespace {

@@ -24,11 +24,11 @@ struct Inspection {
     std::uint64_t file_bytes = 0;
     std::vector<InspectedGrid> grids;
     std::optional<GridMapping> mapping;
-    std::string why_no_mapping;  // set when there is none
-    std::string volumes;         // what the look is for: the file, or the pattern of its sequence
-    std::optional<Look> look;    // set where there is a mapping
-    std::string pattern;         // of the sequence the file belongs to; empty when it stands alone
-    std::vector<int> frames;     // of that sequence, on disk
+    std::string why_no_mapping;                 // set when there is none
+    std::string volumes;                        // what the look is for: the file, or the pattern of its sequence
+    std::optional<Look> look;                   // set where there is a mapping
+    std::string pattern;                        // of the sequence the file belongs to; empty when it stands alone
+    std::vector<int> frames;                    // of that sequence, on disk
     std::optional<InspectedVelocity> velocity;  // where it was asked for: it may read several frames
 };
 

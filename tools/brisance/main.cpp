@@ -8,12 +8,12 @@
 #include <csignal>
 #include <cstdio>
 #include <functional>
-#include <map>
 #include <new>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "command_options.h"
 #include "compare_command.h"
 #include "compare_report.h"
 #include "core/error.h"
@@ -36,11 +36,12 @@ using namespace brisance;
 
 constexpr const char* kExitCodes = R"(Exit codes:
   0    all frames written
-  1    rendering failed; a measure of compare is above its --fail-above
+  1    rendering failed; a measure of compare is above its --fail-above; verify found frames that are not finished
   2    command line or shot file: unknown key, wrong type, value out of range
   65   a file exists but cannot be used: not a VDB, truncated, no usable grid; images that do not compare;
        a checkpoint of another render
   66   a file or frame is not there
+  69   a program or a service is not there, or refuses: Slurm
   73   the output folder or file cannot be made
   74   writing failed half way: the disk is full
   75   out of memory: retry on a larger machine
@@ -66,52 +67,6 @@ void install_signal_handlers() {
     }
     // Ignored, so that a file beyond its size limit is an error of write(), reported like a full disk.
     std::signal(SIGXFSZ, SIG_IGN);
-}
-
-// Options of every command that renders.
-template <class Options>
-void add_common_options(CLI::App& command, Options& options) {
-    static const std::map<std::string, ProgressStyle> styles = {{"auto", ProgressStyle::Automatic},
-                                                                {"tty", ProgressStyle::Bar},
-                                                                {"plain", ProgressStyle::Plain},
-                                                                {"none", ProgressStyle::None}};
-    command.add_option("--set", options.overrides, "Overrides one key of the shot: --set smoke.albedo=0.9; repeatable")
-        ->type_name("KEY=VALUE")
-        ->allow_extra_args(false);
-    command.add_option("--preset", options.preset, "draft: quick look; final: the shot as written")
-        ->check(CLI::IsMember(shot_presets()));
-    command.add_option("--threads", options.threads, "Threads; 0: all processors. Never changes the picture")
-        ->check(CLI::Range(0, 4096));
-    command.add_option("--progress", options.progress, "auto, tty (bar), plain (lines) or none")
-        ->transform(CLI::CheckedTransformer(styles).description(""))
-        ->type_name("STYLE");
-}
-
-void add_shot_options(CLI::App& command, RenderOptions& options) {
-    command
-        .add_option("SHOT_OR_VDB", options.input,
-                    "A shot (JSON), a .vdb with or without frame token (####), or a folder of them")
-        ->required();
-    command.add_option("-o,--output", options.output,
-                       "The EXR, with #### for the frame number, or a folder; PNG and statistics go beside it");
-    command.add_option("-f,--frames", options.frames, "Frames: 1001-1100x2,1200; without it, all that are on disk");
-    command.add_option("--method", options.method, "lighting_grid, path or auto: the same as --set method=...")
-        ->check(CLI::IsMember({"lighting_grid", "path", "auto"}))
-        ->type_name("METHOD");
-    command
-        .add_option("--seconds", options.seconds,
-                    "Wall time for a frame with all but its certificate: the settings of least error that fit, one for "
-                    "all frames; the same as --set seconds=...")
-        ->check(CLI::PositiveNumber)
-        ->type_name("S");
-    command
-        .add_option("--look", options.look,
-                    "A first look from `brisance inspect --write-look`, or auto, for what a shot leaves open; a bare "
-                    "volume has auto without it")
-        ->type_name("FILE");
-    add_common_options(command, options);
-    command.add_flag("--make-folders", options.make_folders, "Makes the folders of the outputs where they are missing");
-    command.add_flag("--keep-going", options.keep_going, "Renders the remaining frames when one fails");
 }
 
 void add_compare_options(CLI::App& command, CompareOptions& options) {
@@ -187,30 +142,6 @@ void add_report_options(CLI::App& command, ReportOptions& options) {
     add_common_options(command, options);
 }
 #endif
-
-void add_render_options(CLI::App& command, RenderOptions& options) {
-    add_shot_options(command, options);
-    command
-        .add_option("--checkpoint", options.checkpoint,
-                    "Method path: keeps the state of the render in this file, with #### for the frame number, every "
-                    "tracing.checkpoint_seconds, and resumes from it where it exists: after an interruption, or for "
-                    "more paths than before. Its picture has the same bits as that of one uninterrupted render")
-        ->type_name("FILE");
-    command.add_flag("--certify", options.certify,
-                     "Estimates the finished picture's error against the truth, with 95 % confidence intervals, from "
-                     "certify.samples unbiased samples: on standard error, in the statistics and in the EXR's header");
-    command
-        .add_option("--debug", options.debug,
-                    "virtual-lights: pictures of the method beside the EXR, STEM.virtual_lights.*: the virtual lights "
-                    "of surfaces as points (.ply), as the camera sees them (.exr, .png), how many cover each pixel "
-                    "(.count.png), how long paths are (.path_length.png), and the glossy ones' profiles "
-                    "(.profiles.exr, .profiles.png); the same as --set output.virtual_lights=true")
-        ->check(CLI::IsMember({kDebugVirtualLights}))
-        ->type_name("WHAT")
-        ->allow_extra_args(false);
-    command.add_flag("--explain", options.explain, "Prints what ran, what was left out and why, and what it cost");
-    command.add_flag("--print-config", options.print_config, "Prints the resolved shot instead of rendering");
-}
 
 void add_trace_path_options(CLI::App& command, TracePathOptions& options) {
     command.add_option("SHOT_OR_VDB", options.input, "A shot (JSON), or a .vdb with or without frame token (####)")
@@ -302,9 +233,16 @@ private:
             add("render", "Renders a shot, or a bare .vdb, to OpenEXR", [this] { return run_render(options_); });
         add_render_options(render, options_);
         render.footer(kExitCodes);
-        add_shot_options(
-            add("plan", "Prints what a render would read, run and leave out", [this] { return run_plan(options_); }),
-            options_);
+        add_plan_options(
+            add("plan", "Prints what a render would read, run and leave out", [this] { return run_plan(planned_); }),
+            planned_);
+        add_verify_options(add("verify", "Says which frames are missing, damaged or of another render",
+                               [this] { return run_verify(verified_); }),
+                           verified_);
+        CLI::App& submit = add("submit", "Renders a sequence by tasks, on this machine or on a farm",
+                               [this] { return run_submit(submitted_); });
+        add_submit_options(submit, submitted_);
+        submit.footer(kExitCodes);
         CLI::App& inspect = add("inspect", "Prints a .vdb file's grids and suggests a shot",
                                 [this] { return run_inspect(inspected_); });
         inspect
@@ -356,6 +294,9 @@ private:
     CLI::App app_{"Brisance renders OpenVDB fire and smoke: the fire lights its own smoke.", "brisance"};
     std::vector<std::pair<CLI::App*, std::function<int()>>> commands_;
     RenderOptions options_;
+    PlanOptions planned_;
+    VerifyOptions verified_;
+    SubmitOptions submitted_;
     InspectOptions inspected_;
     bool keys_ = false;
     CompareOptions comparison_;
@@ -367,6 +308,10 @@ private:
 };
 
 int fail(ExitCode code, const std::string& line) {
+    if (standard_error_is_json()) {
+        TextProgress(ProgressStyle::Ndjson).error(line);
+        return static_cast<int>(code);
+    }
     fmt::print(stderr, "brisance: error: {}\n", printable_line(line));
     return static_cast<int>(code);
 }

@@ -12,9 +12,20 @@
 #include "volume/frame_token.h"
 
 namespace brisance {
-namespace {
 
 namespace fs = std::filesystem;
+
+std::vector<fs::path> files_of(const FrameOutput& output) {
+    std::vector<fs::path> files;
+    for (const fs::path& file : {output.exr, output.png, output.statistics, output.halves[0], output.halves[1]})
+        if (!file.empty())
+            files.push_back(file);
+    const std::vector<fs::path> lights = output.lights.all();
+    files.insert(files.end(), lights.begin(), lights.end());
+    return files;
+}
+
+namespace {
 
 std::string default_name(const Shot& shot, bool several) {
     std::string name = shot.name.empty() ? "brisance" : shot.name;
@@ -39,16 +50,6 @@ std::string output_pattern(const Shot& shot, const std::string& requested, bool 
     return path.string();
 }
 
-std::vector<fs::path> files_of(const FrameOutput& output) {
-    std::vector<fs::path> files;
-    for (const fs::path& file : {output.exr, output.png, output.statistics, output.halves[0], output.halves[1]})
-        if (!file.empty())
-            files.push_back(file);
-    const std::vector<fs::path> lights = output.lights.all();
-    files.insert(files.end(), lights.begin(), lights.end());
-    return files;
-}
-
 void refuse_overwriting(const FrameOutput& output, const fs::path& input) {
     for (const fs::path& file : files_of(output)) {
         std::error_code error;
@@ -69,9 +70,9 @@ void make_folder_of(const fs::path& file) {
 
 }  // namespace
 
-std::vector<FrameOutput> plan_outputs(const Shot& shot, const std::string& requested,
-                                      const std::vector<FrameFile>& frames, const fs::path& input, bool make_folders) {
-    const std::string pattern = output_pattern(shot, requested, frames.size() > 1);
+std::vector<FrameOutput> name_outputs(const Shot& shot, const std::string& requested,
+                                      const std::vector<FrameFile>& frames, bool several) {
+    const std::string pattern = output_pattern(shot, requested, several);
     std::vector<FrameOutput> outputs;
     std::map<fs::path, int> frame_of;
     for (const FrameFile& frame : frames) {
@@ -90,11 +91,6 @@ std::vector<FrameOutput> plan_outputs(const Shot& shot, const std::string& reque
         if (!first)
             throw Error(ExitCode::Usage, fmt::format("frames {} and {} would both be written to {}", other->second,
                                                      frame.frame, output.exr.string()));
-        refuse_overwriting(output, input);
-        if (make_folders)
-            make_folder_of(output.exr);
-        for (const fs::path& file : files_of(output))
-            check_writable(file);
         outputs.push_back(output);
     }
     return outputs;
@@ -116,15 +112,25 @@ fs::path plan_look(const Shot& shot, const std::string& requested, bool several,
     return file;
 }
 
+void check_outputs(const std::vector<FrameOutput>& outputs, const fs::path& input, bool make_folders) {
+    for (const FrameOutput& output : outputs) {
+        refuse_overwriting(output, input);
+        if (make_folders)
+            make_folder_of(output.exr);
+        for (const fs::path& file : files_of(output))
+            check_writable(file);
+    }
+}
+
 std::vector<fs::path> plan_checkpoints(const Shot& shot, const std::string& requested,
                                        const std::vector<FrameFile>& frames, const std::vector<FrameOutput>& outputs,
-                                       const fs::path& input) {
+                                       const fs::path& input, bool several) {
     std::vector<fs::path> checkpoints(frames.size());
     if (requested.empty())
         return checkpoints;
     if (shot.method != RenderMethod::Path)
         throw Error(ExitCode::Usage, "--checkpoint keeps the state of the path tracer; give --method path with it");
-    if (frames.size() > 1 && !has_frame_token(requested))
+    if (several && !has_frame_token(requested))
         throw Error(ExitCode::Usage, fmt::format("--checkpoint: several frames would be kept in {}; put #### where the "
                                                  "frame number goes",
                                                  requested));

@@ -2,107 +2,31 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <functional>
-#include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
-#include "core/error.h"
 #include "core/parallel.h"
+#include "farm/frame_stamp.h"
 #include "film/whole_file.h"
 #include "film/write_image.h"
 #include "first_look/look_file.h"
-#include "load_shot.h"
 #include "outputs.h"
+#include "render/kept_inputs.h"
 #include "render/render_frame.h"
-#include "render/volume_in_time.h"
-#include "shared_choice.h"
+#include "sequence/finished_frame.h"
+#include "sequence/frame_job.h"
+#include "sequence/plan_command.h"
+#include "sequence/shared_choice.h"
 #include "shot/write_shot.h"
-#include "volume/vdb_header.h"
 
 namespace brisance {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Failures {
-    std::size_t count = 0;
-    ExitCode first = ExitCode::Success;
-};
-
-LoadedShot load(const RenderOptions& options, Progress& progress) {
-    ShotOptions layers{options.preset, options.overrides};
-    if (!options.method.empty())
-        layers.overrides.insert(layers.overrides.begin(), "method=" + options.method);
-    if (options.seconds > 0.0)
-        layers.overrides.insert(layers.overrides.begin(), fmt::format("seconds={}", options.seconds));
-    if (options.certify)
-        layers.overrides.emplace_back("certify.enabled=true");
-    for (const std::string& pictures : options.debug)
-        if (pictures == kDebugVirtualLights)
-            layers.overrides.emplace_back("output.virtual_lights=true");
-    return load_shot_and_look(options.input, layers, options.look, progress);
-}
-
-// Runs `work`; what it throws becomes a line and is counted. Returns whether it came to its end.
-bool attempt(const std::string& what, const std::function<void()>& work, TextProgress& progress, Failures& failures) {
-    const auto fail = [&](ExitCode code, const std::string& line) {
-        progress.say(fmt::format("error: {}{}", what, line));
-        if (failures.count++ == 0)
-            failures.first = code;
-        return false;
-    };
-    try {
-        work();
-        return true;
-    } catch (const Error& error) {
-        return fail(error.code(), error.what());
-    } catch (const std::bad_alloc&) {
-        return fail(ExitCode::Temporary, "out of memory; render at a lower resolution or on a larger machine");
-    } catch (const std::exception& error) {
-        return fail(ExitCode::RenderFailed, error.what());
-    }
-}
-
-std::optional<std::vector<int>> requested_frames(const RenderOptions& options) {
-    return options.frames.empty() ? std::nullopt : std::optional(parse_frames(options.frames));
-}
-
-// Files of all frames, each of them there and recognisably whole, before the first is rendered: a mistake in frame 90
-// should not cost the time of 89 frames. With --keep-going the others remain.
-std::vector<FrameFile> usable_frames(const Shot& shot, const RenderOptions& options, TextProgress& progress,
-                                     Failures& failures) {
-    const std::string pattern = volume_pattern(shot);
-    const std::optional<std::vector<int>> requested = requested_frames(options);
-    std::vector<FrameFile> frames;
-    if (!options.keep_going || !requested || pattern.empty()) {
-        frames = resolve_frames(shot, requested);
-    } else {
-        for (const int frame : *requested)
-            attempt(
-                "", [&] { frames.push_back(resolve_frames(shot, std::vector<int>{frame}).front()); }, progress,
-                failures);
-    }
-    if (pattern.empty())
-        return frames;
-    std::vector<FrameFile> usable;
-    for (const FrameFile& frame : frames) {
-        const auto look = [&] {
-            if (!frame.file.empty())  // else nothing is at this time
-                read_vdb_header(frame.file);
-        };
-        if (!options.keep_going)
-            look();
-        if (!options.keep_going || attempt("", look, progress, failures))
-            usable.push_back(frame);
-    }
-    return usable;
-}
 
 // For `say`, which ends the line itself.
 std::string without_last_newline(std::string text) {
@@ -152,6 +76,8 @@ std::string statistics_json(const RenderedFrame& frame, const fs::path& volume, 
         {"schema_version", 1},           {"brisance", BRISANCE_VERSION},
         {"frame", frame.metadata.frame}, {"volume", volume.string()},
         {"image", output.exr.string()},  {"settings_hash", frame.metadata.text.at("brisance/settings_hash")}};
+    if (const auto stamp = frame.metadata.text.find(kStampKey); stamp != frame.metadata.text.end())
+        json["inputs_hash"] = FrameStamps::hash_of(stamp->second);
     if (exposure)
         json["png_exposure_stops"] = *exposure;
     json.update(frame.statistics.to_json());
@@ -214,73 +140,136 @@ void write_look(const Look& look, const fs::path& file) {
     announce(file);
 }
 
-}  // namespace
-
-int run_render(const RenderOptions& options) {
-    TextProgress progress(options.progress);
-    const ThreadLimit limit(options.threads);
-    const LoadedShot loaded = load(options, progress);
-    Shot shot = loaded.shot;
-    if (options.print_config) {
-        progress.finish();
-        std::fputs(to_json(shot).c_str(), stdout);
-        return static_cast<int>(ExitCode::Success);
-    }
-    Failures failures;
-    const std::vector<FrameFile> frames = usable_frames(shot, options, progress, failures);
-    const std::vector<FrameOutput> outputs =
-        plan_outputs(shot, options.output, frames, options.input, options.make_folders);
-    const std::vector<fs::path> checkpoints =
-        plan_checkpoints(shot, options.checkpoint, frames, outputs, options.input);
+// The frames of a job that are to be rendered, and what they need.
+struct Todo {
+    FrameJob job;
+    std::vector<FrameOutput> outputs;
+    std::vector<fs::path> checkpoints;
+    std::size_t skipped = 0;
+    std::optional<Look> look;  // to be written to `look_file` with the first frame
     fs::path look_file;
-    if (loaded.look && shot.output.statistics && !frames.empty())
-        look_file = plan_look(shot, options.output, frames.size() > 1, options.input);
+};
+
+// --skip-existing: leaves those that are whole and what the shot asks for. Says why another is rendered again.
+void leave_out_finished(Todo& todo, const Shot& shot, FrameStamps& stamps, TextProgress& progress) {
+    Todo left;
+    left.job.several = todo.job.several;
+    for (std::size_t i = 0; i < todo.outputs.size(); ++i) {
+        const FrameFile& frame = todo.job.frames[i];
+        const std::optional<std::string> why = why_unfinished(todo.outputs[i], shot, stamps.of(frame));
+        if (!why)
+            continue;
+        if (*why != kNotThere)
+            progress.say(fmt::format("frame {}: rendered again: {}", frame.frame, *why));
+        left.job.frames.push_back(frame);
+        left.outputs.push_back(todo.outputs[i]);
+        left.checkpoints.push_back(todo.checkpoints[i]);
+    }
+    left.skipped = todo.outputs.size() - left.outputs.size();
+    todo = std::move(left);
+}
+
+Todo what_to_do(const Shot& shot, const RenderOptions& options, FrameStamps& stamps, TextProgress& progress,
+                Failures& failures) {
+    Todo todo;
+    todo.job = usable_frames(shot, options, progress, failures);
+    todo.outputs = name_outputs(shot, options.output, todo.job.frames, todo.job.several);
+    check_outputs(todo.outputs, options.input, options.make_folders);
+    todo.checkpoints =
+        plan_checkpoints(shot, options.checkpoint, todo.job.frames, todo.outputs, options.input, todo.job.several);
+    if (options.skip_existing)
+        leave_out_finished(todo, shot, stamps, progress);
+    return todo;
+}
+
+std::vector<std::string> files_on_disk(const FrameOutput& output) {
+    std::vector<std::string> files;
+    std::error_code error;
+    for (const fs::path& file : files_of(output))
+        if (fs::exists(file, error))
+            files.push_back(file.string());
+    return files;
+}
+
+// "4 frames written in 2.4 s: out/f.0010.exr to out/f.0013.exr; 2 were finished before; 1 failed"
+void say_what_was_written(const std::vector<std::string>& images, std::size_t skipped, std::size_t failed,
+                          TextProgress& progress) {
+    const std::string head = fmt::format("{} frame{} written", images.size(), images.size() == 1 ? "" : "s");
+    std::string tail;
+    if (!images.empty())
+        tail += ": " + images.front() + (images.size() > 1 ? " to " + images.back() : "");
+    if (skipped > 0)
+        tail += fmt::format("; {} {} finished before", skipped, skipped == 1 ? "was" : "were");
+    if (failed > 0)
+        tail += fmt::format("; {} failed", failed);
+    progress.summary(head, tail,
+                     {{"written", images.size()}, {"skipped", skipped}, {"failed", failed}, {"images", images}});
+}
+
+ExitCode render_all(Shot& shot, Todo& todo, const RenderOptions& options, FrameStamps& stamps, TextProgress& progress,
+                    Failures& failures) {
+    const std::vector<FrameFile>& frames = todo.job.frames;
+    progress.begin_sequence(frames.size());
     SharedChoice choice;
     if (!frames.empty()) {
         choice = choose_for_all(shot, progress);
         choice.exposure_stops = exposure_for_all(shot, progress);
     }
     PngExposure exposure(shot, choice);
+    std::vector<std::string> images;
+    KeptInputs kept;
     for (std::size_t i = 0; i < frames.size(); ++i) {
         const FrameFile& frame = frames[i];
         progress.begin_frame(frame.frame, frame.file.string(), i, frames.size());
+        kept.next = i + 1 < frames.size() ? std::optional(frames[i + 1]) : std::nullopt;
         const auto work = [&] {
-            RenderedFrame rendered = render_frame(shot, frame.file, frame.frame, progress, checkpoints[i]);
+            const std::string stamp = stamps.of(frame);  // before the files are read: they may change
+            RenderedFrame rendered = render_frame(shot, frame.file, frame.frame, progress, todo.checkpoints[i], &kept);
+            rendered.metadata.text[kStampKey] = stamp;
             choice.note(i == 0, rendered);
-            write_frame(rendered, shot, frame.file, outputs[i], exposure, progress);
-            if (!look_file.empty())
-                write_look(*loaded.look, std::exchange(look_file, {}));
+            write_frame(rendered, shot, frame.file, todo.outputs[i], exposure, progress);
+            if (!todo.look_file.empty())
+                write_look(*todo.look, std::exchange(todo.look_file, {}));
             if (options.explain)
                 progress.say(without_last_newline(rendered.statistics.explain()));
         };
         const std::string what = frames.size() > 1 ? fmt::format("frame {}: ", frame.frame) : "";
-        if (!attempt(what, work, progress, failures) && !options.keep_going)
+        const bool done = attempt(what, work, progress, failures);
+        if (!done && !options.keep_going)
             break;
+        progress.end_frame(frame.frame, done ? files_on_disk(todo.outputs[i]) : std::vector<std::string>{});
+        if (done)
+            images.push_back(todo.outputs[i].exr.string());
     }
+    progress.finish();
     if (failures.count > 0 && options.keep_going)
         progress.say(fmt::format("{} frame{} failed", failures.count, failures.count == 1 ? "" : "s"));
-    progress.finish();
-    return static_cast<int>(failures.first);
+    say_what_was_written(images, todo.skipped, failures.count, progress);
+    return failures.first;
 }
 
-int run_plan(const RenderOptions& options) {
+}  // namespace
+
+int run_render(const RenderOptions& options) {
     TextProgress progress(options.progress);
     const ThreadLimit limit(options.threads);
-    Shot shot = load(options, progress).shot;
+    const LoadedShot loaded = load_for(options, progress);
+    Shot shot = loaded.shot;
+    if (options.print_config) {
+        progress.finish();
+        std::fputs(to_json(shot).c_str(), stdout);
+        return static_cast<int>(ExitCode::Success);
+    }
+    if (options.list_inputs)
+        return list_inputs(shot, options, progress);
     Failures failures;
-    const std::vector<FrameFile> frames = usable_frames(shot, options, progress, failures);
-    if (frames.empty())
-        return static_cast<int>(failures.first);
-    const std::vector<FrameOutput> outputs =
-        plan_outputs(shot, options.output, frames, options.input, options.make_folders);
-    choose_for_all(shot, progress);
-    const Statistics plan = plan_frame(shot, frames.front().file, frames.front().frame, progress);
-    progress.finish();
-    for (std::size_t i = 0; i < frames.size(); ++i)
-        fmt::print("frame {}: {} -> {}\n", frames[i].frame, frames[i].file.string(), outputs[i].exr.string());
-    fmt::print("{}{}\n", frames.size() > 1 ? fmt::format("plan of frame {}\n", frames.front().frame) : "",
-               without_last_newline(plan.explain()));
-    return static_cast<int>(failures.first);
+    FrameStamps stamps(shot, BRISANCE_VERSION, deciding_files(shot));
+    Todo todo = what_to_do(shot, options, stamps, progress, failures);
+    if (loaded.look && shot.output.statistics && !todo.job.frames.empty()) {
+        todo.look = loaded.look;
+        todo.look_file = plan_look(shot, options.output, todo.job.several, options.input);
+    }
+    return static_cast<int>(render_all(shot, todo, options, stamps, progress, failures));
 }
 
 }  // namespace brisance

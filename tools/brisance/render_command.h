@@ -1,4 +1,4 @@
-// `brisance render` and `brisance plan`.
+// `brisance render`.
 #pragma once
 
 #include <string>
@@ -23,8 +23,12 @@ struct RenderOptions {
     std::vector<std::string> debug;  // pictures of how a method works: kDebugVirtualLights
     bool certify = false;            // also where the shot does not enable it
     int threads = 0;                 // 0: all processors
+    int task_index = 0;              // from 0
+    int task_count = 0;              // of the farm; 0: this process renders all frames
     bool explain = false;
     bool print_config = false;
+    bool list_inputs = false;
+    bool skip_existing = false;
     bool keep_going = false;
     bool make_folders = false;
     ProgressStyle progress = ProgressStyle::Automatic;
@@ -33,8 +37,5 @@ struct RenderOptions {
 // Renders every frame and writes the paths of finished files to standard output. Returns the exit code, with
 // --keep-going that of a failed frame. Throws Error for everything that concerns all frames.
 int run_render(const RenderOptions& options);
-
-// Prints what a render would read and do, to standard output. Throws Error.
-int run_plan(const RenderOptions& options);
 
 }  // namespace brisance

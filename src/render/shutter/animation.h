@@ -12,7 +12,7 @@ namespace brisance {
 // At a time in frames from the frame itself; empty: it stands still.
 struct Animation {
     std::function<CameraSettings(double)> camera;
-    std::function<std::unique_ptr<Surroundings>(double)> surroundings;
+    std::function<std::shared_ptr<const Surroundings>(double)> surroundings;
 };
 
 // Whether all surfaces and lights are where they are in the other.

@@ -24,7 +24,7 @@ struct Instant {
     const Surroundings* surroundings = nullptr;
     std::unique_ptr<Camera> camera;
     std::unique_ptr<Medium> own_medium;
-    std::unique_ptr<Surroundings> own_surroundings;
+    std::shared_ptr<const Surroundings> own_surroundings;
 };
 
 class OpenShutter {

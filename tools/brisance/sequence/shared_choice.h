@@ -1,8 +1,10 @@
 // What all frames of a sequence share, decided by the files on disk, whichever frames are rendered.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/progress.h"
 #include "render/choose_method.h"
@@ -28,6 +30,9 @@ SharedChoice choose_for_all(Shot& shot, Progress& progress);
 // Of sequences with output.exposure_stops "auto" and more than one frame on disk: the exposure of a small picture of
 // the largest file that is not black. Nothing else, and nothing where no frame can be read.
 std::optional<float> exposure_for_all(const Shot& shot, Progress& progress);
+
+// The files by which something is chosen for all frames.
+std::vector<std::filesystem::path> deciding_files(const Shot& shot);
 
 std::string exposure_notice(float stops, const std::string& chosen_from);
 

@@ -20,18 +20,26 @@ namespace fs = std::filesystem;
 constexpr float kTrialError = 0.1f;  // lighting.error of a trial picture
 constexpr int kTrialSamples = 16;    // of its pixels, with method path
 
+// All frames on disk; none where there are fewer than two, and a frame chooses for itself.
+std::vector<FrameFile> largest_first(const Shot& shot) {
+    if (volume_pattern(shot).empty())
+        return {};
+    std::vector<FrameFile> all = resolve_frames(shot, std::nullopt);
+    std::erase_if(all, [](const FrameFile& f) { return f.file.empty(); });
+    if (all.size() < 2)
+        return {};
+    std::ranges::stable_sort(all, std::greater(), [](const FrameFile& f) { return fs::file_size(f.file); });
+    return all;
+}
+
 // What all frames share, by the largest file on disk that can be read, whichever frames this call renders. `choose`
 // takes a file. Nothing where there is one frame, which chooses for itself.
 template <class Choose>
 auto by_largest_file(const Shot& shot, const char* what, const Choose& choose, Progress& progress)
     -> std::optional<decltype(choose(FrameFile{}))> {
-    if (volume_pattern(shot).empty())
+    const std::vector<FrameFile> all = largest_first(shot);
+    if (all.empty())
         return std::nullopt;
-    std::vector<FrameFile> all = resolve_frames(shot, std::nullopt);
-    std::erase_if(all, [](const FrameFile& f) { return f.file.empty(); });
-    if (all.size() < 2)
-        return std::nullopt;
-    std::ranges::stable_sort(all, std::greater(), [](const FrameFile& f) { return fs::file_size(f.file); });
     for (const FrameFile& frame : all)
         try {
             return choose(frame);
@@ -89,6 +97,10 @@ Shot trial_of(const Shot& given) {
     return shot;
 }
 
+bool wants_png_exposure(const Shot& shot) {
+    return !shot.exposure_given && (shot.output.png || shot.output.virtual_lights);
+}
+
 }  // namespace
 
 void SharedChoice::note(bool first, RenderedFrame& frame) const {
@@ -110,7 +122,7 @@ std::string exposure_notice(float stops, const std::string& chosen_from) {
 }
 
 std::optional<float> exposure_for_all(const Shot& shot, Progress& progress) {
-    if (shot.exposure_given || !(shot.output.png || shot.output.virtual_lights))
+    if (!wants_png_exposure(shot))
         return std::nullopt;
     const auto choose = [&](const FrameFile& frame) -> std::optional<float> {
         if (frame.file.empty())
@@ -139,6 +151,13 @@ SharedChoice choose_for_all(Shot& shot, Progress& progress) {
     if (out.method)
         shot = with_method(shot, *out.method);
     return out;
+}
+
+std::vector<fs::path> deciding_files(const Shot& shot) {
+    if (shot.method != RenderMethod::Automatic && !(shot.seconds > 0.0) && !wants_png_exposure(shot))
+        return {};
+    const std::vector<FrameFile> all = largest_first(shot);
+    return all.empty() ? std::vector<fs::path>{} : std::vector<fs::path>{all.front().file.lexically_normal()};
 }
 
 }  // namespace brisance

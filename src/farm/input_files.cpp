@@ -1,0 +1,57 @@
+#include "farm/input_files.h"
+
+#include <algorithm>
+
+#include "render/volume_in_time.h"
+#include "scene/gltf/gltf_inputs.h"
+
+namespace brisance {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+void add_once(std::vector<fs::path>& files, const fs::path& file) {
+    const fs::path plain = file.lexically_normal();
+    if (std::find(files.begin(), files.end(), plain) == files.end())
+        files.push_back(plain);
+}
+
+}  // namespace
+
+std::vector<fs::path> volume_files(const Shot& shot, const FrameFile& frame) {
+    std::vector<fs::path> files;
+    const auto add = [&](const SourceFiles& volume) {
+        for (const fs::path& file : {volume.first, volume.second})
+            if (!file.empty())
+                add_once(files, file);
+    };
+    if (shot.time.identity())
+        add({frame.file, frame.file, {}});
+    else
+        add(own_files(shot, frame.frame));
+    for (const FurtherVolume& v : shot.volumes)
+        if (!v.volume.box)
+            add(source_files((shot.folder / v.volume.file).string(), time_of(shot, v), frame.frame));
+    return files;
+}
+
+std::vector<fs::path> set_files(const Shot& shot) {
+    std::vector<fs::path> files;
+    for (const SceneFile& scene : shot.scene.files)
+        for (const fs::path& file : files_of_gltf(shot.folder / scene.file))
+            add_once(files, file);
+    for (const LightSettings& light : shot.scene.lights)
+        if (light.kind == LightKind::Environment && !light.file.empty())
+            add_once(files, shot.folder / light.file);
+    return files;
+}
+
+std::vector<fs::path> input_files(const Shot& shot, const FrameFile& frame) {
+    std::vector<fs::path> files = volume_files(shot, frame);
+    for (const fs::path& file : set_files(shot))
+        add_once(files, file);
+    return files;
+}
+
+}  // namespace brisance

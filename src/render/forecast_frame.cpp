@@ -1,0 +1,98 @@
+#include "render/forecast_frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "camera/camera.h"
+#include "core/stopwatch.h"
+#include "forecast/costs.h"
+#include "forecast/memory_need.h"
+#include "forecast/plan.h"
+#include "render/choose_method.h"
+#include "render/frame_input.h"
+#include "render/time_budget.h"
+
+namespace brisance {
+
+namespace {
+
+constexpr std::size_t kPilotPixelsOfForecast = 1024;
+// Of the program itself with its libraries, and of what it keeps for each pixel: the layers, and two more such sets
+// while they are written.
+constexpr std::uint64_t kProgramBytes = std::uint64_t{80} << 20, kPictures = 3;
+// The path tracer's fields and majorants, for each byte of the medium.
+constexpr std::uint64_t kTracerMedia = 2;
+
+std::uint64_t picture_bytes(const CameraSettings& camera, std::size_t cells) {
+    const std::uint64_t channels = 4 + 3 * cells + 2;
+    return kPictures * channels * sizeof(float) * std::uint64_t(camera.width) * std::uint64_t(camera.height);
+}
+
+std::uint64_t bytes_needed(const Shot& shot, const FrameInput& input, const Plan& plan, const Statistics& read) {
+    std::uint64_t grids = 0;
+    for (const StageCost& stage : read.stages)
+        grids += stage.name == "reading" ? stage.bytes : 0;
+    const std::uint64_t medium = input.medium.bytes();
+    const std::uint64_t work = shot.method == RenderMethod::Path
+                                   ? kTracerMedia * medium
+                                   : bytes_to_light(input.medium, plan.directional, shot.lighting.memory_limit_bytes);
+    return kProgramBytes + picture_bytes(input.camera, plan.cells().size()) + medium +
+           (input.surroundings ? input.surroundings->bytes() : 0) + std::max(grids, work);
+}
+
+// Core seconds of the path tracer; none where it stops by nothing that is known.
+std::optional<double> path_seconds(const Shot& shot, const FrameInput& input) {
+    const PathTracer tracer(input.medium, shot.tracing, shot.scattering.bounces, input.surroundings.get());
+    const PathPilot pilot = trace_pilot(tracer, Camera(input.camera, input.medium), kPilotPixelsOfForecast);
+    double samples = shot.tracing.samples;
+    if (shot.tracing.error > 0.0) {
+        const double for_error = pilot.square_error / (shot.tracing.error * shot.tracing.error);
+        samples = samples > 0.0 ? std::min(samples, for_error) : for_error;
+    }
+    if (!(samples > 0.0))
+        return std::nullopt;
+    const double pixels = double(input.camera.width) * input.camera.height;
+    return tracer_seconds(input.medium) + pilot.ray_seconds() * samples * pixels;
+}
+
+void add_seconds(FrameForecast& out, const Shot& shot, const FrameInput& input, const Plan& plan, double spent,
+                 double speed) {
+    std::optional<double> core;
+    if (shot.method == RenderMethod::Path)
+        core = path_seconds(shot, input);
+    else if (!plan.surfaces && !plan.emitters && !plan.scattering_method)
+        core = (1.0 + shot.certify.belief) * grid_seconds(shot, CountedMedium(input.medium), plan, input.camera);
+    else
+        out.why_no_seconds = "surfaces, lamps and other scattering methods are not forecast for the lighting grid";
+    if (core)
+        out.seconds = spent + *core / speed;
+    if (shot.method == RenderMethod::Path && shot.tracing.seconds > 0.0)
+        out.seconds = spent + std::min(core ? *core / speed : shot.tracing.seconds, shot.tracing.seconds);
+    if (!out.seconds && out.why_no_seconds.empty())
+        out.why_no_seconds = "nothing says when the paths end";
+}
+
+}  // namespace
+
+FrameForecast forecast_frame(const Shot& given, const std::filesystem::path& volume, int frame, double speed,
+                             Progress& progress) {
+    const Stopwatch watch;
+    Statistics read;
+    const FrameInput input = load_frame(given, volume, frame, read, progress);
+    const double spent = watch.seconds();
+    const Surroundings* const around = input.surroundings.get();
+    Shot shot = given;
+    shot.camera = input.camera;
+    if (shot.seconds > 0.0)
+        shot = settings_for_time(shot, input.medium, around, input.camera, {shot.seconds, spent, speed}, progress).shot;
+    if (shot.method == RenderMethod::Automatic)
+        shot = with_method(shot, forecast_methods(shot, input.medium, around, input.camera, progress));
+    const Plan plan = plan_cells(shot, input.medium, around);
+    FrameForecast out;
+    out.cells = plan.cells();
+    out.memory_bytes = bytes_needed(shot, input, plan, read);
+    add_seconds(out, shot, input, plan, spent, speed);
+    return out;
+}
+
+}  // namespace brisance

@@ -1,0 +1,20 @@
+// `brisance plan`, and the files that frames read.
+#pragma once
+
+#include "frame_job.h"
+
+namespace brisance {
+
+struct PlanOptions {
+    RenderOptions render;
+    bool as_json = false;  // with what every frame is expected to need
+};
+
+// Prints what a render would read and do, to standard output. Throws Error.
+int run_plan(const PlanOptions& options);
+
+// Prints every file that the frames asked for read, one on each line, each once: the shot first. Returns the exit code.
+// Throws Error MissingInput for the first that is not there.
+int list_inputs(const Shot& shot, const RenderOptions& options, TextProgress& progress);
+
+}  // namespace brisance
