@@ -18,8 +18,8 @@ import sys
 from make_street import Glb, Part, car, product, turn
 
 FRAMES, RATE = 48, 24.0
-AIM = (0.0, 5.4, 0.0)            # what the camera looks at
-DISTANCE = (26.5, 29.5)          # from the axis of the blast, at the first and the last frame
+AIM = (5.6, 8.6)                 # height above the blast that the camera looks at, at the first and the last frame
+DISTANCE = (25.5, 31.0)          # of the camera from the axis of the blast
 HEIGHT = (2.2, 3.4)              # of the eye above the ground
 AZIMUTH = (-24.0, 4.0)           # degrees about the blast; 0 is +z
 
@@ -85,14 +85,14 @@ def pose(frame):
     t = eased(frame / FRAMES)
     along = lambda ends: ends[0] + (ends[1] - ends[0]) * t
     azimuth, distance, height = math.radians(along(AZIMUTH)), along(DISTANCE), along(HEIGHT)
-    pitch = math.degrees(math.atan2(AIM[1] - height, distance))
-    eye = (AIM[0] + distance * math.sin(azimuth), height, AIM[2] + distance * math.cos(azimuth))
+    pitch = math.degrees(math.atan2(along(AIM) - height, distance))
+    eye = (distance * math.sin(azimuth), height, distance * math.cos(azimuth))
     return eye, product(turn(along(AZIMUTH)), turn(pitch, 0))
 
 
 def place_camera(glb):
     lens = glb.append("cameras", {"name": "travelling", "type": "perspective",
-                                  "perspective": {"yfov": round(math.radians(30.0), 6), "aspectRatio": 16 / 9,
+                                  "perspective": {"yfov": round(math.radians(36.0), 6), "aspectRatio": 16 / 9,
                                                   "znear": 0.1}})
     poses = [pose(frame) for frame in range(FRAMES + 1)]
     node = glb.node(None, *poses[0], camera=lens, name="camera")
