@@ -55,7 +55,7 @@ class MakeBurstSet(unittest.TestCase):
         steps = [difference(b, a) for a, b in zip(eyes, eyes[1:])]
         self.assertLess(max(math.hypot(*step) for step in steps), 0.6)
         self.assertGreater(max(math.hypot(*step) for step in steps), 0.2)
-        self.assertLess(max(math.hypot(*difference(b, a)) for a, b in zip(steps, steps[1:])), 0.03)
+        self.assertLess(max(math.hypot(*difference(b, a)) for a, b in zip(steps, steps[1:])), 0.05)
 
     def test_every_triangle_has_area(self):
         for i, mesh in enumerate(self.glb.json["meshes"]):

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -235,9 +236,54 @@ void check_halves(const Reference& reference, const std::vector<Loaded>& referen
                                 references[0].file.string(), references[1].file.string()));
 }
 
-using FrameLayers = std::vector<std::pair<std::string, FrameAndReference>>;
+// A frame's layers with their references, and what is needed to follow its points into the next frame.
+struct ComparedPictures {
+    std::vector<std::pair<std::string, FrameAndReference>> layers;
+    std::optional<SeenFrame> seen;  // without a motion layer: where the file has a depth and a camera
+    std::optional<Motion> motion;   // of the motion layer
+};
 
-FrameLayers load_frame(const CompareOptions& options, const FrameFiles& files, bool first, CompareReport& report) {
+const Layer* find_layer(const Image& image, const std::string& name) {
+    for (const Layer& layer : image.layers)
+        if (layer.name == name)
+            return &layer;
+    return nullptr;
+}
+
+Plane channel_of(const Image& image, const Layer& layer, std::size_t channel) {
+    Plane plane{image.width, image.height, {}};
+    for (std::size_t i = channel; i < layer.pixels.size(); i += layer.channels.size())
+        plane.values.push_back(layer.pixels[i]);
+    return plane;
+}
+
+void load_motion(const CompareOptions& options, const Loaded& image, ComparedPictures& pictures) {
+    if (!options.motion.empty()) {
+        const Layer* const layer = find_layer(image.image, options.motion);
+        if (layer == nullptr || layer->channels.size() < 2)
+            throw Error(ExitCode::BadData, fmt::format("--motion: {} has no layer {} of two channels",
+                                                       image.file.string(), options.motion));
+        pictures.motion = motion_of_vectors(channel_of(image.image, *layer, 0), channel_of(image.image, *layer, 1));
+        return;
+    }
+    const Layer* const depth = find_layer(image.image, "Z");
+    if (depth != nullptr && depth->channels.size() == 1 && image.metadata.ndc_from_world)
+        pictures.seen = SeenFrame{channel_of(image.image, *depth, 0), *image.metadata.ndc_from_world};
+}
+
+// How points moved from `before` to `next`; absent, with a notice, where the files do not tell.
+std::optional<Motion> motion_between(const ComparedPictures& before, const ComparedPictures& next) {
+    if (next.motion)
+        return next.motion;
+    if (before.seen && next.seen)
+        return camera_motion(*next.seen, *before.seen);
+    notice(
+        "no flicker is measured: the images lack a depth Z or the camera worldToNDC; --motion names a layer of "
+        "motion vectors");
+    return std::nullopt;
+}
+
+ComparedPictures load_frame(const CompareOptions& options, const FrameFiles& files, bool first, CompareReport& report) {
     const Loaded image = load(files.image);
     std::vector<Loaded> references;
     for (const fs::path& file : files.references)
@@ -253,10 +299,12 @@ FrameLayers load_frame(const CompareOptions& options, const FrameFiles& files, b
         notice_missing_shots(all);
     const std::vector<std::string> layers = layers_to_compare(options, all, objections);
     settle(objections, options.force, report);
-    FrameLayers result;
+    ComparedPictures result;
     for (const std::string& layer : layers)
-        result.emplace_back(layer, layer_and_reference(image, references, layer));
-    check_halves(result.front().second.reference, references);
+        result.layers.emplace_back(layer, layer_and_reference(image, references, layer));
+    check_halves(result.layers.front().second.reference, references);
+    if (has_frame_token(options.image))
+        load_motion(options, image, result);
     const bool numbered = has_frame_token(options.image);
     report.frames.push_back({numbered ? std::optional(files.frame) : image.metadata.frame,
                              files.image,
@@ -266,9 +314,9 @@ FrameLayers load_frame(const CompareOptions& options, const FrameFiles& files, b
     return result;
 }
 
-void compare_frame(const CompareOptions& options, const FrameFiles& files, const FrameLayers& layers,
+void compare_frame(const CompareOptions& options, const FrameFiles& files, const ComparedPictures& pictures,
                    ComparedFrame& frame) {
-    for (const auto& [layer, pair] : layers) {
+    for (const auto& [layer, pair] : pictures.layers) {
         Comparison comparison = compare(pair.image, pair.reference, options.pixels_per_degree);
         if (frame.layers.empty() && !files.flip_map.empty())
             write_png(files.flip_map, pair.image.width, pair.image.height, false_colours(comparison.flip.errors));
@@ -279,15 +327,42 @@ void compare_frame(const CompareOptions& options, const FrameFiles& files, const
     }
 }
 
-ComparedChange compare_step(const FrameFiles& files, const FrameLayers& layers, const FrameFiles& next_files,
-                            const FrameLayers& next) {
+ComparedChange compare_step(const FrameFiles& files, const ComparedPictures& before, const FrameFiles& next_files,
+                            const ComparedPictures& next) {
     ComparedChange change{files.frame, next_files.frame, {}};
-    for (const auto& [layer, pair] : layers)
-        for (const auto& [next_layer, next_pair] : next)
-            if (layer == next_layer)
-                change.layers.emplace_back(layer, compare_changes(pair, next_pair));
+    const std::optional<Motion> motion = motion_between(before, next);
+    for (const auto& [layer, pair] : before.layers)
+        for (const auto& [next_layer, next_pair] : next.layers)
+            if (layer == next_layer) {
+                ChangeErrors errors{compare_changes(pair, next_pair), std::nullopt};
+                if (motion)
+                    errors.flicker = measure_flicker(pair, next_pair, *motion);
+                change.layers.emplace_back(layer, std::move(errors));
+            }
     return change;
 }
+
+// Errors over time by layer. A layer that some frame lacks has none.
+class Spectra {
+public:
+    explicit Spectra(std::size_t frames) : frames_(frames) {}
+    void add(const ComparedPictures& pictures) {
+        if (frames_ >= kSpectrumFrames)
+            for (const auto& [layer, pair] : pictures.layers)
+                errors_[layer].add(pair);
+    }
+    std::vector<std::pair<std::string, TemporalSpectrum>> spectra() const {
+        std::vector<std::pair<std::string, TemporalSpectrum>> result;
+        for (const auto& [layer, errors] : errors_)
+            if (errors.frames() == frames_)
+                result.emplace_back(layer, errors.spectrum());
+        return result;
+    }
+
+private:
+    std::size_t frames_;
+    std::map<std::string, ErrorOverTime> errors_;
+};
 
 }  // namespace
 
@@ -298,14 +373,17 @@ int run_compare(const CompareOptions& options) {
         limits.push_back(parse_limit(limit, options.references.size() > 1, files.size() > 1));
     CompareReport report;
     report.pixels_per_degree = options.pixels_per_degree;
-    FrameLayers before;
+    ComparedPictures before;
+    Spectra spectra(files.size());
     for (std::size_t i = 0; i < files.size(); ++i) {
-        FrameLayers layers = load_frame(options, files[i], i == 0, report);
-        compare_frame(options, files[i], layers, report.frames.back());
+        ComparedPictures pictures = load_frame(options, files[i], i == 0, report);
+        compare_frame(options, files[i], pictures, report.frames.back());
+        spectra.add(pictures);
         if (i > 0)
-            report.changes.push_back(compare_step(files[i - 1], before, files[i], layers));
-        before = std::move(layers);
+            report.changes.push_back(compare_step(files[i - 1], before, files[i], pictures));
+        before = std::move(pictures);
     }
+    report.spectra = spectra.spectra();
     const std::vector<std::string> exceeded = exceeded_limits(report, limits);
     std::fputs((options.as_json ? report_json(report, exceeded) : report_text(report)).c_str(), stdout);
     for (const std::string& line : exceeded)

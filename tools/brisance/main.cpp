@@ -122,6 +122,13 @@ void add_compare_options(CLI::App& command, CompareOptions& options) {
                     "A layer, or a sum of layers (V+MV), instead of the beauty; an EXR of one layer stands for it")
         ->excludes(cells);
     command.add_flag("--json", options.as_json, "As JSON");
+    command
+        .add_option(
+            "--motion", options.motion,
+            "Of a sequence: the layer of IMAGE with motion vectors, two channels that lead from a pixel to where "
+            "its point was in the frame before [pixels, x right, y down]; without it, flicker is measured along "
+            "the movement of the cameras at the depth Z")
+        ->type_name("LAYER");
     command.add_option("--flip-map", options.flip_map,
                        "A PNG of the errors that HDR-FLIP sees: black 0, violet, red, pale yellow 1");
     command
