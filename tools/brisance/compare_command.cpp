@@ -15,7 +15,9 @@
 #include "film/write_image.h"
 #include "metrics/false_colour.h"
 #include "metrics/layers.h"
+#include "motion_source.h"
 #include "shot/scene_differences.h"
+#include "spectrum_page.h"
 #include "volume/frame_path.h"
 
 namespace brisance {
@@ -239,49 +241,8 @@ void check_halves(const Reference& reference, const std::vector<Loaded>& referen
 // A frame's layers with their references, and what is needed to follow its points into the next frame.
 struct ComparedPictures {
     std::vector<std::pair<std::string, FrameAndReference>> layers;
-    std::optional<SeenFrame> seen;  // without a motion layer: where the file has a depth and a camera
-    std::optional<Motion> motion;   // of the motion layer
+    MotionSource motion;
 };
-
-const Layer* find_layer(const Image& image, const std::string& name) {
-    for (const Layer& layer : image.layers)
-        if (layer.name == name)
-            return &layer;
-    return nullptr;
-}
-
-Plane channel_of(const Image& image, const Layer& layer, std::size_t channel) {
-    Plane plane{image.width, image.height, {}};
-    for (std::size_t i = channel; i < layer.pixels.size(); i += layer.channels.size())
-        plane.values.push_back(layer.pixels[i]);
-    return plane;
-}
-
-void load_motion(const CompareOptions& options, const Loaded& image, ComparedPictures& pictures) {
-    if (!options.motion.empty()) {
-        const Layer* const layer = find_layer(image.image, options.motion);
-        if (layer == nullptr || layer->channels.size() < 2)
-            throw Error(ExitCode::BadData, fmt::format("--motion: {} has no layer {} of two channels",
-                                                       image.file.string(), options.motion));
-        pictures.motion = motion_of_vectors(channel_of(image.image, *layer, 0), channel_of(image.image, *layer, 1));
-        return;
-    }
-    const Layer* const depth = find_layer(image.image, "Z");
-    if (depth != nullptr && depth->channels.size() == 1 && image.metadata.ndc_from_world)
-        pictures.seen = SeenFrame{channel_of(image.image, *depth, 0), *image.metadata.ndc_from_world};
-}
-
-// How points moved from `before` to `next`; absent, with a notice, where the files do not tell.
-std::optional<Motion> motion_between(const ComparedPictures& before, const ComparedPictures& next) {
-    if (next.motion)
-        return next.motion;
-    if (before.seen && next.seen)
-        return camera_motion(*next.seen, *before.seen);
-    notice(
-        "no flicker is measured: the images lack a depth Z or the camera worldToNDC; --motion names a layer of "
-        "motion vectors");
-    return std::nullopt;
-}
 
 ComparedPictures load_frame(const CompareOptions& options, const FrameFiles& files, bool first, CompareReport& report) {
     const Loaded image = load(files.image);
@@ -304,7 +265,7 @@ ComparedPictures load_frame(const CompareOptions& options, const FrameFiles& fil
         result.layers.emplace_back(layer, layer_and_reference(image, references, layer));
     check_halves(result.layers.front().second.reference, references);
     if (has_frame_token(options.image))
-        load_motion(options, image, result);
+        result.motion = motion_source(image.file, image.image, image.metadata, options.motion);
     const bool numbered = has_frame_token(options.image);
     report.frames.push_back({numbered ? std::optional(files.frame) : image.metadata.frame,
                              files.image,
@@ -330,7 +291,11 @@ void compare_frame(const CompareOptions& options, const FrameFiles& files, const
 ComparedChange compare_step(const FrameFiles& files, const ComparedPictures& before, const FrameFiles& next_files,
                             const ComparedPictures& next) {
     ComparedChange change{files.frame, next_files.frame, {}};
-    const std::optional<Motion> motion = motion_between(before, next);
+    const std::optional<Motion> motion = motion_between(before.motion, next.motion);
+    if (!motion)
+        notice(
+            "no flicker is measured: the images lack a depth Z or the camera worldToNDC; --motion names a layer of "
+            "motion vectors");
     for (const auto& [layer, pair] : before.layers)
         for (const auto& [next_layer, next_pair] : next.layers)
             if (layer == next_layer) {
@@ -371,6 +336,11 @@ int run_compare(const CompareOptions& options) {
     std::vector<Limit> limits;
     for (const std::string& limit : options.limits)
         limits.push_back(parse_limit(limit, options.references.size() > 1, files.size() > 1));
+    if (!options.spectrum.empty() && files.size() < kSpectrumFrames)
+        throw Error(ExitCode::Usage,
+                    fmt::format("--spectrum: {} frames are too few; {} are needed", files.size(), kSpectrumFrames));
+    if (!options.spectrum.empty())
+        check_writable(options.spectrum);
     CompareReport report;
     report.pixels_per_degree = options.pixels_per_degree;
     ComparedPictures before;
@@ -384,6 +354,9 @@ int run_compare(const CompareOptions& options) {
         before = std::move(pictures);
     }
     report.spectra = spectra.spectra();
+    if (!options.spectrum.empty())
+        write_text(options.spectrum,
+                   spectrum_page(options.image + " against " + options.references.front(), report.spectra));
     const std::vector<std::string> exceeded = exceeded_limits(report, limits);
     std::fputs((options.as_json ? report_json(report, exceeded) : report_text(report)).c_str(), stdout);
     for (const std::string& line : exceeded)

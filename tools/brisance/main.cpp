@@ -19,6 +19,7 @@
 #include "core/error.h"
 #include "core/printable.h"
 #include "film/whole_file.h"
+#include "flicker_command.h"
 #include "inspect.h"
 #include "render_command.h"
 #include "shot/nearest_key.h"
@@ -36,7 +37,7 @@ using namespace brisance;
 
 constexpr const char* kExitCodes = R"(Exit codes:
   0    all frames written
-  1    rendering failed; a measure of compare is above its --fail-above
+  1    rendering failed; a measure of compare or flicker is above its --fail-above
   2    command line or shot file: unknown key, wrong type, value out of range
   65   a file exists but cannot be used: not a VDB, truncated, no usable grid; images that do not compare;
        a checkpoint of another render
@@ -129,6 +130,8 @@ void add_compare_options(CLI::App& command, CompareOptions& options) {
             "its point was in the frame before [pixels, x right, y down]; without it, flicker is measured along "
             "the movement of the cameras at the depth Z")
         ->type_name("LAYER");
+    command.add_option("--spectrum", options.spectrum,
+                       "Of a sequence: a page (.html) of the error's temporal spectrum");
     command.add_option("--flip-map", options.flip_map,
                        "A PNG of the errors that HDR-FLIP sees: black 0, violet, red, pale yellow 1");
     command
@@ -316,6 +319,11 @@ private:
             add("compare", "Measures how far an EXR is from a reference", [this] { return run_compare(comparison_); });
         add_compare_options(compare, comparison_);
         compare.footer(kExitCodes);
+        CLI::App& flicker = add("flicker", "Measures how much a still changes that ought not to: no reference needed",
+                                [this] { return run_flicker(flickering_); });
+        add_flicker_options(flicker, flickering_);
+        add_common_options(flicker, flickering_);
+        flicker.footer(kExitCodes);
 #ifdef BRISANCE_REPORT
         CLI::App& report = add("report", "Measures methods against a reference: page, CSV and JSON",
                                [this] { return run_report(reported_); });
@@ -353,6 +361,7 @@ private:
     std::string file_;
     bool as_json_ = false, keys_ = false;
     CompareOptions comparison_;
+    FlickerOptions flickering_;
 #ifdef BRISANCE_REPORT
     ReportOptions reported_;
 #endif

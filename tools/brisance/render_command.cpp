@@ -18,6 +18,7 @@
 #include "outputs.h"
 #include "render/choose_method.h"
 #include "render/render_frame.h"
+#include "render/sequence_levels.h"
 #include "render/time_budget.h"
 #include "shot/write_shot.h"
 #include "volume/vdb_header.h"
@@ -256,6 +257,16 @@ std::optional<TimedSettings> one_setting(const Shot& shot, Progress& progress) {
     return by_largest_file(shot, "seconds", choose, progress);
 }
 
+// Lattices: the same for all frames.
+std::optional<Shot> one_lattice(const Shot& shot, Progress& progress) {
+    if (!leaves_levels_open(shot))
+        return std::nullopt;
+    const auto choose = [&](const FrameFile& frame) {
+        return frame.file.empty() ? shot : with_levels_of(shot, frame.file, frame.frame, progress);
+    };
+    return by_largest_file(shot, "levels", choose, progress);
+}
+
 // What was chosen for all frames, before the first.
 struct SharedChoice {
     std::optional<TimedSettings> timed;
@@ -284,6 +295,8 @@ SharedChoice choose_for_all(Shot& shot, Progress& progress) {
     out.method = one_method(shot, progress);
     if (out.method)
         shot = with_method(shot, *out.method);
+    if (const std::optional<Shot> levelled = one_lattice(shot, progress))
+        shot = *levelled;
     return out;
 }
 
