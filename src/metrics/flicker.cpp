@@ -35,23 +35,38 @@ struct HalfErrors {
           b(frame.reference.second ? error_of(frame.image, *frame.reference.second) : a) {}
 };
 
-// Sums over the pixels that count.
-struct Sums {
-    double change = 0.0, cross = 0.0, noise = 0.0, reference = 0.0, reference_cross = 0.0;
-    std::size_t pixels = 0;
-
-    void add(const Rgb& a, const Rgb& b, const Rgb& reference_a, const Rgb& reference_b) {
-        const Rgb mean = 0.5f * (a + b), half = 0.5f * (a - b), target = 0.5f * (reference_a + reference_b);
-        change += dot(mean, mean);
-        cross += dot(a, b);
-        noise += dot(half, half);
-        reference += dot(target, target);
-        reference_cross += dot(reference_a, reference_b);
-        ++pixels;
-    }
-};
+void add_pixel(FlickerSums& sums, const Rgb& a, const Rgb& b, const Rgb& reference_a, const Rgb& reference_b) {
+    const Rgb mean = 0.5f * (a + b), half = 0.5f * (a - b), target = 0.5f * (reference_a + reference_b);
+    sums.change += dot(mean, mean);
+    sums.cross += dot(a, b);
+    sums.noise += dot(half, half);
+    sums.reference += dot(target, target);
+    sums.reference_cross += dot(reference_a, reference_b);
+    ++sums.pixels;
+}
 
 }  // namespace
+
+void FlickerSums::add(const FlickerSums& more) {
+    change += more.change;
+    cross += more.cross;
+    noise += more.noise;
+    reference += more.reference;
+    reference_cross += more.reference_cross;
+    pixels += more.pixels;
+    finite += more.finite;
+}
+
+Flicker flicker_of(const FlickerSums& sums, bool halves) {
+    Flicker result;
+    result.sums = sums;
+    result.seen = sums.finite > 0 ? double(sums.pixels) / double(sums.finite) : 0.0;
+    result.error = root_ratio(sums.change, sums.reference);
+    if (halves)
+        result.halves =
+            HalvesDifferences{root_ratio(sums.cross, sums.reference_cross), root_ratio(sums.noise, sums.reference)};
+    return result;
+}
 
 Flicker measure_flicker(const FrameAndReference& frame, const FrameAndReference& next, const Motion& motion) {
     const UsableFrames usable = usable_frames(frame, next);
@@ -60,24 +75,18 @@ Flicker measure_flicker(const FrameAndReference& frame, const FrameAndReference&
     const HalfErrors before(frame), now(next);
     const Picture& first = next.reference.first;
     const Picture& second = next.reference.second ? *next.reference.second : first;
-    Sums sums;
-    std::size_t finite = 0;
+    FlickerSums sums;
     for (std::size_t i = 0; i < now.a.pixels.size(); ++i) {
         if (!usable.next[i])
             continue;
-        ++finite;
+        ++sums.finite;
         Rgb a, b;
         if (sample_before(before.a, usable.frame, motion.before[i], a) &&
             sample_before(before.b, usable.frame, motion.before[i], b))
-            sums.add(now.a.pixels[i] - a, now.b.pixels[i] - b, first.pixels[i], second.pixels[i]);
+            add_pixel(sums, now.a.pixels[i] - a, now.b.pixels[i] - b, first.pixels[i], second.pixels[i]);
     }
-    Flicker result;
+    Flicker result = flicker_of(sums, next.reference.second.has_value());
     result.not_finite = usable.not_finite;
-    result.seen = finite > 0 ? double(sums.pixels) / double(finite) : 0.0;
-    result.error = root_ratio(sums.change, sums.reference);
-    if (next.reference.second)
-        result.halves =
-            HalvesDifferences{root_ratio(sums.cross, sums.reference_cross), root_ratio(sums.noise, sums.reference)};
     return result;
 }
 

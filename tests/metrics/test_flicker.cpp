@@ -106,6 +106,21 @@ TEST(Flicker, WithHalvesIsFreeOfTheirNoise) {
     EXPECT_GT(f.error, 0.19);
 }
 
+// Pairs of frames count by their light, and together they know what is below the noise of each.
+TEST(Flicker, OfASequenceIsThatOfAllItsPairs) {
+    const auto pair = [](float level, float change) {
+        const auto frame = [&](float error) {
+            return FrameAndReference{even_picture(level + error, kWidth, kHeight),
+                                     {even_picture(level, kWidth, kHeight), std::nullopt}};
+        };
+        return measure_flicker(frame(0.0f), frame(change), motion_of_vectors(even_plane(0), even_plane(0)));
+    };
+    FlickerSums sums = pair(1.0f, 0.3f).sums;
+    sums.add(pair(3.0f, 0.1f).sums);
+    EXPECT_NEAR(flicker_of(sums, false).error, std::sqrt((0.09 + 0.01) / (1.0 + 9.0)), 1e-6);
+    EXPECT_EQ(flicker_of(sums, false).seen, 1.0);
+}
+
 TEST(Flicker, LeavesOutWhatIsNotFinite) {
     FrameAndReference first = travelling(0.0), second = travelling(0.0);
     first.image.pixels[50].x = std::numeric_limits<float>::quiet_NaN();

@@ -61,6 +61,44 @@ const std::vector<Metric<ChangeErrors>>& change_metrics() {
     return metrics;
 }
 
+const std::vector<Metric<Flicker>>& sequence_metrics() {
+    static const std::vector<Metric<Flicker>> metrics = {
+        {"flicker", [](const Flicker& f) { return std::optional(f.error); }},
+        {"flicker_noise_free", noise_free<Flicker>},
+        {"flicker_reference_noise", reference_noise<Flicker>},
+        {"seen_before", [](const Flicker& f) { return std::optional(f.seen); }},
+    };
+    return metrics;
+}
+
+// All changes together; no layers where the motion of some is not known.
+struct ComparedSequence {
+    std::vector<std::pair<std::string, Flicker>> layers;
+};
+
+ComparedSequence sequence_of(const std::vector<ComparedChange>& changes) {
+    ComparedSequence sequence;
+    if (changes.size() < 2)
+        return sequence;
+    for (const auto& [layer, first] : changes.front().layers) {
+        FlickerSums sums;
+        std::size_t known = 0;
+        for (const ComparedChange& change : changes)
+            for (const auto& [name, errors] : change.layers)
+                if (name == layer && errors.flicker) {
+                    sums.add(errors.flicker->sums);
+                    ++known;
+                }
+        if (known == changes.size())
+            sequence.layers.emplace_back(layer, flicker_of(sums, first.halves.has_value()));
+    }
+    return sequence;
+}
+
+bool is_below_noise(const Flicker& f) {
+    return f.halves && below_noise(f.error, f.halves->reference_noise);
+}
+
 bool is_below_noise(const Comparison& c) {
     return c.halves && below_noise(c.differences.rrmse, c.halves->reference_noise);
 }
@@ -289,6 +327,10 @@ std::string report_text(const CompareReport& report) {
     text.append("\n").append(metric_table(report.frames, still_metrics(), frame_of, "frame"));
     if (!report.changes.empty())
         text.append("\n").append(metric_table(report.changes, change_metrics(), frames_of, "frames"));
+    if (const ComparedSequence all = sequence_of(report.changes); !all.layers.empty())
+        text.append("\n").append(metric_table(
+            std::vector{all}, sequence_metrics(), [](const ComparedSequence&) { return std::string("all"); },
+            "frames"));
     if (!report.spectra.empty())
         text.append("\n").append(spectrum_table(report.spectra));
     return text + "\n" + not_finite_lines(report) + noise_line(report) + constants_lines(report);
@@ -309,6 +351,10 @@ std::string report_json(const CompareReport& report, const std::vector<std::stri
         json["frames"].push_back(frame_json(frame));
     for (const ComparedChange& change : report.changes)
         json["changes"].push_back(change_json(change));
+    for (const auto& [layer, flicker] : sequence_of(report.changes).layers) {
+        json["sequence"].push_back({{"layer", shown_layer(layer)}});
+        add_numbers(json["sequence"].back(), flicker, sequence_metrics());
+    }
     for (const auto& [layer, spectrum] : report.spectra) {
         Json entry = {{"layer", shown_layer(layer)}};
         entry.update(to_json(spectrum));
