@@ -622,7 +622,8 @@ class Flicker(VolumeCase):
             beauty = variant["layers"][0]
             self.assertEqual((beauty["layer"], round(beauty["share"], 6)), ("beauty", 1))
             self.assertLess(beauty["change"], 0.05, name)
-        self.assertGreater(variants["moved by 0.125 voxel"]["layers"][0]["change"], 0)
+        # Lattices are anchored to the world: whole voxels move the smoke through them.
+        self.assertGreater(variants["moved by 3, 5, 7 voxels"]["layers"][0]["change"], 0)
         self.assertTrue(variants["other seeds"]["same_bits"])  # nothing in this picture is drawn by chance
 
     def test_noise_is_seen_and_fails(self):

@@ -24,8 +24,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kMove = 0.125;  // voxels, along each axis
-constexpr int kPadding = 29;     // voxels: no multiple of the lattices' bricks
+constexpr double kMove = 0.125;        // voxels, along each axis
+const dvec3 kMoveOfLattices(3, 5, 7);  // voxels: bricks and the levels of hierarchies lie elsewhere in the smoke
+constexpr int kPadding = 29;           // voxels: no multiple of the lattices' bricks
 const char* const kOtherSeed = "104729";
 
 // Every key that chooses random numbers.
@@ -83,6 +84,7 @@ std::vector<Variant> variants_of(const Shot& shot, const FrameInput& input, cons
     if (input.medium.lattice.brick_count() > 0) {
         variants.push_back(
             {fmt::format("moved by {:g} voxel", kMove), moved(shot, dvec3(kMove * double(input.medium.spacing)))});
+        variants.push_back({"moved by 3, 5, 7 voxels", moved(shot, kMoveOfLattices * double(input.medium.spacing))});
         variants.push_back({fmt::format("{} more voxels of padding", kPadding), padded(shot, input.medium, kPadding)});
     }
     std::vector<std::string> seeded = options.overrides;

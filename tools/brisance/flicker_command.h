@@ -27,9 +27,9 @@ struct FlickerOptions {
 // Options of the command alone; those of all commands that render come besides.
 void add_flicker_options(CLI::App& command, FlickerOptions& options);
 
-// Renders one frame again with nothing changed, moved by an eighth of a voxel together with its camera, in a larger
-// bounding box, and with other seeds, and prints by how much picture and layers change. Returns 1 when the picture of a
-// variant changes by more than `fail_above`, else 0. Throws Error.
+// Renders one frame again with nothing changed, moved by an eighth of a voxel and by whole ones together with its
+// camera, in a larger bounding box, and with other seeds, and prints by how much picture and layers change. Returns 1
+// when the picture of a variant changes by more than `fail_above`, else 0. Throws Error.
 int run_flicker(const FlickerOptions& options);
 
 }  // namespace brisance
