@@ -394,6 +394,17 @@ class Rendering(VolumeCase):
         self.assertIn("2 frames failed", done.stderr)
         self.assertEqual(self.outputs(), ["a.1.exr", "a.4.exr"])
 
+    def test_every_chunk_of_a_sequence_has_the_lattices_of_its_largest_file(self):
+        pattern = self.make_sequence([1, 2, 3])
+        with open(self.folder / "burst_0002.vdb", "ab") as largest:
+            largest.write(b"\0" * 64)
+        for frame in (1, 3):
+            self.expect(0, "render", pattern, *SMALL, "-f", frame, "-o", self.out,
+                        says="lattices of all frames, by the largest file, burst_0002.vdb: lighting.levels=")
+        done = self.expect(0, "render", pattern, *SMALL, "-f", 1, "-o", self.out, "--set", "lighting.levels=4",
+                           "--set", "scattering.lattice_level=0")
+        self.assertNotIn("lattices of all frames", done.stderr)
+
     def test_damaged_frame_stops_the_rest(self):
         pattern = self.make_sequence([1, 2])
         (self.folder / "burst_0002.vdb").write_text("damaged", encoding="utf-8")
