@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "render/volume_in_time.h"
+#include "render/input/volume_in_time.h"
 #include "scene/gltf/gltf_inputs.h"
 
 namespace brisance {

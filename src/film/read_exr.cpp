@@ -4,6 +4,7 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfTestFile.h>
 #include <fmt/format.h>
@@ -128,6 +129,15 @@ Image read_layers(const std::filesystem::path& file) {
     return image;
 }
 
+// Imath's rows applied to row vectors are GLM's columns applied to column vectors.
+dmat4 matrix_of(const Imath::M44f& m) {
+    dmat4 result;
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j)
+            result[i][j] = double(m[i][j]);
+    return result;
+}
+
 ExrMetadata read_header(const std::filesystem::path& file) {
     const Imf::InputFile input(file.c_str());
     ExrMetadata metadata;
@@ -138,6 +148,8 @@ ExrMetadata read_header(const std::filesystem::path& file) {
         metadata.frame = frame->value();
     if (const auto* const seconds = input.header().findTypedAttribute<Imf::FloatAttribute>("renderTimeSeconds"))
         metadata.render_seconds = seconds->value();
+    if (Imf::hasWorldToNDC(input.header()))
+        metadata.ndc_from_world = matrix_of(Imf::worldToNDC(input.header()));
     return metadata;
 }
 

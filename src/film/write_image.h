@@ -46,6 +46,7 @@ Image read_exr(const std::filesystem::path& file);
 struct ExrMetadata {
     std::optional<int> frame;                 // imageCounter
     std::optional<double> render_seconds;     // renderTimeSeconds
+    std::optional<dmat4> ndc_from_world;      // worldToNDC: x to the right, y down in [0, 1], over w, the depth
     std::map<std::string, std::string> text;  // every text attribute by its name: "brisance/shot", "comments", ...
 };
 

@@ -125,6 +125,18 @@ Comparison compare(const Picture& image, const Reference& reference, double pixe
     return result;
 }
 
+UsableFrames usable_frames(const FrameAndReference& frame, const FrameAndReference& next) {
+    check_frames(frame, next);
+    const std::vector<const Picture*> image = {&frame.image}, next_image = {&next.image},
+                                      both_images = {&frame.image, &next.image};
+    const std::vector<const Picture*> reference = pictures_of(frame.reference),
+                                      next_reference = pictures_of(next.reference);
+    std::vector<const Picture*> both_references = reference;
+    both_references.insert(both_references.end(), next_reference.begin(), next_reference.end());
+    return {usable_pixels(image, reference).pixel, usable_pixels(next_image, next_reference).pixel,
+            usable_pixels(both_images, both_references).not_finite};
+}
+
 TemporalError compare_changes(const FrameAndReference& frame, const FrameAndReference& next) {
     check_frames(frame, next);
     const std::vector<const Picture*> images = {&frame.image, &next.image};

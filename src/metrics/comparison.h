@@ -47,7 +47,14 @@ struct TemporalError {
     std::optional<HalvesDifferences> halves;  // the same of the changes, with two halves
 };
 
+// Which pixels are finite in the image and the reference of each of two frames.
+struct UsableFrames {
+    std::vector<bool> frame, next;
+    NotFinite not_finite;  // in either
+};
+
 // All of one size and with as many halves. Throws Error BadData when they are not.
+UsableFrames usable_frames(const FrameAndReference& frame, const FrameAndReference& next);
 TemporalError compare_changes(const FrameAndReference& frame, const FrameAndReference& next);
 
 }  // namespace brisance

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "render/load_medium.h"
-#include "render/volume_in_time.h"
+#include "render/input/load_medium.h"
+#include "render/input/volume_in_time.h"
 #include "shot/keys/keys.h"
 
 namespace brisance {

@@ -12,12 +12,12 @@
 #include "reference/trace_picture.h"
 #include "render/believe.h"
 #include "render/checkpoint_key.h"
-#include "render/choose_method.h"
+#include "render/choice/choose_method.h"
+#include "render/choice/time_budget.h"
 #include "render/draw.h"
-#include "render/frame_input.h"
-#include "render/kept_inputs.h"
+#include "render/input/frame_input.h"
+#include "render/input/kept_inputs.h"
 #include "render/shutter/open_shutter.h"
-#include "render/time_budget.h"
 
 namespace brisance {
 

@@ -8,7 +8,7 @@
 #include "camera/camera.h"
 #include "core/error.h"
 #include "reference/trace_picture.h"
-#include "render/frame_input.h"
+#include "render/input/frame_input.h"
 #include "render/shutter/open_shutter.h"
 
 namespace brisance {

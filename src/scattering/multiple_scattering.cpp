@@ -10,6 +10,7 @@
 #include "medium/phase.h"
 #include "medium/thin_smoke.h"
 #include "scattering/coarse_operator.h"
+#include "scattering/lattice_level.h"
 
 namespace brisance {
 
@@ -43,6 +44,14 @@ int choose_level(const ExtinctionPyramid& pyramid, int wish) {
         ++level;
     return level;
 }
+
+}  // namespace
+
+int automatic_lattice_level(const ExtinctionPyramid& pyramid) {
+    return choose_level(pyramid, -1);
+}
+
+namespace {
 
 // What is known of the bounces still to come, colour by colour: the geometric series of the last ratio of successive
 // bounces' power, and how much of it the drift of that ratio leaves unknown.

@@ -441,6 +441,17 @@ class Rendering(VolumeCase):
         self.assertIn("2 frames failed", done.stderr)
         self.assertEqual(self.outputs(), ["a.1.exr", "a.4.exr"])
 
+    def test_every_chunk_of_a_sequence_has_the_lattices_of_its_largest_file(self):
+        pattern = self.make_sequence([1, 2, 3])
+        with open(self.folder / "burst_0002.vdb", "ab") as largest:
+            largest.write(b"\0" * 64)
+        for frame in (1, 3):
+            self.expect(0, "render", pattern, *SMALL, "-f", frame, "-o", self.out,
+                        says="lattices of all frames, by the largest file, burst_0002.vdb: lighting.levels=")
+        done = self.expect(0, "render", pattern, *SMALL, "-f", 1, "-o", self.out, "--set", "lighting.levels=4",
+                           "--set", "scattering.lattice_level=0")
+        self.assertNotIn("lattices of all frames", done.stderr)
+
     def test_damaged_frame_stops_the_rest(self):
         pattern = self.make_sequence([1, 2])
         (self.folder / "burst_0002.vdb").write_text("damaged", encoding="utf-8")
@@ -615,12 +626,73 @@ class Compare(VolumeCase):
         (self.folder / "r.02.exr").unlink()
         self.expect(66, "compare", "frozen.##.exr", "r.##.exr", says="frame 2")
 
+    def test_flicker_and_spectrum_of_a_sequence(self):
+        wave = lambda x: 0.1 * (x % 6 - 2.5)
+        for frame in range(1, 5):
+            travelling = {"Y": lambda x, y, t=frame: 1 + wave(x - 2 * t), "motion.X": lambda x, y: -2,
+                          "motion.Y": lambda x, y: 0}
+            write_exr(self.folder / f"a.{frame}.exr", *self.SIZE, **travelling)
+            self.gray(f"r.{frame}.exr", lambda x, y: 1)
+        result = self.numbers("a.#.exr", "r.#.exr", "--motion", "motion", "--spectrum", "s.html")
+        for change in result["changes"]:
+            self.assertLess(change["layers"][0]["flicker"], 1e-6)
+            self.assertAlmostEqual(change["layers"][0]["seen_before"], 22 / 24)
+        spectrum, = result["spectra"]
+        self.assertAlmostEqual(sum(spectrum["power"]), result["frames"][0]["layers"][0]["rrmse"] ** 2, places=6)
+        page = (self.folder / "s.html").read_text(encoding="utf-8")
+        self.assertIn("<polyline", page)
+        self.assertNotIn("http", page)
+        self.assertNotIn("flicker", self.numbers("a.#.exr", "r.#.exr")["changes"][0]["layers"][0])
+        self.expect(0, "compare", "a.#.exr", "r.#.exr", says="no flicker is measured")
+        self.expect(0, "compare", "a.#.exr", "r.#.exr", "--motion", "motion", "--fail-above", "flicker=0.01")
+        self.expect(65, "compare", "a.#.exr", "r.#.exr", "--motion", "vectors", says="no layer vectors of two channels")
+        self.expect(2, "compare", "a.#.exr", "r.#.exr", "-f", "1-2", "--spectrum", "s.html", says="2 frames are too few")
+        self.expect(73, "compare", "a.#.exr", "r.#.exr", "--spectrum", "absent/s.html", says="absent")
+
+    def test_a_camera_that_stands_has_the_flicker_of_its_noise(self):
+        for frame in (1, 2):
+            self.render(f"p.{frame}.exr", "-f", "1", "--method", "path", "--set", "tracing.samples=4",
+                        "--set", f"tracing.seed={frame}")
+            self.render(f"g.{frame}.exr", "-f", "1")
+        numbers = self.numbers("p.#.exr", "g.#.exr", "--force")["changes"][0]["layers"][0]
+        self.assertGreater(numbers["flicker"], 0.001)
+        self.assertGreater(numbers["seen_before"], 0.3)
+
     def test_files_that_cannot_be_read(self):
         reference = self.gray("a.exr", lambda x, y: 1)
         self.write("text.exr", "no picture")
         self.expect(66, "compare", reference, "absent.exr", says="absent.exr: no such file")
         self.expect(66, "compare", "absent.exr", reference, says="absent.exr")
         self.expect(65, "compare", reference, "text.exr", says="text.exr: it is not an OpenEXR file")
+
+
+class Flicker(VolumeCase):
+    """A still in other words."""
+
+    def variants(self, *options, code=0):
+        done = self.expect(code, "flicker", self.volume, *LIT, "--width", "16", "--json", *options)
+        return {v["variant"]: v for v in json.loads(done.stdout)["variants"]}
+
+    def test_a_still_is_the_same_again_and_nearly_the_same_elsewhere(self):
+        variants = self.variants()
+        self.assertTrue(variants["rendered again"]["same_bits"])
+        for name, variant in variants.items():
+            beauty = variant["layers"][0]
+            self.assertEqual((beauty["layer"], round(beauty["share"], 6)), ("beauty", 1))
+            self.assertLess(beauty["change"], 0.05, name)
+        # Lattices are anchored to the world: whole voxels move the smoke through them.
+        self.assertGreater(variants["moved by 3, 5, 7 voxels"]["layers"][0]["change"], 0)
+        self.assertTrue(variants["other seeds"]["same_bits"])  # nothing in this picture is drawn by chance
+
+    def test_noise_is_seen_and_fails(self):
+        noisy = ["--set", "method=path", "--set", "tracing.samples=4"]
+        self.assertGreater(self.variants(*noisy)["other seeds"]["layers"][0]["change"], 0.01)
+        done = self.expect(1, "flicker", self.volume, *SMALL, *noisy, "--fail-above", "0.001", says="other seeds")
+        self.assertIn("same bits", done.stdout)
+
+    def test_it_looks_at_one_frame(self):
+        self.expect(2, "flicker", self.make_sequence([1, 2]), says="choose one with -f")
+        self.expect(66, "flicker", "absent.vdb", says="absent.vdb")
 
 
 class PathTracer(VolumeCase):

@@ -69,6 +69,14 @@ TEST(ExrHeader, CameraMatricesProjectAsThePictureDoes) {
     EXPECT_NEAR(upper_left.x, 0.0f, 1e-5f);
     EXPECT_NEAR(upper_left.y, 0.0f, 1e-5f);
     EXPECT_NE(Imf::worldToNDC(header).determinant(), 0.0f);
+
+    // And as it is read back: column vectors, the depth in w.
+    const std::optional<dmat4> ndc_from_world = read_exr_metadata(folder / "a.exr").ndc_from_world;
+    ASSERT_TRUE(ndc_from_world);
+    const glm::dvec4 seen = *ndc_from_world * glm::dvec4(11.0, -16.0, 7.0, 1.0);
+    EXPECT_NEAR(seen.w, 4.0, 1e-5);
+    EXPECT_NEAR(seen.x / seen.w, 0.5 + 1.0 / 16.0, 1e-5);
+    EXPECT_NEAR(seen.y / seen.w, 0.5 - 2.0 / 8.0, 1e-5);
 }
 
 TEST(ExrHeader, StandardAttributesAreThere) {

@@ -12,7 +12,7 @@
 
 #include "film/image.h"
 #include "forecast/plan.h"
-#include "render/frame_input.h"
+#include "render/input/frame_input.h"
 
 namespace brisance::testing {
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "make_vdb.h"
-#include "render/load_medium.h"
+#include "render/input/load_medium.h"
 #include "same_picture.h"
 #include "temp_folder.h"
 

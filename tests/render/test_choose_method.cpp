@@ -6,7 +6,7 @@
 #include "core/parallel.h"
 #include "fixtures/media.h"
 #include "fixtures/sets.h"
-#include "render/choose_method.h"
+#include "render/choice/choose_method.h"
 #include "render/render_frame.h"
 
 namespace brisance {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "make_vdb.h"
-#include "render/kept_inputs.h"
+#include "render/input/kept_inputs.h"
 #include "render/render_frame.h"
 #include "shot/read_shot.h"
 #include "temp_folder.h"

@@ -19,7 +19,7 @@
 #include "core/parallel.h"
 #include "media_scene.h"
 #include "ray_lights/ray_lights.h"
-#include "render/frame_input.h"
+#include "render/input/frame_input.h"
 #include "render/render_frame.h"
 #include "shot/read_shot.h"
 

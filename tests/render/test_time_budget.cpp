@@ -5,8 +5,8 @@
 #include "fixtures/media.h"
 #include "fixtures/sets.h"
 #include "forecast/machine_speed.h"
+#include "render/choice/time_budget.h"
 #include "render/render_frame.h"
-#include "render/time_budget.h"
 
 namespace brisance {
 namespace {

@@ -6,9 +6,9 @@
 #include "core/error.h"
 #include "fixtures/media.h"
 #include "make_vdb.h"
-#include "render/frame_input.h"
-#include "render/load_medium.h"
-#include "render/volume_in_time.h"
+#include "render/input/frame_input.h"
+#include "render/input/load_medium.h"
+#include "render/input/volume_in_time.h"
 #include "temp_folder.h"
 
 namespace brisance {

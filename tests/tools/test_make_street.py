@@ -11,7 +11,7 @@ import unittest
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 FILES = ("street.glb", "street_sky.hdr")
 FORMATS = {5121: "B", 5123: "H", 5126: "f"}
-COMPONENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
+COMPONENTS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3, "VEC4": 4}
 
 
 def make():

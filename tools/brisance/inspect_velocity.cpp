@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "render/read_volume.h"
+#include "render/input/read_volume.h"
 #include "retiming/choose_retiming.h"
 #include "volume/frame_path.h"
 #include "volume/velocity_mapping.h"

@@ -11,8 +11,8 @@
 #include "core/error.h"
 #include "core/printable.h"
 #include "first_look/look_file.h"
-#include "render/load_medium.h"
-#include "render/volume_in_time.h"
+#include "render/input/load_medium.h"
+#include "render/input/volume_in_time.h"
 #include "volume/vdb_header.h"
 
 namespace brisance {

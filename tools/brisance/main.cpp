@@ -14,8 +14,9 @@
 #include <vector>
 
 #include "command_options.h"
-#include "compare_command.h"
-#include "compare_report.h"
+#include "compare/compare_command.h"
+#include "compare/compare_report.h"
+#include "compare/flicker_command.h"
 #include "core/error.h"
 #include "core/printable.h"
 #include "film/whole_file.h"
@@ -36,7 +37,8 @@ using namespace brisance;
 
 constexpr const char* kExitCodes = R"(Exit codes:
   0    all frames written
-  1    rendering failed; a measure of compare is above its --fail-above; verify found frames that are not finished
+  1    rendering failed; a measure of compare or flicker is above its --fail-above; verify found frames that are not
+       finished
   2    command line or shot file: unknown key, wrong type, value out of range
   65   a file exists but cannot be used: not a VDB, truncated, no usable grid; images that do not compare;
        a checkpoint of another render
@@ -84,6 +86,15 @@ void add_compare_options(CLI::App& command, CompareOptions& options) {
                     "A layer, or a sum of layers (V+MV), instead of the beauty; an EXR of one layer stands for it")
         ->excludes(cells);
     command.add_flag("--json", options.as_json, "As JSON");
+    command
+        .add_option(
+            "--motion", options.motion,
+            "Of a sequence: the layer of IMAGE with motion vectors, two channels that lead from a pixel to where "
+            "its point was in the frame before [pixels, x right, y down]; without it, flicker is measured along "
+            "the movement of the cameras at the depth Z")
+        ->type_name("LAYER");
+    command.add_option("--spectrum", options.spectrum,
+                       "Of a sequence: a page (.html) of the error's temporal spectrum");
     command.add_option("--flip-map", options.flip_map,
                        "A PNG of the errors that HDR-FLIP sees: black 0, violet, red, pale yellow 1");
     command
@@ -260,6 +271,11 @@ private:
             add("compare", "Measures how far an EXR is from a reference", [this] { return run_compare(comparison_); });
         add_compare_options(compare, comparison_);
         compare.footer(kExitCodes);
+        CLI::App& flicker = add("flicker", "Measures how much a still changes that ought not to: no reference needed",
+                                [this] { return run_flicker(flickering_); });
+        add_flicker_options(flicker, flickering_);
+        add_common_options(flicker, flickering_);
+        flicker.footer(kExitCodes);
 #ifdef BRISANCE_REPORT
         CLI::App& report = add("report", "Measures methods against a reference: page, CSV and JSON",
                                [this] { return run_report(reported_); });
@@ -300,6 +316,7 @@ private:
     InspectOptions inspected_;
     bool keys_ = false;
     CompareOptions comparison_;
+    FlickerOptions flickering_;
 #ifdef BRISANCE_REPORT
     ReportOptions reported_;
 #endif

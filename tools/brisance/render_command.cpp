@@ -15,7 +15,7 @@
 #include "film/write_image.h"
 #include "first_look/look_file.h"
 #include "outputs.h"
-#include "render/kept_inputs.h"
+#include "render/input/kept_inputs.h"
 #include "render/render_frame.h"
 #include "sequence/finished_frame.h"
 #include "sequence/frame_job.h"

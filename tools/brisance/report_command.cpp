@@ -20,7 +20,7 @@
 #include "page.h"
 #include "page_pictures.h"
 #include "reference.h"
-#include "render/frame_input.h"
+#include "render/input/frame_input.h"
 #include "report.h"
 #include "report_json.h"
 #include "report_text.h"

@@ -13,6 +13,7 @@ struct Settings {
     float frame_rate = 24.0f;    // [1/s]
     float courant = 2.0f;        // most cells crossed in one step
     int steps_per_frame_max = 6;
+    int substeps = 1;  // states at equal distances that a frame is made of; steps end at each of them
 
     // Burst
     int puffs = 22;

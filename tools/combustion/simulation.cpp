@@ -34,8 +34,16 @@ Simulation::Simulation(const Settings& settings)
 
 std::vector<StepReport> Simulation::advance_frame() {
     std::vector<StepReport> reports;
+    for (int s = 0; s < settings_.substeps; ++s)
+        for (const StepReport& report : advance_substep())
+            reports.push_back(report);
+    return reports;
+}
+
+std::vector<StepReport> Simulation::advance_substep() {
+    std::vector<StepReport> reports;
     const double frame_seconds = 1.0 / settings_.frame_rate;
-    const double end = frame_seconds * ++frame_;
+    const double end = frame_seconds / settings_.substeps * ++substep_;
     const float shortest = static_cast<float>(frame_seconds) / float(settings_.steps_per_frame_max);
     // While puffs enter at full speed the flow of the last step does not yet show how fast the next will be.
     const bool bursting = time_ < 2.0f * settings_.burst_duration;

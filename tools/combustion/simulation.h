@@ -45,8 +45,11 @@ public:
 
     // Advances by one frame; returns one report per step.
     std::vector<StepReport> advance_frame();
+    // Advances by one of the `substeps` states of a frame: as many of these calls make a frame, bit by bit.
+    std::vector<StepReport> advance_substep();
 
-    double time() const { return time_; }   // [s]
+    double time() const { return time_; }  // [s]
+    double frame_rate() const { return settings_.frame_rate; }
     float cell_size() const { return h_; }  // [m]
     const ivec3& cells() const { return cells_; }
     const Mixture& mixture() const { return mixture_; }
@@ -75,7 +78,7 @@ private:
     float h_;
     vec3 origin_;  // world position of the low corner of cell (0, 0, 0) [m]
     double time_ = 0.0;
-    int frame_ = 0;
+    int substep_ = 0;  // states since the start
     std::vector<Puff> puffs_;
     CurlNoise turbulence_;
     Mixture mixture_;

@@ -57,7 +57,7 @@ openvdb::FloatGrid::Ptr scalar_grid(const Simulation& simulation, const WriteSet
     return grid;
 }
 
-// At the cell centres.
+// At the cell centres, as Houdini names it: in world units a second, not in voxels, and not a step's displacement.
 openvdb::Vec3SGrid::Ptr velocity_grid(const Simulation& simulation, const WriteSettings& settings) {
     const Mixture& mixture = simulation.mixture();
     const Field<vec4> centred = centred_velocity(simulation.velocity(), simulation.cells(), 1.0f);
@@ -69,9 +69,10 @@ openvdb::Vec3SGrid::Ptr velocity_grid(const Simulation& simulation, const WriteS
     }
     const openvdb::tools::Dense<openvdb::Vec3s, openvdb::tools::LayoutXYZ> dense(index_box(simulation.cells()),
                                                                                  values.data());
-    auto grid = make_grid<openvdb::Vec3SGrid>(simulation, settings, "velocity", dense);
+    auto grid = make_grid<openvdb::Vec3SGrid>(simulation, settings, "vel", dense);
     grid->setGridClass(openvdb::GRID_UNKNOWN);
-    grid->setVectorType(openvdb::VEC_CONTRAVARIANT_RELATIVE);
+    grid->setVectorType(openvdb::VEC_CONTRAVARIANT_RELATIVE);  // turns and scales with the grid's transform
+    grid->insertMeta("unit", openvdb::StringMetadata("m/s"));
     return grid;
 }
 
@@ -91,6 +92,7 @@ void write_vdb(const Simulation& simulation, const WriteSettings& settings, cons
     openvdb::MetaMap metadata;
     metadata.insertMeta("creator", openvdb::StringMetadata(settings.creator));
     metadata.insertMeta("time", openvdb::DoubleMetadata(simulation.time()));
+    metadata.insertMeta("frames_per_second", openvdb::DoubleMetadata(simulation.frame_rate()));
     std::error_code failure;
     if (!file.parent_path().empty())
         std::filesystem::create_directories(file.parent_path(), failure);

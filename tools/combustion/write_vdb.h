@@ -10,7 +10,7 @@ namespace brisance::combustion {
 
 struct WriteSettings {
     bool half = false;                     // 16-bit floats
-    bool velocity = true;                  // write the velocity grid
+    bool velocity = true;                  // write the velocity grid, "vel" [m/s]
     float density_threshold = 0.004f;      // where neither density
     float gas_threshold = 0.02f;           // nor the share of the burst's gas reaches this, no grid stores anything
     float temperature_threshold = 320.0f;  // nor any temperature below [K]

@@ -8,7 +8,7 @@
 #include "core/progress.h"
 #include "page_pictures.h"
 #include "reference.h"
-#include "render/frame_input.h"
+#include "render/input/frame_input.h"
 #include "report.h"
 #include "shot/shot.h"
 

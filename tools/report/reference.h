@@ -9,7 +9,7 @@
 
 #include "core/progress.h"
 #include "metrics/comparison.h"
-#include "render/frame_input.h"
+#include "render/input/frame_input.h"
 #include "report.h"
 #include "shot/shot.h"
 

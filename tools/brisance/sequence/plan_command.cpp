@@ -12,7 +12,9 @@
 #include "forecast/machine_speed.h"
 #include "inspect.h"
 #include "outputs.h"
-#include "render/forecast_frame.h"
+#include "render/choice/forecast_frame.h"
+#include "render/render_frame.h"
+#include "sequence/shared_choice.h"
 #include "shot/write_shot.h"
 
 namespace brisance {

@@ -10,7 +10,8 @@
 #include "core/error.h"
 #include "film/write_image.h"
 #include "load_shot.h"
-#include "render/volume_in_time.h"
+#include "render/choice/sequence_levels.h"
+#include "render/input/volume_in_time.h"
 
 namespace brisance {
 namespace {
@@ -76,6 +77,16 @@ std::optional<TimedSettings> one_setting(const Shot& shot, Progress& progress) {
         return as_it_is;
     };
     return by_largest_file(shot, "seconds", choose, progress);
+}
+
+// Lattices: the same for all frames.
+std::optional<Shot> one_lattice(const Shot& shot, Progress& progress) {
+    if (!leaves_levels_open(shot))
+        return std::nullopt;
+    const auto choose = [&](const FrameFile& frame) {
+        return frame.file.empty() ? shot : with_levels_of(shot, frame.file, frame.frame, progress);
+    };
+    return by_largest_file(shot, "levels", choose, progress);
 }
 
 constexpr int kTrialHeight = 72;  // pixels
@@ -150,11 +161,14 @@ SharedChoice choose_for_all(Shot& shot, Progress& progress) {
     out.method = one_method(shot, progress);
     if (out.method)
         shot = with_method(shot, *out.method);
+    if (const std::optional<Shot> levelled = one_lattice(shot, progress))
+        shot = *levelled;
     return out;
 }
 
 std::vector<fs::path> deciding_files(const Shot& shot) {
-    if (shot.method != RenderMethod::Automatic && !(shot.seconds > 0.0) && !wants_png_exposure(shot))
+    if (shot.method != RenderMethod::Automatic && !(shot.seconds > 0.0) && !wants_png_exposure(shot) &&
+        !leaves_levels_open(shot))
         return {};
     const std::vector<FrameFile> all = largest_first(shot);
     return all.empty() ? std::vector<fs::path>{} : std::vector<fs::path>{all.front().file.lexically_normal()};

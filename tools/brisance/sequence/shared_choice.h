@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "render/choose_method.h"
+#include "render/choice/choose_method.h"
+#include "render/choice/time_budget.h"
 #include "render/render_frame.h"
-#include "render/time_budget.h"
 #include "shot/shot.h"
 
 namespace brisance {

@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "farm/frame_stamp.h"
 #include "finished_frame.h"
+#include "sequence/shared_choice.h"
 
 namespace brisance {
 

@@ -9,7 +9,7 @@
 #include "farm/frame_chunk.h"
 #include "forecast/machine_speed.h"
 #include "outputs.h"
-#include "render/forecast_frame.h"
+#include "render/choice/forecast_frame.h"
 #include "sequence/frame_job.h"
 #include "sequence/shared_choice.h"
 

@@ -1,4 +1,4 @@
-#include "compare_report.h"
+#include "compare/compare_report.h"
 
 #include <fmt/format.h>
 
@@ -7,6 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "compare/spectrum_table.h"
+#include "compare/text_table.h"
 #include "core/error.h"
 
 namespace brisance {
@@ -44,20 +46,64 @@ const std::vector<Metric<Comparison>>& still_metrics() {
     return metrics;
 }
 
-const std::vector<Metric<TemporalError>>& change_metrics() {
-    static const std::vector<Metric<TemporalError>> metrics = {
-        {"temporal", [](const TemporalError& e) { return std::optional(e.error); }},
-        {"temporal_noise_free", noise_free<TemporalError>},
-        {"temporal_reference_noise", reference_noise<TemporalError>},
+const std::vector<Metric<ChangeErrors>>& change_metrics() {
+    using Value = std::optional<double>;
+    static const std::vector<Metric<ChangeErrors>> metrics = {
+        {"temporal", [](const ChangeErrors& e) { return Value(e.error); }},
+        {"temporal_noise_free", noise_free<ChangeErrors>},
+        {"temporal_reference_noise", reference_noise<ChangeErrors>},
+        {"flicker", [](const ChangeErrors& e) { return e.flicker ? Value(e.flicker->error) : Value(); }},
+        {"flicker_noise_free", [](const ChangeErrors& e) { return e.flicker ? noise_free(*e.flicker) : Value(); }},
+        {"flicker_reference_noise",
+         [](const ChangeErrors& e) { return e.flicker ? reference_noise(*e.flicker) : Value(); }},
+        {"seen_before", [](const ChangeErrors& e) { return e.flicker ? Value(e.flicker->seen) : Value(); }},
     };
     return metrics;
+}
+
+const std::vector<Metric<Flicker>>& sequence_metrics() {
+    static const std::vector<Metric<Flicker>> metrics = {
+        {"flicker", [](const Flicker& f) { return std::optional(f.error); }},
+        {"flicker_noise_free", noise_free<Flicker>},
+        {"flicker_reference_noise", reference_noise<Flicker>},
+        {"seen_before", [](const Flicker& f) { return std::optional(f.seen); }},
+    };
+    return metrics;
+}
+
+// All changes together; no layers where the motion of some is not known.
+struct ComparedSequence {
+    std::vector<std::pair<std::string, Flicker>> layers;
+};
+
+ComparedSequence sequence_of(const std::vector<ComparedChange>& changes) {
+    ComparedSequence sequence;
+    if (changes.size() < 2)
+        return sequence;
+    for (const auto& [layer, first] : changes.front().layers) {
+        FlickerSums sums;
+        std::size_t known = 0;
+        for (const ComparedChange& change : changes)
+            for (const auto& [name, errors] : change.layers)
+                if (name == layer && errors.flicker) {
+                    sums.add(errors.flicker->sums);
+                    ++known;
+                }
+        if (known == changes.size())
+            sequence.layers.emplace_back(layer, flicker_of(sums, first.halves.has_value()));
+    }
+    return sequence;
+}
+
+bool is_below_noise(const Flicker& f) {
+    return f.halves && below_noise(f.error, f.halves->reference_noise);
 }
 
 bool is_below_noise(const Comparison& c) {
     return c.halves && below_noise(c.differences.rrmse, c.halves->reference_noise);
 }
 
-bool is_below_noise(const TemporalError& e) {
+bool is_below_noise(const ChangeErrors& e) {
     return e.halves && below_noise(e.error, e.halves->reference_noise);
 }
 
@@ -91,29 +137,6 @@ void add_failures(const std::vector<Part>& parts, const Metric<Result>& metric, 
                                             location(part, layer), bad.image + bad.reference));
         }
     }
-}
-
-std::string padded(const std::string& text, std::size_t width) {
-    return text + std::string(width > text.size() ? width - text.size() : 0, ' ');
-}
-
-// Columns as wide as their widest cell: words are aligned left, numbers right.
-std::string table(const std::vector<std::vector<std::string>>& rows, std::size_t word_columns) {
-    std::vector<std::size_t> widths(rows.front().size(), 0);
-    for (const auto& row : rows)
-        for (std::size_t c = 0; c < row.size(); ++c)
-            widths[c] = std::max(widths[c], row[c].size());
-    std::string text;
-    for (const auto& row : rows) {
-        std::string line;
-        for (std::size_t c = 0; c < row.size(); ++c) {
-            const std::string gap(c == 0 ? 0 : 2, ' ');
-            line += gap + (c < word_columns ? padded(row[c], widths[c])
-                                            : std::string(widths[c] - row[c].size(), ' ') + row[c]);
-        }
-        text += line + "\n";
-    }
-    return text;
 }
 
 template <class Result, class Part>
@@ -154,7 +177,7 @@ std::string metric_table(const std::vector<Part>& parts, const std::vector<Metri
             rows.back().insert(rows.back().end(), cells.begin(), cells.end());
         }
     }
-    return table(rows, 2);
+    return text_table(rows, 2);
 }
 
 std::string heading(const ComparedFrame& frame) {
@@ -252,6 +275,7 @@ std::vector<std::string> metric_names() {
         names.emplace_back(metric.name);
     for (const auto& metric : change_metrics())
         names.emplace_back(metric.name);
+    std::erase(names, "seen_before");  // a share, not an error
     return names;
 }
 
@@ -270,7 +294,7 @@ Limit parse_limit(const std::string& text, bool halves, bool several_frames) {
     const auto [rest, error] = std::from_chars(text.data() + equals + 1, end, limit.value);
     if (error != std::errc() || rest != end || !(limit.value >= 0.0))
         reject("the value must be a number of at least 0");
-    if (!several_frames && limit.metric.starts_with("temporal"))
+    if (!several_frames && (limit.metric.starts_with("temporal") || limit.metric.starts_with("flicker")))
         reject("only several frames have a temporal error");
     if (!halves && (limit.metric.ends_with("noise_free") || limit.metric.ends_with("reference_noise")))
         reject("two references, independent halves, are needed");
@@ -303,6 +327,12 @@ std::string report_text(const CompareReport& report) {
     text.append("\n").append(metric_table(report.frames, still_metrics(), frame_of, "frame"));
     if (!report.changes.empty())
         text.append("\n").append(metric_table(report.changes, change_metrics(), frames_of, "frames"));
+    if (const ComparedSequence all = sequence_of(report.changes); !all.layers.empty())
+        text.append("\n").append(metric_table(
+            std::vector{all}, sequence_metrics(), [](const ComparedSequence&) { return std::string("all"); },
+            "frames"));
+    if (!report.spectra.empty())
+        text.append("\n").append(spectrum_table(report.spectra));
     return text + "\n" + not_finite_lines(report) + noise_line(report) + constants_lines(report);
 }
 
@@ -321,6 +351,15 @@ std::string report_json(const CompareReport& report, const std::vector<std::stri
         json["frames"].push_back(frame_json(frame));
     for (const ComparedChange& change : report.changes)
         json["changes"].push_back(change_json(change));
+    for (const auto& [layer, flicker] : sequence_of(report.changes).layers) {
+        json["sequence"].push_back({{"layer", shown_layer(layer)}});
+        add_numbers(json["sequence"].back(), flicker, sequence_metrics());
+    }
+    for (const auto& [layer, spectrum] : report.spectra) {
+        Json entry = {{"layer", shown_layer(layer)}};
+        entry.update(to_json(spectrum));
+        json["spectra"].push_back(entry);
+    }
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

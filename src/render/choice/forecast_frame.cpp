@@ -1,4 +1,4 @@
-#include "render/forecast_frame.h"
+#include "render/choice/forecast_frame.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include "forecast/costs.h"
 #include "forecast/memory_need.h"
 #include "forecast/plan.h"
-#include "render/choose_method.h"
-#include "render/frame_input.h"
-#include "render/time_budget.h"
+#include "render/choice/choose_method.h"
+#include "render/choice/time_budget.h"
+#include "render/input/frame_input.h"
 
 namespace brisance {
 

@@ -1,4 +1,4 @@
-#include "render/frame_input.h"
+#include "render/input/frame_input.h"
 
 #include <optional>
 
@@ -6,8 +6,8 @@
 #include "camera/shutter.h"
 #include "core/error.h"
 #include "core/stopwatch.h"
-#include "render/kept_inputs.h"
-#include "render/load_medium.h"
+#include "render/input/kept_inputs.h"
+#include "render/input/load_medium.h"
 #include "scene/load_scene.h"
 #include "scene/read_texture.h"
 

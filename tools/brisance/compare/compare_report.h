@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "metrics/comparison.h"
+#include "metrics/flicker.h"
+#include "metrics/temporal_spectrum.h"
 
 namespace brisance {
 
@@ -19,11 +21,16 @@ struct ComparedFrame {
     std::vector<std::pair<std::string, Comparison>> layers;  // "" is the beauty; maps of errors may be empty
 };
 
+// Errors of the change from a frame to the next.
+struct ChangeErrors : TemporalError {
+    std::optional<Flicker> flicker;  // absent: the motion is not known
+};
+
 // From one compared frame to the next.
 struct ComparedChange {
     int from = 0;
     int to = 0;
-    std::vector<std::pair<std::string, TemporalError>> layers;
+    std::vector<std::pair<std::string, ChangeErrors>> layers;
 };
 
 struct CompareReport {
@@ -31,7 +38,11 @@ struct CompareReport {
     std::vector<std::string> overruled;  // differences of shots that --force set aside
     std::vector<ComparedFrame> frames;
     std::vector<ComparedChange> changes;
+    std::vector<std::pair<std::string, TemporalSpectrum>> spectra;  // by layer; of at least kSpectrumFrames frames
 };
+
+// Fewer frames have no bands worth the name.
+constexpr std::size_t kSpectrumFrames = 4;
 
 // A measure and how large it may become. `mean` counts by its magnitude.
 struct Limit {

@@ -13,7 +13,9 @@ struct CompareOptions {
     std::vector<std::string> references;  // one, or two independent halves; EXR as above
     std::string frames;                   // -f; empty: those of the image on disk
     std::string layers;                   // "V+MV": their sum instead of the beauty
+    std::string motion;                   // layer with motion vectors; empty: the cameras' movement at the depth Z
     std::string flip_map;                 // PNG, with frame tokens for several frames; empty: none
+    std::string spectrum;                 // HTML page of the errors over time; empty: none
     std::vector<std::string> limits;      // "rrmse=0.02"
     double pixels_per_degree = kPixelsPerDegree;
     bool cells = false;  // every layer that all have

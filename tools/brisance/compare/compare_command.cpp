@@ -1,14 +1,17 @@
-#include "compare_command.h"
+#include "compare/compare_command.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <set>
 
-#include "compare_report.h"
+#include "compare/compare_report.h"
+#include "compare/motion_source.h"
+#include "compare/spectrum_page.h"
 #include "core/error.h"
 #include "film/whole_file.h"
 #include "film/write_image.h"
@@ -235,9 +238,13 @@ void check_halves(const Reference& reference, const std::vector<Loaded>& referen
                                 references[0].file.string(), references[1].file.string()));
 }
 
-using FrameLayers = std::vector<std::pair<std::string, FrameAndReference>>;
+// A frame's layers with their references, and what is needed to follow its points into the next frame.
+struct ComparedPictures {
+    std::vector<std::pair<std::string, FrameAndReference>> layers;
+    MotionSource motion;
+};
 
-FrameLayers load_frame(const CompareOptions& options, const FrameFiles& files, bool first, CompareReport& report) {
+ComparedPictures load_frame(const CompareOptions& options, const FrameFiles& files, bool first, CompareReport& report) {
     const Loaded image = load(files.image);
     std::vector<Loaded> references;
     for (const fs::path& file : files.references)
@@ -253,10 +260,12 @@ FrameLayers load_frame(const CompareOptions& options, const FrameFiles& files, b
         notice_missing_shots(all);
     const std::vector<std::string> layers = layers_to_compare(options, all, objections);
     settle(objections, options.force, report);
-    FrameLayers result;
+    ComparedPictures result;
     for (const std::string& layer : layers)
-        result.emplace_back(layer, layer_and_reference(image, references, layer));
-    check_halves(result.front().second.reference, references);
+        result.layers.emplace_back(layer, layer_and_reference(image, references, layer));
+    check_halves(result.layers.front().second.reference, references);
+    if (has_frame_token(options.image))
+        result.motion = motion_source(image.file, image.image, image.metadata, options.motion);
     const bool numbered = has_frame_token(options.image);
     report.frames.push_back({numbered ? std::optional(files.frame) : image.metadata.frame,
                              files.image,
@@ -266,9 +275,9 @@ FrameLayers load_frame(const CompareOptions& options, const FrameFiles& files, b
     return result;
 }
 
-void compare_frame(const CompareOptions& options, const FrameFiles& files, const FrameLayers& layers,
+void compare_frame(const CompareOptions& options, const FrameFiles& files, const ComparedPictures& pictures,
                    ComparedFrame& frame) {
-    for (const auto& [layer, pair] : layers) {
+    for (const auto& [layer, pair] : pictures.layers) {
         Comparison comparison = compare(pair.image, pair.reference, options.pixels_per_degree);
         if (frame.layers.empty() && !files.flip_map.empty())
             write_png(files.flip_map, pair.image.width, pair.image.height, false_colours(comparison.flip.errors));
@@ -279,15 +288,46 @@ void compare_frame(const CompareOptions& options, const FrameFiles& files, const
     }
 }
 
-ComparedChange compare_step(const FrameFiles& files, const FrameLayers& layers, const FrameFiles& next_files,
-                            const FrameLayers& next) {
+ComparedChange compare_step(const FrameFiles& files, const ComparedPictures& before, const FrameFiles& next_files,
+                            const ComparedPictures& next) {
     ComparedChange change{files.frame, next_files.frame, {}};
-    for (const auto& [layer, pair] : layers)
-        for (const auto& [next_layer, next_pair] : next)
-            if (layer == next_layer)
-                change.layers.emplace_back(layer, compare_changes(pair, next_pair));
+    const std::optional<Motion> motion = motion_between(before.motion, next.motion);
+    if (!motion)
+        notice(
+            "no flicker is measured: the images lack a depth Z or the camera worldToNDC; --motion names a layer of "
+            "motion vectors");
+    for (const auto& [layer, pair] : before.layers)
+        for (const auto& [next_layer, next_pair] : next.layers)
+            if (layer == next_layer) {
+                ChangeErrors errors{compare_changes(pair, next_pair), std::nullopt};
+                if (motion)
+                    errors.flicker = measure_flicker(pair, next_pair, *motion);
+                change.layers.emplace_back(layer, std::move(errors));
+            }
     return change;
 }
+
+// Errors over time by layer. A layer that some frame lacks has none.
+class Spectra {
+public:
+    explicit Spectra(std::size_t frames) : frames_(frames) {}
+    void add(const ComparedPictures& pictures) {
+        if (frames_ >= kSpectrumFrames)
+            for (const auto& [layer, pair] : pictures.layers)
+                errors_[layer].add(pair);
+    }
+    std::vector<std::pair<std::string, TemporalSpectrum>> spectra() const {
+        std::vector<std::pair<std::string, TemporalSpectrum>> result;
+        for (const auto& [layer, errors] : errors_)
+            if (errors.frames() == frames_)
+                result.emplace_back(layer, errors.spectrum());
+        return result;
+    }
+
+private:
+    std::size_t frames_;
+    std::map<std::string, ErrorOverTime> errors_;
+};
 
 }  // namespace
 
@@ -296,16 +336,27 @@ int run_compare(const CompareOptions& options) {
     std::vector<Limit> limits;
     for (const std::string& limit : options.limits)
         limits.push_back(parse_limit(limit, options.references.size() > 1, files.size() > 1));
+    if (!options.spectrum.empty() && files.size() < kSpectrumFrames)
+        throw Error(ExitCode::Usage,
+                    fmt::format("--spectrum: {} frames are too few; {} are needed", files.size(), kSpectrumFrames));
+    if (!options.spectrum.empty())
+        check_writable(options.spectrum);
     CompareReport report;
     report.pixels_per_degree = options.pixels_per_degree;
-    FrameLayers before;
+    ComparedPictures before;
+    Spectra spectra(files.size());
     for (std::size_t i = 0; i < files.size(); ++i) {
-        FrameLayers layers = load_frame(options, files[i], i == 0, report);
-        compare_frame(options, files[i], layers, report.frames.back());
+        ComparedPictures pictures = load_frame(options, files[i], i == 0, report);
+        compare_frame(options, files[i], pictures, report.frames.back());
+        spectra.add(pictures);
         if (i > 0)
-            report.changes.push_back(compare_step(files[i - 1], before, files[i], layers));
-        before = std::move(layers);
+            report.changes.push_back(compare_step(files[i - 1], before, files[i], pictures));
+        before = std::move(pictures);
     }
+    report.spectra = spectra.spectra();
+    if (!options.spectrum.empty())
+        write_text(options.spectrum,
+                   spectrum_page(options.image + " against " + options.references.front(), report.spectra));
     const std::vector<std::string> exceeded = exceeded_limits(report, limits);
     std::fputs((options.as_json ? report_json(report, exceeded) : report_text(report)).c_str(), stdout);
     for (const std::string& line : exceeded)

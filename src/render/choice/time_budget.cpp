@@ -1,4 +1,4 @@
-#include "render/time_budget.h"
+#include "render/choice/time_budget.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "forecast/costs.h"
 #include "forecast/expected_errors.h"
 #include "forecast/machine_speed.h"
-#include "render/frame_input.h"
+#include "render/input/frame_input.h"
 
 namespace brisance {
 

@@ -1,4 +1,4 @@
-#include "render/read_volume.h"
+#include "render/input/read_volume.h"
 
 #include <fmt/format.h>
 

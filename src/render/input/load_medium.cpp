@@ -1,10 +1,10 @@
-#include "render/load_medium.h"
+#include "render/input/load_medium.h"
 
 #include <algorithm>
 
 #include "core/stopwatch.h"
-#include "render/kept_inputs.h"
-#include "render/read_volume.h"
+#include "render/input/kept_inputs.h"
+#include "render/input/read_volume.h"
 #include "volume/fog_box.h"
 
 namespace brisance {

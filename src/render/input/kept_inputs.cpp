@@ -1,12 +1,12 @@
-#include "render/kept_inputs.h"
+#include "render/input/kept_inputs.h"
 
 #include <algorithm>
 
 #include "core/available_memory.h"
 #include "core/error.h"
 #include "forecast/memory_need.h"
-#include "render/load_medium.h"
-#include "render/volume_in_time.h"
+#include "render/input/load_medium.h"
+#include "render/input/volume_in_time.h"
 
 namespace brisance {
 

@@ -1,4 +1,4 @@
-#include "render/choose_method.h"
+#include "render/choice/choose_method.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "forecast/costs.h"
 #include "forecast/memory_need.h"
 #include "forecast/plan.h"
-#include "render/frame_input.h"
+#include "render/input/frame_input.h"
 
 namespace brisance {
 

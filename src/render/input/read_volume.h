@@ -5,7 +5,7 @@
 
 #include "core/progress.h"
 #include "medium/medium.h"
-#include "render/volume_in_time.h"
+#include "render/input/volume_in_time.h"
 #include "retiming/source_frame.h"
 #include "volume/read_ahead.h"
 #include "volume/settings.h"

@@ -1,9 +1,9 @@
-#include "render/volume_in_time.h"
+#include "render/input/volume_in_time.h"
 
 #include <cmath>
 
 #include "core/error.h"
-#include "render/read_volume.h"
+#include "render/input/read_volume.h"
 #include "retiming/choose_retiming.h"
 #include "volume/frame_path.h"
 

@@ -1,0 +1,15 @@
+// What the lighting of a medium chooses from its voxels where the settings leave it open.
+#pragma once
+
+#include "medium/medium.h"
+
+namespace brisance {
+
+struct AutomaticLevels {
+    int lighting = 1;    // lighting.levels
+    int scattering = 0;  // scattering.lattice_level
+};
+
+AutomaticLevels automatic_levels_of(const Medium& medium);
+
+}  // namespace brisance

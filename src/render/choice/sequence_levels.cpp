@@ -1,0 +1,45 @@
+#include "render/choice/sequence_levels.h"
+
+#include <fmt/format.h>
+
+#include "medium_lighting/automatic_levels.h"
+#include "render/input/load_medium.h"
+
+namespace brisance {
+namespace {
+
+// Keeps warnings; what is read here is read and told of again with its own frame.
+class WarningsAlone : public Progress {
+public:
+    explicit WarningsAlone(Progress& to) : to_(to) {}
+    void stage(const std::string& name) override { to_.stage(name); }
+    void warning(const std::string& code, const std::string& line) override { to_.warning(code, line); }
+
+private:
+    Progress& to_;
+};
+
+}  // namespace
+
+bool leaves_levels_open(const Shot& shot) {
+    return shot.method != RenderMethod::Path && (shot.lighting.levels <= 0 || shot.scattering.lattice_level < 0);
+}
+
+Shot with_levels_of(Shot shot, const std::filesystem::path& volume, int frame, Progress& progress) {
+    if (!leaves_levels_open(shot))
+        return shot;
+    WarningsAlone quiet(progress);
+    Statistics unused;
+    const AutomaticLevels levels = automatic_levels_of(load_medium(shot, volume, frame, unused, quiet));
+    if (shot.lighting.levels <= 0)
+        shot.lighting.levels = levels.lighting;
+    if (shot.scattering.lattice_level < 0)
+        shot.scattering.lattice_level = levels.scattering;
+    progress.notice(
+        fmt::format("lattices of all frames, by the largest file, {}: lighting.levels={}, "
+                    "scattering.lattice_level={}",
+                    volume.filename().string(), shot.lighting.levels, shot.scattering.lattice_level));
+    return shot;
+}
+
+}  // namespace brisance

@@ -1,0 +1,46 @@
+// All frames of a sequence are solved on the lattices of its largest file.
+#include <gtest/gtest.h>
+
+#include "fixtures/media.h"
+#include "make_vdb.h"
+#include "render/choice/sequence_levels.h"
+#include "render/render_frame.h"
+#include "temp_folder.h"
+
+namespace brisance {
+namespace {
+
+using namespace testing;
+
+void write_smoke(const std::filesystem::path& file, int half_width) {
+    TestGrid grid;
+    grid.name = "density";
+    grid.world_from_index = cubic(0.1);
+    grid.voxels = fill_box(ivec3(-half_width), ivec3(half_width), [](const ivec3&) { return 1.0; });
+    write_vdb(file, {grid});
+}
+
+TEST(SequenceLevels, AreThoseOfTheGivenFrameAndWhatTheShotStatesStays) {
+    const TempFolder folder;
+    write_smoke(folder / "a.0001.vdb", 4);
+    write_smoke(folder / "a.0002.vdb", 40);  // 530,000 voxels, beyond what the finest lattice may have
+    Shot shot;
+    shot.volume.file = (folder / "a.####.vdb").string();
+    Progress silent;
+    const Shot small = with_levels_of(shot, folder / "a.0001.vdb", 1, silent);
+    const Shot large = with_levels_of(shot, folder / "a.0002.vdb", 2, silent);
+    EXPECT_EQ(small.scattering.lattice_level, 0);
+    EXPECT_EQ(large.scattering.lattice_level, 1);
+    EXPECT_GT(large.lighting.levels, small.lighting.levels);
+    EXPECT_FALSE(leaves_levels_open(large));
+    shot.lighting.levels = 3;
+    EXPECT_EQ(with_levels_of(shot, folder / "a.0002.vdb", 2, silent).lighting.levels, 3);
+    shot.scattering.lattice_level = 0;
+    EXPECT_FALSE(leaves_levels_open(shot));
+    shot.scattering.lattice_level = -1;
+    shot.method = RenderMethod::Path;
+    EXPECT_FALSE(leaves_levels_open(shot));
+}
+
+}  // namespace
+}  // namespace brisance
