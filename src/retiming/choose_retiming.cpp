@@ -160,4 +160,15 @@ RetimingChoice choose_retiming(const RetimingQuestion& question, const ReadFrame
     return choice;
 }
 
+UnitChoice choose_unit(const RetimingQuestion& question, const ReadFrame& read) {
+    RetimingChoice choice;
+    choice.velocity = question.velocity;
+    if (settle_unit(question, read_triples(question.on_disk, read), read, choice))
+        return {choice.velocity, choice.lines.empty() ? "" : choice.lines.front()};
+    choice.velocity.unit = VelocityUnit::Frame;
+    choice.velocity.scale = 0.0;
+    return {choice.velocity, fmt::format("velocity: {}; the smoke is not blurred; set velocity.unit and velocity.scale",
+                                         why_no_motion(choice))};
+}
+
 }  // namespace brisance

@@ -36,6 +36,13 @@ struct RetimingQuestion {
 // is asked for and there is no velocity or its unit cannot be told.
 RetimingChoice choose_retiming(const RetimingQuestion& question, const ReadFrame& read);
 
+// The unit of the velocity alone, told as there. Where it cannot be told, the scale is 0: nothing moves.
+struct UnitChoice {
+    VelocitySettings velocity;
+    std::string line;  // what was found, or why it could not be told
+};
+UnitChoice choose_unit(const RetimingQuestion& question, const ReadFrame& read);
+
 // Relative L2 error of a field, over the nodes of both.
 double relative_error(const BlockGrid& field, const BlockGrid& truth);
 

@@ -29,7 +29,7 @@ const std::vector<Preset>& presets() {
     static const std::vector<Preset> all = {
         {"draft",
          {"lighting.alpha=1", "lighting.error=0.05", "camera.samples_per_axis=1", "camera.edge_refinement=1",
-          "scattering.alpha=1", "scattering.remainder=0.01"}},
+          "scattering.alpha=1", "scattering.remainder=0.01", "shutter.length=0"}},
         {"final", {}},
     };
     return all;

@@ -19,14 +19,15 @@ SourceFiles files_of_own(const Shot& shot, const std::filesystem::path& volume, 
 }
 
 std::vector<VolumePart> parts_of(const Shot& shot, const std::filesystem::path& volume, int frame) {
+    const bool blurred = shot.shutter.length > 0.0;
     std::vector<VolumePart> parts;
     if (const SourceFiles own = volume.empty() ? SourceFiles{} : files_of_own(shot, volume, frame); !own.first.empty())
-        parts.push_back({own, shot.volume, shot.medium, shot.time, shot.velocity, {}});
+        parts.push_back({own, shot.volume, shot.medium, shot.time, shot.velocity, blurred, {}});
     for (const FurtherVolume& further : shot.volumes) {
         const std::string pattern = further.volume.box ? "" : (shot.folder / further.volume.file).string();
         const TimeSettings& time = time_of(shot, further);
-        VolumePart part{{}, further.volume, changed(shot.medium, further.changes), time, velocity_of(shot, further),
-                        {}};
+        VolumePart part{
+            {}, further.volume, changed(shot.medium, further.changes), time, velocity_of(shot, further), blurred, {}};
         if (further.volume.box)
             part.look.fire.model = FireModel::None;
         else
@@ -38,7 +39,8 @@ std::vector<VolumePart> parts_of(const Shot& shot, const std::filesystem::path& 
 }
 
 bool is_settled_part(const VolumePart& part) {
-    return part.settings.box || part.files.single() || is_settled(part.time, part.velocity);
+    const bool unit = !part.blurred || part.velocity.unit != VelocityUnit::Automatic;
+    return part.settings.box || (part.files.single() ? unit : unit && is_settled(part.time, part.velocity));
 }
 
 void make_box(VolumePart& part) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/error.h"
+#include "render/input/frame_velocity.h"
 #include "retiming/between_frames.h"
 #include "volume/frame_path.h"
 #include "volume/mapping.h"
@@ -68,6 +69,8 @@ public:
         return out;
     }
 
+    bool has_velocity() const { return !map_velocity(grids(), settings_.grids, file_.string()).grids.empty(); }
+
     CentredVelocity velocity(Progress& progress) {
         const VelocityMapping mapping = map_velocity(grids(), settings_.grids, file_.string());
         VelocityGrids found;
@@ -111,6 +114,18 @@ private:
     std::vector<GridName> names_;
 };
 
+// Whether the smoke is to be blurred by its velocity. A notice says what keeps it from that.
+bool blurs(const VolumePart& part, bool has_velocity, Progress& progress) {
+    if (!part.blurred || !has_velocity || part.velocity.scale == 0.0)
+        return false;
+    if (part.velocity.unit != VelocityUnit::Automatic)
+        return true;
+    progress.notice(
+        "motion blur: the unit of the velocity is told from neighbouring frames alone: the smoke is not "
+        "blurred; set velocity.unit, such as second for m/s, or shutter.length=0");
+    return false;
+}
+
 SourceFrame read_frame(const std::filesystem::path& file, const VolumePart& part, bool moves, Progress& progress) {
     OpenVolume volume(file, part.settings);
     return {volume.fields(needed_roles(part.look.fire)), moves ? volume.velocity(progress) : CentredVelocity{}};
@@ -124,14 +139,18 @@ std::string describe_all(const GridMapping& mapping, const VolumePart& part, Pro
     return mapping.describe();
 }
 
-Fields read_between(const VolumePart& part, std::string& mapping, Progress& progress) {
+Fields read_between(VolumePart& part, std::string& mapping, Progress& progress) {
     const SourceTime& time = part.files.time;
     const bool moves = part.time.retime == Retime::Advect;
-    mapping = describe_all(OpenVolume(part.files.nearest(), part.settings).mapping(), part, progress);
+    OpenVolume nearest(part.files.nearest(), part.settings);
+    mapping = describe_all(nearest.mapping(), part, progress);
+    const bool blurred = blurs(part, nearest.has_velocity(), progress);
     const std::string where = part.files.first.string();
-    const BetweenFrames pair{read_frame(part.files.first, part, moves, progress),
-                             read_frame(part.files.second, part, moves, progress), time.weight,
+    const BetweenFrames pair{read_frame(part.files.first, part, moves || blurred, progress),
+                             read_frame(part.files.second, part, moves || blurred, progress), time.weight,
                              time.second - time.first, where};
+    if (blurred)
+        part.grids.velocity = frame_velocity(pair, part.velocity, time.rate, placement(part.settings, where));
     progress.stage(fmt::format("{} {} and {}", moves ? "advecting" : "blending", part.files.first.filename().string(),
                                part.files.second.filename().string()));
     if (moves && pair.first.velocity.empty() && pair.second.velocity.empty())
@@ -151,6 +170,9 @@ ReadVolume read_volume(VolumePart& part, ReadAhead* ahead, Progress& progress) {
         OpenVolume volume(part.files.first, part.settings, ahead);
         out.mapping = describe_all(volume.mapping(), part, progress);
         fields = volume.fields(needed_roles(part.look.fire));
+        if (blurs(part, volume.has_velocity(), progress))
+            part.grids.velocity =
+                frame_velocity(volume.velocity(progress), part.velocity, part.files.time.rate, world_from_file);
         out.names = volume.names();
         out.seconds_ahead = volume.seconds_ahead();
     } else {
@@ -164,7 +186,7 @@ ReadVolume read_volume(VolumePart& part, ReadAhead* ahead, Progress& progress) {
             out.bytes += field->values.size() * sizeof(float);
         }
     part.grids = {std::move(fields[kDensity]), std::move(fields[kTemperature]), std::move(fields[kFlame]),
-                  std::move(fields[kColour])};
+                  std::move(fields[kColour]), std::move(part.grids.velocity)};
     return out;
 }
 

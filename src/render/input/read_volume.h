@@ -19,6 +19,7 @@ struct VolumePart {
     MediumSettings look;
     TimeSettings time;
     VelocitySettings velocity;
+    bool blurred = false;  // the shutter is open: velocity is read where there is one
     MediumGrids grids;
 };
 
@@ -30,7 +31,8 @@ struct ReadVolume {
 };
 
 // Reads the grids that the part's look needs, in the world's space: those of one file as they are, or a time between
-// two. Velocity is read only where it moves them. `ahead`: files that were read before, or null. Throws Error.
+// two. Velocity is read only where it moves them or blurs them. `ahead`: files that were read before, or null. Throws
+// Error.
 ReadVolume read_volume(VolumePart& part, ReadAhead* ahead, Progress& progress);
 
 // The field by which retiming is chosen: density, or the first other one that the look needs.

@@ -70,6 +70,24 @@ void settle(Settling& s, Progress& progress) {
     s.velocity = choice.velocity;
 }
 
+// For motion blur, where retiming has not settled the unit.
+void settle_unit(Settling& s, Progress& progress) {
+    if (s.velocity.unit != VelocityUnit::Automatic || s.velocity.scale == 0.0)
+        return;
+    const std::vector<int> on_disk = frames_of(s.pattern);
+    if (on_disk.size() < 2)
+        return;
+    const DecidingField field = deciding_field(s.pattern, on_disk, s.volume, s.look);
+    if (!field.has_velocity)
+        return;
+    progress.stage("unit of the velocity");
+    const RetimingQuestion question{s.time.retime, s.velocity, on_disk, 0, field.name, true, "", s.pattern};
+    const UnitChoice choice = choose_unit(
+        question, [&](int frame) { return read_deciding(resolve_frame(s.pattern, frame), s.volume, field, progress); });
+    progress.notice(choice.line);
+    s.velocity = choice.velocity;
+}
+
 }  // namespace
 
 SourceFiles source_files(const std::string& pattern, const TimeSettings& time, double frame) {
@@ -121,6 +139,8 @@ Shot settle_time(const Shot& given, Progress& progress) {
     if (const std::string pattern = pattern_of_own(shot); has_frame_token(pattern)) {
         Settling own{pattern, shot.volume, shot.medium, shot.time, shot.velocity};
         settle(own, progress);
+        if (given.shutter.length > 0.0)
+            settle_unit(own, progress);
         shot.time = own.time;
         shot.velocity = own.velocity;
     }
@@ -130,9 +150,12 @@ Shot settle_time(const Shot& given, Progress& progress) {
             continue;
         const MediumSettings look = changed(given.medium, volume.changes);
         Settling further{pattern, volume.volume, look, time_of(given, volume), velocity_of(given, volume)};
-        if (is_settled(further.time, further.velocity))
+        const bool unit = given.shutter.length > 0.0 && further.velocity.unit == VelocityUnit::Automatic;
+        if (is_settled(further.time, further.velocity) && !unit)
             continue;
         settle(further, progress);
+        if (unit)
+            settle_unit(further, progress);
         volume.time = further.time;
         volume.velocity = further.velocity;
     }
