@@ -230,8 +230,9 @@ class Volumes(Case):
 class Rendering(VolumeCase):
     def test_bare_volume_gives_picture_and_numbers(self):
         done = self.expect(0, "render", self.volume, *SMALL, "-o", self.out / "a.exr")
-        self.assertEqual(done.stdout.split(), [str(self.out / name) for name in ("a.exr", "a.png", "a.stats.json")])
-        self.assertEqual(self.outputs(), ["a.exr", "a.png", "a.stats.json"])
+        names = ["a.exr", "a.png", "a.stats.json", "a.look.json"]
+        self.assertEqual(done.stdout.split(), [str(self.out / name) for name in names])
+        self.assertEqual(self.outputs(), sorted(names))
         self.assertEqual((self.out / "a.exr").read_bytes()[:4], b"\x76\x2f\x31\x01")
         self.assertEqual((self.out / "a.png").read_bytes()[:4], b"\x89PNG")
         statistics = json.loads((self.out / "a.stats.json").read_text(encoding="utf-8"))
@@ -327,6 +328,20 @@ class Rendering(VolumeCase):
         looks.append(self.look_of(self.folder, "-f", "2"))
         self.assertEqual(len(set(looks)), 1)
         self.assertIn('"looked_at": [1,2,3]', looks[0])
+
+    def test_an_automatic_exposure_is_one_for_a_sequence(self):
+        shutil.copyfile(SOURCE / "volumes" / "candle.vdb", self.folder / "burst_0001.vdb")
+        shutil.copyfile(SOURCE / "volumes" / "explosion.vdb", self.folder / "burst_0002.vdb")
+        self.write("a.json", json.dumps({"volume": {"file": "burst_####.vdb"}, "fire": {"model": "blackbody", "temperature_in": [0, 1000],
+                                                           "temperature_kelvin": [0, 1000]}}))
+        stops = set()
+        for frame in (1, 2):
+            done = self.expect(0, "render", "a.json", *SMALL, "-f", frame, "-o", self.out / "a.#.exr",
+                               says=["the shot has no camera", "chosen from a small picture of frame"])
+            self.assertNotIn("chosen from the picture", done.stderr)
+            text = (self.out / f"a.{frame}.stats.json").read_text(encoding="utf-8")
+            stops.add(json.loads(text)["png_exposure_stops"])
+        self.assertEqual(len(stops), 1)
 
     def test_a_look_is_written_used_and_overridden(self):
         self.expect(0, "inspect", SOURCE / "volumes" / "candle.vdb", "--write-look", "kept.look.json")
