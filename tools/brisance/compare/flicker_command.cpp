@@ -118,7 +118,7 @@ VariantChange change_of(const std::string& name, const Image& still, const Image
 }
 
 std::string shown(double value) {
-    return value == 0.0 ? "0" : fmt::format("{:.2g} %", 100.0 * value);
+    return value == 0.0 ? "0" : fmt::format("{:.3g} %", 100.0 * value);
 }
 
 std::string text_of(const std::vector<VariantChange>& changes, double error) {
