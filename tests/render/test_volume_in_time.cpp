@@ -1,6 +1,7 @@
 // A sequence of files at whole times, between them, beyond its ends and over its holes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
@@ -102,6 +103,61 @@ TEST_F(VolumeInTime, BetweenFramesSmokeHasMovedOn) {
     ASSERT_GE(listener.notices.size(), 2u);
     EXPECT_NE(listener.notices[0].find("0.25"), std::string::npos) << listener.notices[0];
     EXPECT_NE(listener.notices[1].find("retime=advect"), std::string::npos) << listener.notices[1];
+}
+
+// [m per frame], where there is much smoke.
+vec3 velocity_within(const Medium& medium) {
+    vec3 sum(0.0f);
+    float weight = 0.0f;
+    for (std::size_t i = 0; i < medium.velocity.size(); ++i) {
+        sum += medium.extinction[i] * medium.velocity[i];
+        weight += medium.extinction[i];
+    }
+    return weight > 0.0f ? sum / weight : sum;
+}
+
+TEST_F(VolumeInTime, AnOpenShutterReadsTheVelocityInMetresPerFrame) {
+    shot_.velocity.unit = VelocityUnit::Second;
+    shot_.velocity.frames_per_second = 24.0;
+    shot_.shutter.length = 0.5;
+    const vec3 v = velocity_within(medium(shot_, 3));
+    EXPECT_NEAR(v.x, kSpeed / kUnit / 24.0, 1e-5);
+    EXPECT_NEAR(glm::length(v), v.x, 1e-6);
+    shot_.volume.world_from_file = dmat4(dmat3(10.0));  // moves smoke and velocity alike
+    EXPECT_NEAR(velocity_within(medium(shot_, 3)).x, 10.0 * kSpeed / kUnit / 24.0, 1e-4);
+    shot_.shutter.length = 0.0;
+    EXPECT_TRUE(medium(shot_, 3).velocity.empty());
+}
+
+TEST_F(VolumeInTime, TheUnitForBlurIsSettledForTheSequence) {
+    shot_.shutter.length = 0.5;
+    testing::Listener listener;
+    const Shot settled = settle_time(shot_, listener);
+    EXPECT_EQ(settled.velocity.unit, VelocityUnit::Frame);
+    ASSERT_FALSE(listener.notices.empty());
+    EXPECT_NEAR(velocity_within(medium(settled, 2)).x, kSpeed, 0.05 * kSpeed);
+}
+
+// At half the speed smoke moves half as far in a frame of the picture, also at times between files.
+TEST_F(VolumeInTime, BlurFollowsTheSpeedOfTime) {
+    shot_.shutter.length = 0.5;
+    shot_.velocity.unit = VelocityUnit::Frame;
+    shot_.velocity.scale = kUnit;
+    shot_.time.speed = 0.5;
+    shot_.time.retime = Retime::Advect;
+    EXPECT_NEAR(velocity_within(medium(shot_, 5)).x, 0.5 * kSpeed, 1e-4);
+    EXPECT_NEAR(velocity_within(medium(shot_, 4)).x, 0.5 * kSpeed, 0.03);
+    shot_.time.speed = 0.0;
+    EXPECT_EQ(velocity_within(medium(shot_, 5)), vec3(0.0f));
+}
+
+TEST_F(VolumeInTime, ASingleFileDoesNotTellTheUnit) {
+    shot_.shutter.length = 0.5;
+    shot_.volume.file = "smoke_0003.vdb";
+    testing::Listener listener;
+    EXPECT_TRUE(medium(shot_, 3, listener).velocity.empty());
+    const auto said = [](const std::string& line) { return line.find("velocity.unit") != std::string::npos; };
+    EXPECT_TRUE(std::any_of(listener.notices.begin(), listener.notices.end(), said));
 }
 
 TEST_F(VolumeInTime, WhatIsSettledDoesNotDependOnWhoSettlesIt) {
