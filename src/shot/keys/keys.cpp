@@ -42,7 +42,7 @@ Sections all_sections() {
         {"volume", "the OpenVDB file, its grids and its position"},
         {"volume.grids", "which grid plays which role: \"name\" or \"name[index]\", null for automatic, \"\" for none"},
         {"time", "which time of a sequence of volumes each frame of the picture shows"},
-        {"velocity", "how far a volume's velocity moves its smoke; read only where times between frames are made"},
+        {"velocity", "how far a volume's velocity moves its smoke; read for times between frames and for motion blur"},
         {"smoke", "from density to optical coefficients"},
         {"fire", "what glows"},
         {"scene", "surfaces and lights around the volume"},
