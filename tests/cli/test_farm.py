@@ -5,6 +5,7 @@ usage: test_farm.py BINARY SOURCE_FOLDER [CLASS]
 
 import json
 import os
+import pathlib
 import signal
 import subprocess
 import sys
@@ -13,6 +14,7 @@ import unittest
 import test_cli
 from test_cli import BINARY, SMALL, VolumeCase
 
+CAMERA = {"eye": [0, -9, 2], "target": [0, 0, 2]}
 EXR_ONLY = ["--set", "output.png=false", "--set", "output.statistics=false"]
 
 
@@ -130,8 +132,8 @@ class SkipExisting(FarmCase):
 
 class Inputs(FarmCase):
     def test_every_file_once(self):
-        shot = self.write("a.json", json.dumps({"volume": {"file": self.pattern}, "scene": {"lights": [
-            {"kind": "environment", "file": "sky.exr"}]}}))
+        sky = {"lights": [{"kind": "environment", "file": "sky.exr"}]}
+        shot = self.write("a.json", json.dumps({"volume": {"file": self.pattern}, "scene": sky, "camera": CAMERA}))
         self.expect(66, "render", shot, "--list-inputs", "-f", "1-2", says=["sky.exr", "is not there"])
         (self.folder / "sky.exr").write_bytes(b"")
         expected = [str(shot), *(str(self.folder / name) for name in ("burst_0001.vdb", "sky.exr", "burst_0002.vdb"))]
@@ -139,19 +141,35 @@ class Inputs(FarmCase):
             done = self.expect(0, command, shot, "--list-inputs", "-f", "1-2")
             self.assertEqual(done.stdout.splitlines(), expected)
         done = self.expect(0, "render", shot, "--list-inputs", "--task-index", 4, "--task-count", 5)
-        self.assertEqual(done.stdout.splitlines(), [expected[0], str(self.folder / "burst_0005.vdb"), expected[2]])
+        # The first of the largest files decides the lattices of all.
+        self.assertEqual(done.stdout.splitlines(), [*expected[:2], str(self.folder / "burst_0005.vdb"), expected[2]])
         self.assertEqual(self.outputs(), [])
+
+    def test_what_decides_a_look_or_a_camera_is_among_them(self):
+        volumes = [str(self.folder / f"burst_{frame:04}.vdb") for frame in range(1, 6)]
+        shot = self.write("a.json", json.dumps({"volume": {"file": self.pattern}}))
+        look = self.folder / "a.look.json"
+        self.expect(0, "inspect", self.pattern, "--write-look", look)
+        for input_, more, shared in ((self.pattern, [], volumes), (self.folder, [], volumes), (shot, [], [shot, *volumes]),
+                                     (self.pattern, ["--look", look], [look, *volumes[:2]])):
+            done = self.expect(0, "render", input_, *more, "--list-inputs", "-f", "2")
+            self.assertEqual([pathlib.Path(line).name for line in done.stdout.splitlines()],
+                             [pathlib.Path(file).name for file in shared])
 
     def test_the_file_that_decides_for_all_is_among_them(self):
         with (self.folder / "burst_0005.vdb").open("ab") as file:
             file.write(b"more")
-        shot = self.write("a.json", json.dumps({"volume": {"file": self.pattern}, "method": "auto"}))
+        shot = self.write("a.json", json.dumps({"volume": {"file": self.pattern}, "method": "auto", "camera": CAMERA}))
         done = self.expect(0, "render", shot, "--list-inputs", "-f", "1")
         self.assertEqual([line.rsplit("/", 1)[-1] for line in done.stdout.splitlines()],
                          ["a.json", "burst_0005.vdb", "burst_0001.vdb"])
 
     def test_plan_as_json(self):
-        plan = json.loads(self.expect(0, "plan", *self.asked, "-f", "1-2", "--json").stdout)
+        asked = ["plan", *self.asked, "-f", "1-2", "--json"]
+        lamps = json.loads(self.expect(0, *asked).stdout)["frames"][0]  # those of the first look
+        self.assertIsNone(lamps["seconds"])
+        self.assertTrue(lamps["why_no_seconds"])
+        plan = json.loads(self.expect(0, *asked, "--set", "scene.lights=[]").stdout)
         documented = documented_keys("plan --json")
         self.assertLessEqual(set(plan), documented)
         self.assertEqual(plan["schema_version"], 1)

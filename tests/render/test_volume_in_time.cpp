@@ -175,6 +175,7 @@ TEST_F(VolumeInTime, NothingIsReadThatNoFrameNeeds) {
     for (const double speed : {1.0, 2.0}) {
         Shot whole = shot_;
         whole.time.speed = speed;
+        whole.shutter.length = 0.0;
         whole.volume.grids.velocity = {{"no such grid"}};
         testing::Listener listener;
         EXPECT_EQ(settle_time(whole, listener).time.retime, Retime::Automatic);
@@ -182,15 +183,20 @@ TEST_F(VolumeInTime, NothingIsReadThatNoFrameNeeds) {
         EXPECT_NO_THROW(medium(whole, 2));
     }
     Shot linear = shot_;
+    linear.shutter.length = 0.0;
     linear.time.speed = 0.5;
     linear.time.retime = Retime::Linear;
     linear.volume.grids.velocity = {{"no such grid"}};
     EXPECT_NO_THROW(medium(linear, 4));
-    linear.time.retime = Retime::Advect;
-    linear.velocity.unit = VelocityUnit::Frame;
-    const Failure failure = failure_of([&] { medium(linear, 4); });
-    EXPECT_EQ(failure.code, ExitCode::BadData);
-    EXPECT_TRUE(contains(failure.message, "volume.grids.velocity")) << failure.message;
+    Shot advected = linear, blurred = linear;
+    advected.time.retime = Retime::Advect;
+    blurred.shutter.length = 0.5;
+    for (Shot* needs_velocity : {&advected, &blurred}) {
+        needs_velocity->velocity.unit = VelocityUnit::Frame;
+        const Failure failure = failure_of([&] { medium(*needs_velocity, 4); });
+        EXPECT_EQ(failure.code, ExitCode::BadData);
+        EXPECT_TRUE(contains(failure.message, "volume.grids.velocity")) << failure.message;
+    }
 }
 
 TEST_F(VolumeInTime, AVelocityOfAKindThatIsNoneIsRefused) {

@@ -64,6 +64,14 @@ Look decide_for(const Stated& stated, Progress& progress) {
     return decide_look(survey_sequence(volume_pattern(stated.shot), stated.shot.volume, progress), stated);
 }
 
+// Files of a sequence on disk: a survey reads the headers of all, and the voxels of some.
+std::vector<fs::path> surveyed_files(const std::string& pattern) {
+    std::vector<fs::path> files;
+    for (const FrameFile& frame : resolve_sequence(pattern, std::nullopt))
+        files.push_back(frame.file.lexically_normal());
+    return files;
+}
+
 Look look_named(const std::string& name, const Stated& stated, bool& decided, Progress& progress) {
     decided = name.empty() || name == kDecideLook;
     Look look = decided ? decide_for(stated, progress) : read_look(name);
@@ -91,10 +99,12 @@ LoadedShot load_volume(const std::string& input, const ShotOptions& options, con
         parse_shot(one_line_json(shot_of_look(look, stated)), whence(look_name), {}, with_volume(volumes, options));
     if (out.shot.name.empty())
         out.shot.name = fs::path(volumes).stem().string();
-    if (decided)
+    if (decided) {
         out.look = look;
-    else if (look.volume != fs::path(volumes).filename().string())
+        out.looked_at = surveyed_files(volume_pattern(stated.shot));
+    } else if (look.volume != fs::path(volumes).filename().string()) {
         progress.notice(fmt::format("{} was made for {}", look_name, look.volume));
+    }
     return out;
 }
 
@@ -117,16 +127,18 @@ LoadedShot load_file(const std::string& input, const ShotOptions& options, const
     if (stated.shot.volume.file.empty())
         throw Error(ExitCode::Usage, fmt::format("{}: has no volume.file: there is nothing to have a look at", input));
     Look look;
-    if (look_name.empty()) {
+    bool decided = look_name.empty();
+    if (decided) {
         look = decide_camera(survey_sequence(volume_pattern(stated.shot), stated.shot.volume, progress), stated);
         tell("the shot has no camera: one is framed on the whole sequence:", look, progress);
     } else {
-        bool decided = false;
         look = look_named(look_name, stated, decided, progress);
         tell("what the shot leaves open comes from " + whence(look_name) + ":", look, progress);
         if (decided)
             out.look = look;
     }
+    if (decided)
+        out.looked_at = surveyed_files(volume_pattern(stated.shot));
     ShotOptions layers = options;
     layers.base = one_line_json(shot_of_look(look, stated));
     layers.base_source = whence(look_name);

@@ -18,7 +18,8 @@ inline constexpr const char* kDecideLook = "auto";
 
 struct LoadedShot {
     Shot shot;
-    std::optional<Look> look;  // decided here, from the frames on disk
+    std::optional<Look> look;                      // decided here, from the frames on disk
+    std::vector<std::filesystem::path> looked_at;  // by which the look or the camera was decided here
 };
 
 // The volumes of a command line: a .vdb, a pattern of several, or a folder that holds those of one sequence, which

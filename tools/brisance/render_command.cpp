@@ -234,10 +234,14 @@ ExitCode render_all(Shot& shot, Todo& todo, const RenderOptions& options, FrameS
                 progress.say(without_last_newline(rendered.statistics.explain()));
         };
         const std::string what = frames.size() > 1 ? fmt::format("frame {}: ", frame.frame) : "";
+        const fs::path look_file = todo.look_file;
         const bool done = attempt(what, work, progress, failures);
         if (!done && !options.keep_going)
             break;
-        progress.end_frame(frame.frame, done ? files_on_disk(todo.outputs[i]) : std::vector<std::string>{});
+        std::vector<std::string> written = done ? files_on_disk(todo.outputs[i]) : std::vector<std::string>{};
+        if (done && !look_file.empty())
+            written.push_back(look_file.string());
+        progress.end_frame(frame.frame, written);
         if (done)
             images.push_back(todo.outputs[i].exr.string());
     }
@@ -261,7 +265,7 @@ int run_render(const RenderOptions& options) {
         return static_cast<int>(ExitCode::Success);
     }
     if (options.list_inputs)
-        return list_inputs(shot, options, progress);
+        return list_inputs(loaded, options, progress);
     Failures failures;
     FrameStamps stamps(shot, BRISANCE_VERSION, deciding_files(shot));
     Todo todo = what_to_do(shot, options, stamps, progress, failures);

@@ -114,9 +114,10 @@ private:
     std::vector<GridName> names_;
 };
 
-// Whether the smoke is to be blurred by its velocity. A notice says what keeps it from that.
-bool blurs(const VolumePart& part, bool has_velocity, Progress& progress) {
-    if (!part.blurred || !has_velocity || part.velocity.scale == 0.0)
+// Whether the smoke is to be blurred by its velocity, which is not looked for where the shutter is closed. A notice
+// says what keeps it from that.
+bool blurs(const VolumePart& part, const OpenVolume& volume, Progress& progress) {
+    if (!part.blurred || part.velocity.scale == 0.0 || !volume.has_velocity())
         return false;
     if (part.velocity.unit != VelocityUnit::Automatic)
         return true;
@@ -144,7 +145,7 @@ Fields read_between(VolumePart& part, std::string& mapping, Progress& progress) 
     const bool moves = part.time.retime == Retime::Advect;
     OpenVolume nearest(part.files.nearest(), part.settings);
     mapping = describe_all(nearest.mapping(), part, progress);
-    const bool blurred = blurs(part, nearest.has_velocity(), progress);
+    const bool blurred = blurs(part, nearest, progress);
     const std::string where = part.files.first.string();
     const BetweenFrames pair{read_frame(part.files.first, part, moves || blurred, progress),
                              read_frame(part.files.second, part, moves || blurred, progress), time.weight,
@@ -170,7 +171,7 @@ ReadVolume read_volume(VolumePart& part, ReadAhead* ahead, Progress& progress) {
         OpenVolume volume(part.files.first, part.settings, ahead);
         out.mapping = describe_all(volume.mapping(), part, progress);
         fields = volume.fields(needed_roles(part.look.fire));
-        if (blurs(part, volume.has_velocity(), progress))
+        if (blurs(part, volume, progress))
             part.grids.velocity =
                 frame_velocity(volume.velocity(progress), part.velocity, part.files.time.rate, world_from_file);
         out.names = volume.names();

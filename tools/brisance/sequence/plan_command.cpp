@@ -31,11 +31,22 @@ void require_file(const fs::path& file) {
                     fmt::format("{} is read and is not there; copy it to its place", file.string()));
 }
 
-// Beside a frame's own files: the shot, or the volume that stands for one, and what decides for all frames.
-std::vector<fs::path> shared_files(const Shot& shot, const RenderOptions& options) {
-    std::vector<fs::path> files = deciding_files(shot);
-    const fs::path input = options.input;
-    files.insert(files.begin(), input.extension() == ".vdb" ? telling_file(options.input) : input);
+void add_once(std::vector<fs::path>& files, const fs::path& file) {
+    if (std::find(files.begin(), files.end(), file) == files.end())
+        files.push_back(file);
+}
+
+// Beside a frame's own files: the shot, its look, and what decides for all frames.
+std::vector<fs::path> shared_files(const LoadedShot& loaded, const RenderOptions& options) {
+    std::vector<fs::path> files;
+    if (std::error_code error; fs::path(options.input).extension() != ".vdb" && !fs::is_directory(options.input, error))
+        add_once(files, options.input);
+    if (!options.look.empty() && options.look != kDecideLook)
+        add_once(files, options.look);
+    for (const fs::path& file : loaded.looked_at)
+        add_once(files, file);
+    for (const fs::path& file : deciding_files(loaded.shot))
+        add_once(files, file);
     return files;
 }
 
@@ -99,14 +110,13 @@ void print_text(const Shot& shot, const std::vector<FrameFile>& frames, const st
 
 }  // namespace
 
-int list_inputs(const Shot& shot, const RenderOptions& options, TextProgress& progress) {
+int list_inputs(const LoadedShot& loaded, const RenderOptions& options, TextProgress& progress) {
     Failures failures;
-    const FrameJob job = usable_frames(shot, options, progress, failures);
-    std::vector<fs::path> files = shared_files(shot, options);
+    const FrameJob job = usable_frames(loaded.shot, options, progress, failures);
+    std::vector<fs::path> files = shared_files(loaded, options);
     for (const FrameFile& frame : job.frames)
-        for (const fs::path& file : input_files(shot, frame))
-            if (std::find(files.begin(), files.end(), file) == files.end())
-                files.push_back(file);
+        for (const fs::path& file : input_files(loaded.shot, frame))
+            add_once(files, file);
     progress.finish();
     std::for_each(files.begin(), files.end(), require_file);
     for (const fs::path& file : files)
@@ -117,9 +127,10 @@ int list_inputs(const Shot& shot, const RenderOptions& options, TextProgress& pr
 int run_plan(const PlanOptions& options) {
     TextProgress progress(options.render.progress);
     const ThreadLimit limit(options.render.threads);
-    Shot shot = load_for(options.render, progress).shot;
+    const LoadedShot loaded = load_for(options.render, progress);
     if (options.render.list_inputs)
-        return list_inputs(shot, options.render, progress);
+        return list_inputs(loaded, options.render, progress);
+    Shot shot = loaded.shot;
     Failures failures;
     const FrameJob job = usable_frames(shot, options.render, progress, failures);
     const std::vector<FrameOutput> outputs = name_outputs(shot, options.render.output, job.frames, job.several);

@@ -13,8 +13,9 @@ struct PlanOptions {
 // Prints what a render would read and do, to standard output. Throws Error.
 int run_plan(const PlanOptions& options);
 
-// Prints every file that the frames asked for read, one on each line, each once: the shot first. Returns the exit code.
+// Prints every file that the frames asked for read, one on each line, each once: the shot first, and what decides for
+// all frames. Returns the exit code.
 // Throws Error MissingInput for the first that is not there.
-int list_inputs(const Shot& shot, const RenderOptions& options, TextProgress& progress);
+int list_inputs(const LoadedShot& loaded, const RenderOptions& options, TextProgress& progress);
 
 }  // namespace brisance
