@@ -118,6 +118,15 @@ class CommandLine(Case):
         self.expect(2, "rendr", "a.json", says="brisance: error: unknown command rendr; did you mean render?")
         self.expect(2, "render", "a.json", "--frmes", "1",
                     says="brisance: error: unknown option --frmes; did you mean --frames?")
+        self.expect(2, "inspect", "a.vdb", "-f", "1-3",
+                    says="brisance: error: unknown option -f; `brisance inspect --help` lists all options")
+        self.expect(2, "inspect", "a.vdb", "b.vdb", says="brisance: error: unexpected argument b.vdb; ")
+        for option, word, words in (
+                ("--preset", "drfat", "draft, final, got drfat; did you mean draft?"),
+                ("--method", "pth", "lighting_grid, path, auto, got pth; did you mean path?"),
+                ("--progress", "palin", "alfred, auto, bar, ndjson, none, plain, tty, got palin; did you mean plain?")):
+            self.expect(2, "render", "a.json", option, word,
+                        says=f"brisance: error: {option}: expected one of {words}")
         done = self.expect(2, "\x1b[31m\xff", says="unknown command")
         self.assertNotIn("\x1b", done.stderr)
 
