@@ -219,8 +219,9 @@ private:
         const std::string help =
             fmt::format("`brisance {}--help` lists all options", &app == &app_ ? "" : app.get_name() + " ");
         const std::vector<std::string> unexpected = app.remaining();
-        if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError) || unexpected.empty())
-            return fmt::format("{}; {}", printable(error.what()), help);
+        const std::string what = printable(error.what());
+        if (unexpected.empty())
+            return fmt::format("{}{} {}", what, what.ends_with('?') ? "" : ";", help);
         const std::string& given = unexpected.front();
         const std::string name = printable(given.substr(0, given.find('=')), kLongestName);
         if (!given.starts_with('-'))
