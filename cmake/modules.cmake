@@ -18,9 +18,9 @@ if(BRISANCE_SANITIZE)
     # The sanitizers' own dlopen knows no run path but the kind that the whole program inherits.
     target_link_options(brisance_options INTERFACE -Wl,--disable-new-dtags)
 endif()
-# The modules whose readers are fuzzed. The others are linked for what the target `shot` knows of them, and would take
+# The modules whose readers are fuzzed. The others are linked for what the targets `shot` and `look` know of them, and would take
 # most of the time of that build with their templates optimised and instrumented.
-set(BRISANCE_FUZZED_MODULES core codec volume surfaces scene film reference shot)
+set(BRISANCE_FUZZED_MODULES core codec volume surfaces scene film reference shot first_look)
 if(BRISANCE_FUZZ)
     target_compile_options(brisance_options INTERFACE -fsanitize=fuzzer-no-link)
     # What is instrumented in a plugin reports to libFuzzer, which is in the program.

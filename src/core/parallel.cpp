@@ -9,10 +9,16 @@
 #if defined(__SANITIZE_THREAD__)
 #include <sanitizer/tsan_interface.h>
 
+// With a short history stacks are lost, and suppressions find nothing to match. OpenVDB's child is forked from threads.
+extern "C" const char* __tsan_default_options() {  // NOLINT(readability-identifier-naming,bugprone-*)
+    return "history_size=7:die_after_fork=0";
+}
+
 // What oneTBB's templates, and OpenVDB's in tests that write files, do to objects that the uninstrumented libraries
-// hand from thread to thread, atomics among them; not what our loops' bodies do.
+// hand from thread to thread, atomics among them, and the memory that oneTBB clears; not what our loops' bodies do.
 extern "C" const char* __tsan_default_suppressions() {  // NOLINT(readability-identifier-naming,bugprone-*)
-    return "race_top:tbb::detail\nrace_top:oneapi/tbb/\nrace_top:bits/atomic_base.h\nrace:openvdb::\n";
+    return "race_top:tbb::detail\nrace_top:oneapi/tbb/\nrace_top:bits/atomic_base.h\ncalled_from_lib:libtbb.so\n"
+           "race:openvdb::\n";
 }
 #endif
 

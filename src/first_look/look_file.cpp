@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/error.h"
 #include "core/input_file.h"
+#include "core/printable.h"
 #include "shot/json_text.h"
+#include "shot/read_shot.h"
 
 namespace brisance {
 
@@ -34,11 +37,25 @@ const Json& part(const Json& json, const char* name, Json::value_t kind, const s
 std::vector<int> integers(const Json& list, const char* name, const std::string& source) {
     std::vector<int> out;
     for (const Json& item : list) {
-        if (!item.is_number_integer())
-            reject(source, fmt::format("\"{}\" must hold whole numbers", name));
+        if (!item.is_number_integer() || std::abs(item.get<double>()) > double(std::numeric_limits<int>::max()))
+            reject(source, fmt::format("\"{}\" must hold whole numbers of at most 31 bits", name));
         out.push_back(item.get<int>());
     }
     return out;
+}
+
+// Keys become paths into a shot, so only keys of a shot are safe.
+LookDecision decision_of(const std::string& key, const Json& decision, const JsonText& text,
+                         const std::string& source) {
+    const std::string shown = printable(key, kLongestName);
+    if (!decision.is_object() || !decision.contains("value"))
+        reject(source, fmt::format("decision \"{}\" has no \"value\"", shown));
+    const auto line = text.line_of_key.find("decisions." + key);
+    check_setting(line == text.line_of_key.end() ? source : fmt::format("{}:{}", source, line->second), key,
+                  decision["value"]);
+    const auto why = decision.find("why");
+    const bool reasoned = why != decision.end() && why->is_string();
+    return {key, decision["value"], reasoned ? why->get<std::string>() : ""};
 }
 
 std::string dump(const Json& json) {
@@ -86,7 +103,7 @@ std::vector<std::string> describe_look(const Look& look) {
     for (const LookDecision& d : look.decisions) {
         std::string value = dump(d.value);
         if (value.size() > 60)
-            value = d.value.is_array() ? fmt::format("({} entries)", d.value.size()) : value.substr(0, 60);
+            value = d.value.is_array() ? fmt::format("({} entries)", d.value.size()) : printable(value, 60);
         lines.push_back(fmt::format("{} = {}{}{}", d.key, value, d.why.empty() ? "" : "  # ", d.why));
     }
     return lines;
@@ -109,7 +126,8 @@ std::string look_to_json(const Look& look) {
 
 Look look_from_json(const std::string& text, const std::string& source) {
     using Kind = Json::value_t;
-    const Json json = parse_json_text(text, source).value;
+    const JsonText parsed = parse_json_text(text, source);
+    const Json& json = parsed.value;
     if (!json.is_object() || !json.contains("brisance_look"))
         reject(source, "is no look");
     if (json["brisance_look"] != kVersion)
@@ -125,13 +143,8 @@ Look look_from_json(const std::string& text, const std::string& source) {
     look.fill[0] = fill[0].get<double>(), look.fill[1] = fill[1].get<double>();
     for (const Json& line : part(json, "warnings", Kind::array, source))
         look.warnings.push_back(line.is_string() ? line.get<std::string>() : dump(line));
-    for (const auto& [key, decision] : part(json, "decisions", Kind::object, source).items()) {
-        if (!decision.is_object() || !decision.contains("value"))
-            reject(source, fmt::format("decision \"{}\" has no \"value\"", key));
-        const auto why = decision.find("why");
-        look.decisions.push_back(
-            {key, decision["value"], why != decision.end() && why->is_string() ? why->get<std::string>() : ""});
-    }
+    for (const auto& [key, decision] : part(json, "decisions", Kind::object, source).items())
+        look.decisions.push_back(decision_of(key, decision, parsed, source));
     return look;
 }
 

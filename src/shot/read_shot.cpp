@@ -81,10 +81,20 @@ bool is_section(const std::string& path) {
     return path.empty();
 }
 
+std::string first_key_below(const std::string& section) {
+    for (const Key& key : shot_keys())
+        if (section.empty() || key.path.starts_with(section + "."))
+            return key.path;
+    return {};
+}
+
 [[noreturn]] void reject_key(const std::string& where, const std::string& path) {
     if (const std::optional<std::string> renamed = renamed_key(path))
         throw Error(ExitCode::Usage, fmt::format("{}: {}", where, *renamed));
     const std::string shown = printable(path, kLongestName);
+    if (is_section(path))
+        throw Error(ExitCode::Usage, fmt::format("{}: {} is no key but holds some, such as {}", where,
+                                                 path.empty() ? "\"\"" : path, first_key_below(path)));
     std::vector<std::string> known;
     for (const Key& key : shot_keys())
         known.push_back(key.path);
@@ -192,6 +202,15 @@ Shot parse_shot(const std::string& text, const std::string& source, const std::f
         for (const auto& [key, where] : layering.given())
             given->insert(key);
     return shot;
+}
+
+void check_setting(const std::string& where, const std::string& path, const Json& value) {
+    const Key* const key = find_key(path);
+    if (key == nullptr)
+        reject_key(where, path);
+    Shot shot;
+    if (!key->set(shot, value))
+        reject_value_of(*key, where, value);
 }
 
 }  // namespace brisance

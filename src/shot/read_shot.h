@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "codec/codec.h"
 #include "shot/shot.h"
 
 namespace brisance {
@@ -30,5 +31,8 @@ Shot read_shot(const std::filesystem::path& file, const ShotOptions& options = {
 // The same from text. `source` stands for the file in messages; relative paths of the shot are relative to `folder`.
 Shot parse_shot(const std::string& text, const std::string& source, const std::filesystem::path& folder,
                 const ShotOptions& options = {}, std::set<std::string>* given = nullptr);
+
+// Throws Error Usage, beginning with `where`, unless `path` is a key of a shot ("smoke.albedo") that accepts `value`.
+void check_setting(const std::string& where, const std::string& path, const Json& value);
 
 }  // namespace brisance

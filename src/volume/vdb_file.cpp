@@ -120,7 +120,8 @@ public:
     }
 
     const std::vector<GridInfo>& grids() const { return grids_; }
-    bool ended() const { return ended_; }
+    // Whether another child must answer: this one ended, or met damage that may have changed its memory.
+    bool spent() const { return spent_; }
 
     std::size_t find(const std::string& name, int index) const {
         std::string present;
@@ -153,7 +154,7 @@ private:
         char done = 0;
         if (child_.line().receive(&done, 1))
             return;
-        ended_ = true;
+        spent_ = true;
         throw_end(child_.wait());
     }
 
@@ -176,10 +177,11 @@ private:
             SharedReader in(desk_.answer());
             if (in.get<Outcome>() == Outcome::Value)
                 return get(in);
+            spent_ = true;
             const auto code = in.get<ExitCode>();
             throw Error(code, in.get_text());
         } catch (const std::out_of_range&) {
-            ended_ = true;  // as good as
+            spent_ = true;
             throw_end(ChildEnd::Crashed);
         }
     }
@@ -202,7 +204,7 @@ private:
     Desk desk_;
     ChildProcess child_;
     std::vector<GridInfo> grids_;
-    bool ended_ = false;
+    bool spent_ = false;
 };
 
 double GridInfo::voxel_volume() const {
@@ -214,14 +216,14 @@ VdbReader::VdbReader(const std::filesystem::path& file)
 
 VdbReader::~VdbReader() = default;
 
-// One damaged grid does not hide the others.
-void VdbReader::start_again_if_ended() {
-    if (session_->ended())
+// One damaged grid neither hides the others nor changes their voxels.
+void VdbReader::start_again_if_spent() {
+    if (session_->spent())
         session_ = std::make_unique<Session>(file_);
 }
 
 BlockGrid VdbReader::read(const std::string& name, int index, std::uint64_t memory_limit_bytes) {
-    start_again_if_ended();
+    start_again_if_spent();
     const std::size_t k = session_->find(name, index);
     const GridInfo& info = session_->grids()[k];
     if (!info.usable)
@@ -235,7 +237,7 @@ BlockGrid VdbReader::read(const std::string& name, int index, std::uint64_t memo
 }
 
 GridCensus VdbReader::census(const std::string& name, int index, int bins) {
-    start_again_if_ended();
+    start_again_if_spent();
     const std::size_t k = session_->find(name, index);
     const ReceivedGrid grid = session_->load(k, std::numeric_limits<std::uint64_t>::max());
     return grid.voxels ? count_voxels(*grid.voxels, bins) : grid.census;

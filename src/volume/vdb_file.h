@@ -57,7 +57,8 @@ struct BlockGrid {
 
 // Reads one file in a child process, which OpenVDB cannot leave: a damaged file makes it overwrite memory, run for ever
 // or take all memory. The child may take 256 MiB and 100 bytes for each byte of the file, 5 s of processor time and 1 s
-// for each MiB; beyond that, and where it crashes, the file is damaged.
+// for each MiB; beyond that, and where it crashes, the file is damaged. A grid that cannot be read may have changed the
+// memory of its child: what is asked next is asked of a new one.
 // Throws Error: MissingInput (no such file), BadData (not a VDB, truncated, damaged, a Git LFS pointer, no grid...),
 // Temporary (no process, or no memory, for the child).
 class VdbReader {
@@ -77,7 +78,7 @@ public:
 
 private:
     class Session;
-    void start_again_if_ended();
+    void start_again_if_spent();
 
     std::filesystem::path file_;
     std::unique_ptr<Session> session_;

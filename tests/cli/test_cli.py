@@ -118,6 +118,16 @@ class CommandLine(Case):
         self.expect(2, "rendr", "a.json", says="brisance: error: unknown command rendr; did you mean render?")
         self.expect(2, "render", "a.json", "--frmes", "1",
                     says="brisance: error: unknown option --frmes; did you mean --frames?")
+        self.expect(2, "inspect", "a.vdb", "-f", "1-3",
+                    says="brisance: error: unknown option -f; `brisance inspect --help` lists all options")
+        self.expect(2, "--bogus", says="brisance: error: unknown option --bogus; did you mean --")
+        self.expect(2, "inspect", "a.vdb", "b.vdb", says="brisance: error: unexpected argument b.vdb; ")
+        for option, word, words in (
+                ("--preset", "drfat", "draft, final, got drfat; did you mean draft?"),
+                ("--method", "pth", "lighting_grid, path, auto, got pth; did you mean path?"),
+                ("--progress", "palin", "alfred, auto, bar, ndjson, none, plain, tty, got palin; did you mean plain?")):
+            self.expect(2, "render", "a.json", option, word,
+                        says=f"brisance: error: {option}: expected one of {words}")
         done = self.expect(2, "\x1b[31m\xff", says="unknown command")
         self.assertNotIn("\x1b", done.stderr)
 
@@ -192,6 +202,14 @@ class Volumes(Case):
             self.expect(65, "render", "a.json", says=name)
             self.expect(65, "inspect", name, says=name)
         self.assertEqual(self.names(), ["a.json", "empty.vdb", "text.vdb"])
+
+    def test_a_damaged_grid_does_not_hide_the_others(self):
+        damaged = bytearray((SOURCE / "volumes" / "candle.vdb").read_bytes())
+        damaged[41465] = 0xff  # the size of a block of its density
+        (self.folder / "damaged.vdb").write_bytes(damaged)
+        text = self.expect(65, "inspect", "damaged.vdb").stdout
+        self.assertRegex(text, r"temperature\[0\][^\n]*\n  voxels     5249 active[^?]*\n  usable")
+        self.assertIn("cannot be rendered: damaged.vdb", text)
 
     def test_further_volumes_are_found_missing_before_rendering(self):
         self.write("a.json", json.dumps({"scene": {"spheres": [{"centre": [0, 0, 0], "radius": 1}]},

@@ -48,6 +48,38 @@ TEST(LookFile, ADamagedOneGivesOneLine) {
     EXPECT_EQ(failure_of([] { read_look("absent.look.json"); }).code, ExitCode::MissingInput);
 }
 
+// A look of one decision.
+std::string look_with(const std::string& decision, const std::string& frames = "[1]") {
+    return "{\"brisance_look\": 1, \"volume\": \"a.vdb\", \"frames\": " + frames +
+           ", \"looked_at\": [1],\n\"aspect\": 1.5, \"fill\": [0.5, 0.5], \"warnings\": [],\n\"decisions\": {" +
+           decision + "}}";
+}
+
+// A key leads into a shot as a path: one of 100,000 parts would end the program where its JSON is written, and one
+// that leads through a value cannot be followed.
+TEST(LookFile, DecisionsAreKeysOfAShotWithValuesThatItAccepts) {
+    std::string deep;
+    for (int i = 0; i < 100000; ++i)
+        deep += "a.";
+    const std::vector<std::pair<std::string, std::string>> damaged = {
+        {look_with("\"" + deep + "b\": {\"value\": 3}"), "unknown key a.a.a."},
+        {look_with(R"("volume": {"value": 3})"), "a.look.json:3: volume is no key but holds some, such as volume.file"},
+        {look_with(R"("": {"value": 3})"), "a.look.json:3: \"\" is no key"},
+        {look_with(R"("smoke.albedo.x": {"value": 3})"), "unknown key smoke.albedo.x; did you mean smoke.albedo?"},
+        {look_with(R"("fire.strength": {"value": 1e36})"), "a.look.json:3: fire.strength: expected a number in"},
+        {look_with(R"("camera.eye": {"value": [0, 1e308, 1]})"), "camera.eye: expected three numbers"},
+        {look_with(R"("\u001b[31m": {"value": 3})"), "unknown key  [31m"},
+        {look_with("", "[4611686018427387904]"), "at most 31 bits"},
+    };
+    for (const auto& [text, says] : damaged) {
+        const Failure failure = failure_of([&, &text = text] { look_from_json(text, "a.look.json"); });
+        EXPECT_EQ(failure.code, ExitCode::Usage);
+        EXPECT_TRUE(contains(failure.message, says)) << failure.message;
+        EXPECT_LT(failure.message.size(), 1000u);
+    }
+    EXPECT_EQ(look_from_json(look_with(R"("smoke.albedo": {"value": 0.5})"), "a").decisions.size(), 1u);
+}
+
 // What the user states is left out of the look's shot, and decides the rest.
 TEST(LookFile, EachPartCanBeOverridden) {
     const Look look = look_of_fire();

@@ -105,19 +105,17 @@ std::string candle_with(std::size_t at, const std::string& bytes) {
     return bytes_of(BRISANCE_VOLUMES "/candle.vdb").replace(at, bytes.size(), bytes);
 }
 
-// OpenVDB unpacks a Blosc block before it looks at its size: one byte overflows the heap.
-TEST(Unreadable, APackedBlockThatCrashesOpenVdbIsOneLine) {
+// OpenVDB reads a block before it looks at its size: here a negative one, and the rest of the file overflows the heap.
+// What lies there decides whether that ends the child or OpenVDB throws, with a heap that cannot be trusted.
+TEST(Unreadable, ABlockThatOverflowsTheHeapOfOpenVdbIsOneLineAndSparesTheOtherGrid) {
     const TempFolder folder;
     write_bytes(folder / "damaged.vdb", candle_with(41465, "\xff"));
     VdbReader reader(folder / "damaged.vdb");
-    int damaged = 0;
-    for (const GridInfo& grid : reader.grids()) {
-        const Failure failure = failure_of([&] { reader.read(grid.name, grid.index, kPlentyOfMemory); });
-        EXPECT_TRUE(failure.code == ExitCode::Success || failure.code == ExitCode::BadData) << failure.message;
-        EXPECT_EQ(contains(failure.message, "damaged.vdb: "), failure.code == ExitCode::BadData) << failure.message;
-        damaged += failure.code == ExitCode::BadData ? 1 : 0;
-    }
-    EXPECT_LE(damaged, 1);  // what lies beside its heap decides; the other grids are read by a new child
+    const Failure failure = failure_of([&] { reader.read("density", 0, kPlentyOfMemory); });
+    EXPECT_EQ(failure.code, ExitCode::BadData);
+    EXPECT_TRUE(contains(failure.message, "damaged.vdb: ")) << failure.message;
+    const BlockGrid temperature = reader.read("temperature", 0, kPlentyOfMemory);
+    EXPECT_EQ(temperature.values, read_grid(BRISANCE_VOLUMES "/candle.vdb", "temperature", 0, kPlentyOfMemory).values);
 }
 
 // The root's number of tiles, 2^31 - 1: OpenVDB would read on and on at the end of the file.
@@ -154,7 +152,7 @@ TEST(Unreadable, ALengthOfGigabytesIsRefused) {
     write_bytes(folder / "damaged.vdb", bytes.replace(name - 4, 4, "\xff\xff\xff\x7f"));
     const Failure failure = failure_of([&] { list_grids(folder / "damaged.vdb"); });
     EXPECT_EQ(failure.code, ExitCode::BadData);
-#if !defined(__SANITIZE_ADDRESS__)  // whose allocator ends the process: "crashes on it"
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // their allocators end the process
     EXPECT_TRUE(contains(failure.message, "memory")) << failure.message;
 #endif
 }

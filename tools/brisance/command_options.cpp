@@ -3,6 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
+#include "core/printable.h"
+#include "shot/nearest_key.h"
+
 namespace brisance {
 
 namespace {
@@ -17,7 +22,7 @@ void add_shot_options(CLI::App& command, RenderOptions& options) {
                        "The EXR, with #### for the frame number, or a folder; PNG and statistics go beside it");
     command.add_option("-f,--frames", options.frames, "Frames: 1001-1100x2,1200; without it, all that are on disk");
     command.add_option("--method", options.method, "lighting_grid, path or auto: the same as --set method=...")
-        ->check(CLI::IsMember({"lighting_grid", "path", "auto"}))
+        ->check(one_of({"lighting_grid", "path", "auto"}))
         ->type_name("METHOD");
     command
         .add_option("--seconds", options.seconds,
@@ -57,6 +62,17 @@ void add_task_options(CLI::App& command, RenderOptions& options) {
 
 }  // namespace
 
+CLI::Validator one_of(const std::vector<std::string>& words) {
+    const auto trouble = [words](const std::string& given) -> std::string {
+        if (std::find(words.begin(), words.end(), given) != words.end())
+            return {};
+        const std::string shown = printable(given, kLongestName);
+        return fmt::format("expected one of {}, got {}; did you mean {}?", fmt::join(words, ", "), shown,
+                           nearest_key(shown, words));
+    };
+    return {trouble, fmt::format("{{{}}}", fmt::join(words, ","))};
+}
+
 void add_render_options(CLI::App& command, RenderOptions& options) {
     add_shot_options(command, options);
     add_folder_and_failure_options(command, options);
@@ -78,7 +94,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
                     "of surfaces as points (.ply), as the camera sees them (.exr, .png), how many cover each pixel "
                     "(.count.png), how long paths are (.path_length.png), and the glossy ones' profiles "
                     "(.profiles.exr, .profiles.png); the same as --set output.virtual_lights=true")
-        ->check(CLI::IsMember({kDebugVirtualLights}))
+        ->check(one_of({kDebugVirtualLights}))
         ->type_name("WHAT")
         ->allow_extra_args(false);
     command.add_flag("--explain", options.explain, "Prints what ran, what was left out and why, and what it cost");
@@ -105,7 +121,7 @@ void add_submit_options(CLI::App& command, SubmitOptions& options) {
     command.add_flag("--make-folders", options.render.make_folders,
                      "Makes the folders of the outputs where they are missing");
     command.add_option("--engine", options.engine, fmt::format("{}", fmt::join(farm_engines(), ", ")))
-        ->check(CLI::IsMember(farm_engines()))
+        ->check(one_of(farm_engines()))
         ->type_name("ENGINE");
     CLI::Option* const tasks =
         command.add_option("--tasks", options.tasks, "How many; default: one for each frame, of engine local one")

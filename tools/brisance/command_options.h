@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "progress.h"
 #include "sequence/plan_command.h"
@@ -13,6 +14,9 @@
 
 namespace brisance {
 
+// Accepts these words alone, and says which it expected and which is nearest.
+CLI::Validator one_of(const std::vector<std::string>& words);
+
 // Options of every command that renders.
 template <class Options>
 void add_common_options(CLI::App& command, Options& options) {
@@ -20,11 +24,14 @@ void add_common_options(CLI::App& command, Options& options) {
         {"auto", ProgressStyle::Automatic}, {"bar", ProgressStyle::Bar},       {"tty", ProgressStyle::Bar},
         {"plain", ProgressStyle::Plain},    {"alfred", ProgressStyle::Alfred}, {"ndjson", ProgressStyle::Ndjson},
         {"none", ProgressStyle::None}};
+    std::vector<std::string> style_names;
+    for (const auto& [name, style] : styles)
+        style_names.push_back(name);
     command.add_option("--set", options.overrides, "Overrides one key of the shot: --set smoke.albedo=0.9; repeatable")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
     command.add_option("--preset", options.preset, "draft: quick look; final: the shot as written")
-        ->check(CLI::IsMember(shot_presets()));
+        ->check(one_of(shot_presets()));
     command.add_option("--threads", options.threads, "Threads; 0: all processors. Never changes the picture")
         ->check(CLI::Range(0, 4096));
     command
@@ -32,7 +39,8 @@ void add_common_options(CLI::App& command, Options& options) {
             "--progress", options.progress,
             "auto, bar (or tty), plain (lines), alfred (ALF_PROGRESS 12%), ndjson (one JSON object on each line) or "
             "none")
-        ->transform(CLI::CheckedTransformer(styles).description(""))
+        ->transform(CLI::Transformer(styles).description(""))
+        ->transform(one_of(style_names).description(""))  // comes first
         ->type_name("STYLE");
 }
 

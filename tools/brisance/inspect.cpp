@@ -343,8 +343,15 @@ int run_inspect(const InspectOptions& options) {
     Inspection inspection = inspect_file(telling_file(volumes));
     inspection.velocity = inspect_velocity(inspection.file, inspection.pattern, inspection.frames);
     Progress silent;
-    if (inspection.mapping)
-        inspection.look = first_look(volumes, {}, silent);
+    try {
+        if (inspection.mapping)
+            inspection.look = first_look(volumes, {}, silent);
+    } catch (const Error& error) {  // a grid is damaged, of this file or another: the others are shown all the same
+        if (error.code() != ExitCode::BadData)
+            throw;
+        inspection.mapping.reset();
+        inspection.why_no_mapping = error.what();
+    }
     inspection.volumes = fs::absolute(volumes).lexically_normal().string();
     if (!options.write_look.empty() && inspection.look)
         write_whole_file(options.write_look, look_to_json(*inspection.look));

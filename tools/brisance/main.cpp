@@ -218,19 +218,21 @@ private:
         const CLI::App& app = parsed_app();
         const std::string help =
             fmt::format("`brisance {}--help` lists all options", &app == &app_ ? "" : app.get_name() + " ");
-        if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::ExtrasError))
-            return fmt::format("{}; {}", printable(error.what()), help);
+        const std::vector<std::string> unexpected = app.remaining();
+        const std::string what = printable(error.what());
+        if (unexpected.empty())
+            return fmt::format("{}{} {}", what, what.ends_with('?') ? "" : ";", help);
+        const std::string& given = unexpected.front();
+        const std::string name = printable(given.substr(0, given.find('=')), kLongestName);
+        if (!given.starts_with('-'))
+            return fmt::format("unexpected argument {}; {}", printable(given, kLongestName), help);
+        if (!given.starts_with("--"))
+            return fmt::format("unknown option {}; {}", name, help);
         std::vector<std::string> known;
         for (const CLI::Option* const option : app.get_options())
-            for (const std::string& name : option->get_lnames())
-                known.push_back("--" + name);
-        for (int i = 2; i < argc_; ++i) {
-            const std::string name = std::string(argv_[i]).substr(0, std::string(argv_[i]).find('='));
-            if (name.starts_with("--") && std::find(known.begin(), known.end(), name) == known.end())
-                return fmt::format("unknown option {}; did you mean {}? {}", printable(name, kLongestName),
-                                   nearest_key(name, known), help);
-        }
-        return fmt::format("{}; {}", printable(error.what()), help);
+            for (const std::string& long_name : option->get_lnames())
+                known.push_back("--" + long_name);
+        return fmt::format("unknown option {}; did you mean {}? {}", name, nearest_key(name, known), help);
     }
 
     CLI::App& add(const char* name, const char* help, const std::function<int()>& run) {
@@ -291,7 +293,7 @@ private:
             add("stability", "Renders extreme cases by every method and prints a table of their errors",
                 [this] { return run_stability(extreme_); });
         stability.add_option("--methods", extreme_.methods, fmt::format("{}", fmt::join(extreme_.methods, ", ")))
-            ->check(CLI::IsMember(stability_methods()))
+            ->check(one_of(stability_methods()))
             ->delimiter(',');
         stability.add_option("--case", extreme_.part, "Only cases whose name contains this");
         stability.add_flag("--markdown", extreme_.markdown, "As a table for a document");
