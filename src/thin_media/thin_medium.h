@@ -13,7 +13,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "gathering/gather.h"
@@ -25,9 +24,14 @@ namespace brisance {
 class ThinMedium {
 public:
     ThinMedium() = default;  // no thin medium
-    // Classifies the nodes `needed`. `eye`: position of the camera if scattered light has a direction, local [m].
+    // The camera: its position, local [m], and whether light is scattered toward it by direction.
+    struct Viewer {
+        vec3 eye{0.0f};
+        bool directional = false;
+    };
+    // Classifies the nodes `needed`.
     ThinMedium(const Medium& medium, const PointDepths& depths, const std::vector<std::uint8_t>& needed,
-               const std::optional<vec3>& eye);
+               const Viewer& viewer);
 
     bool empty() const { return weight_.empty(); }
     std::size_t node_count() const;   // nodes that are thin, wholly or in part
@@ -52,7 +56,7 @@ private:
     void find_even_bricks(const Medium& medium, const std::vector<float>& thin);
     void look_outside(const Medium& medium, const PointDepths& depths, const std::vector<float>& thin);
 
-    std::optional<vec3> eye_;
+    Viewer viewer_;
     std::vector<float> weight_;  // per node: 1 in thin, 0 in dense smoke
     std::vector<float> open_;
     std::vector<std::uint8_t> nodes_;   // with a weight above zero

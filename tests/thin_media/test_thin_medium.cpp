@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Phases, BurstInHaze, ::testing::Values(0.0f, 0.6f));
 struct Around {
     explicit Around(const Medium& medium) : pyramid(medium, 4), depths(pyramid, 2) {}
     ThinMedium haze(const Medium& medium) const {
-        return {medium, depths, std::vector<std::uint8_t>(medium.lattice.node_count(), 1), std::nullopt};
+        return {medium, depths, std::vector<std::uint8_t>(medium.lattice.node_count(), 1), {}};
     }
     ExtinctionPyramid pyramid;
     PointDepths depths;
