@@ -1,15 +1,13 @@
 #include "scattering/lattice_level.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 
 namespace brisance {
 
 namespace {
 
 // Voxels in the volume that the smoke fills, and in all that holds smoke.
-constexpr double kMostFilled = 60000.0, kMostOfAll = 1000000.0;
+constexpr double kMostFilled = 90000.0, kMostOfAll = 1000000.0;
 // Above this part of either, the next coarser level begins to count.
 constexpr float kNearlyDue = 0.75f;
 
@@ -23,7 +21,6 @@ double lattice_fullness(std::span<const float> extinction) {
         all += e > 0.0f;
     }
     const double filled = squares > 0.0 ? sum * sum / squares : 0.0;
-    if (std::getenv("W16A")) std::printf("W16A level filled %g all %g\n", filled, all);
     return std::max(filled / kMostFilled, all / kMostOfAll);
 }
 

@@ -192,8 +192,7 @@ std::vector<ScatteredLight> solve_scattering(const ScatteringInput& input, Scatt
     std::vector<ScatteredLight> further = solve_series(input, orders[0], lattice.level, 0, costs, progress);
     if (lattice.share_of_coarser > 0.0f) {
         ScatteringCosts coarser;
-        blend_orders(further,
-                     solve_series(input, orders[0], lattice.level + 1, costs.bounces, coarser, progress),
+        blend_orders(further, solve_series(input, orders[0], lattice.level + 1, costs.bounces, coarser, progress),
                      lattice.share_of_coarser);
         costs.share_of_coarser = lattice.share_of_coarser;
         costs.operator_seconds += coarser.operator_seconds;

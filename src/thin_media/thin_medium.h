@@ -29,9 +29,10 @@ public:
         vec3 eye{0.0f};
         bool directional = false;
     };
-    // Classifies the nodes `needed`.
+    // Classifies the nodes `needed`. `error`: that the picture may have, relative. Nodes that could change the picture
+    // by less than half of it are not treated; the treatment fades in up to twice that.
     ThinMedium(const Medium& medium, const PointDepths& depths, const std::vector<std::uint8_t>& needed,
-               const Viewer& viewer);
+               const Viewer& viewer, float error);
 
     bool empty() const { return weight_.empty(); }
     std::size_t node_count() const;   // nodes that are thin, wholly or in part

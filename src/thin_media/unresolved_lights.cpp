@@ -95,8 +95,8 @@ std::vector<float> depth_of_seen_lights(const Medium& medium) {
         [&](std::size_t b) {
             for (std::size_t l = 0; l < levels.size(); ++l) {
                 const float distance = medium.spacing * float(1 << (kBrickLevel + int(l)));
-                const Corners corners = seen_depths(levels[l], int(l), medium.lattice.brick(b),
-                                                    distance * medium.max_extinction);
+                const Corners corners =
+                    seen_depths(levels[l], int(l), medium.lattice.brick(b), distance * medium.max_extinction);
                 for (int n = 0; n < BrickLattice::kNodes; ++n) {
                     const std::size_t i = b * BrickLattice::kNodes + n;
                     const vec3 part = vec3(BrickLattice::node_in_brick(n)) / float(BrickLattice::kSize);

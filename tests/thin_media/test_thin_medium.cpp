@@ -91,7 +91,11 @@ INSTANTIATE_TEST_SUITE_P(Phases, BurstInHaze, ::testing::Values(0.0f, 0.6f));
 struct Around {
     explicit Around(const Medium& medium) : pyramid(medium, 4), depths(pyramid, 2) {}
     ThinMedium haze(const Medium& medium) const {
-        return {medium, depths, std::vector<std::uint8_t>(medium.lattice.node_count(), 1), {}};
+        return {medium,
+                depths,
+                std::vector<std::uint8_t>(medium.lattice.node_count(), 1),
+                {vec3(0.5f, -7.0f, 0.3f)},
+                0.02f};
     }
     ExtinctionPyramid pyramid;
     PointDepths depths;
