@@ -70,7 +70,7 @@ TEST(UnresolvedLights, AreTheSameForFinerVoxels) {
     const std::vector<float> a = unresolved_lights(coarse), b = unresolved_lights(fine);
     for (double x = 0.0; x < 1.35; x += 0.1)
         for (double y = 0.0; y < 1.35; y += 0.1)
-            if (std::abs(std::hypot(x, y) - 0.6) > 0.15) {
+            if (const double r = std::hypot(x, y); r < 1.3 && std::abs(r - 0.6) > 0.15) {
                 EXPECT_NEAR(at(coarse, a, {x, y, 0}), at(fine, b, {x, y, 0}), 0.1) << x << ", " << y;
             }
 }
