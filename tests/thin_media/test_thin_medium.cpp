@@ -116,6 +116,7 @@ TEST(ThinMedium, HollowsInTheSmokeAreNone) {
     };
     recipe.flame = [](const ivec3& n) { return ball(n, dvec3(0.0), 5); };
     recipe.settings = black_smoke();
+    recipe.settings.smoke.albedo = Rgb(0.5f);
     recipe.settings.smoke.extinction_per_metre = 60.0f;
     const Medium medium = make_medium(recipe);
     const ThinMedium haze = Around(medium).haze(medium);
