@@ -2,9 +2,9 @@
 //
 // A burst may keep all but a hundredth of its light. A thin medium around it scatters that hundredth, which the lights
 // and shadow maps made for the dense smoke represent badly (exterior_hierarchy.h): with them, thin media were five
-// times too dark. Nodes of thin media therefore gather from the lights made for exterior receivers. Both solutions are
-// blended between thin and dense smoke, and the effect fades in with the thin medium's share of the smoke, so that
-// there is no seam in space or time.
+// times too dark. Nodes that see opaque smoke from afar (unresolved_lights.h) therefore gather from the lights made for
+// exterior receivers. Both solutions are blended between such nodes and dense smoke, and the effect fades in with the
+// share of such nodes in what the camera sees (seen_share.h), so that there is no seam in space or time.
 //
 // These lights are many, and so may be the nodes of thin media. Where everything within some voxels is thin, light
 // changes slowly: such bricks gather at 27 points and interpolate. Neighbours share the points of their common face.

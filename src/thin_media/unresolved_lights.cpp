@@ -13,6 +13,8 @@ namespace {
 
 // Optical depths of seen lights below which their maps are right to some percent, and above which they are not.
 constexpr float kResolved = 2.5f, kUnresolved = 7.5f;
+// Beyond this depth smoke is opaque, and no worse represented for being denser: it does not make its surroundings thin.
+constexpr float kOpaque = 100.0f;
 
 // Means of the extinction and of its square on ever coarser lattices. Nodes of the level kBrickLevel are the corners of
 // the medium's bricks.
@@ -100,7 +102,8 @@ std::vector<float> depth_of_seen_lights(const Medium& medium) {
                 for (int n = 0; n < BrickLattice::kNodes; ++n) {
                     const std::size_t i = b * BrickLattice::kNodes + n;
                     const vec3 part = vec3(BrickLattice::node_in_brick(n)) / float(BrickLattice::kSize);
-                    const float seen = between(corners, part) * std::exp(-medium.extinction[i] * distance);
+                    const float seen =
+                        std::min(between(corners, part), kOpaque) * std::exp(-medium.extinction[i] * distance);
                     depth[i] = std::max(depth[i], seen);
                 }
             }

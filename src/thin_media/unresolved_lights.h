@@ -9,7 +9,7 @@
 // extinction that light meets, S2 / S1, times the edge of a cube that holds all of it, (S1^2 / S2)^(1/3) h, over h. D
 // is thus the optical depth of what x sees at the distance at which x sees it, and 1/e in homogeneous smoke, however
 // dense. It depends on the extinction at points of space alone: not on voxels, not on a volume's bounds, and hardly on
-// smoke that is too thin to be seen. The construction is this project's own.
+// smoke that is too thin to be seen. The factor before exp counts up to 100. The construction is this project's own.
 #pragma once
 
 #include <vector>
