@@ -9,6 +9,7 @@
 #include "gathering/map_layouts.h"
 #include "medium_lighting/lit_lattice.h"
 #include "reference/trace_picture.h"
+#include "scattering/lattice_level.h"
 
 namespace brisance {
 
@@ -20,7 +21,7 @@ constexpr double kEvaluation = 14e-9, kDirectional = 1.25, kEvaluationsOfNode = 
 // Values of shadow maps of 12^2 texels and 10 distances: so many for each node, and those of the few top levels.
 constexpr double kMapValue = 7e-9, kMapValuesOfNode = 650.0, kMapValuesAtTop = 26e6, kKnownMap = 12.0 * 12.0 * 10.0;
 // The operator and the series, for each node of their lattice. A level has about a sixth of the next finer one's nodes.
-constexpr double kCoarseNode = 80e-6, kMostCoarseNodes = 120000.0, kNodesOfParent = 6.0;
+constexpr double kCoarseNode = 80e-6, kNodesOfParent = 6.0;
 constexpr double kFrame = 0.25;
 constexpr double kSegment = 1.2e-6;  // of a path: 0.7 to 1.9
 constexpr double kCameraRay = 2.4e-6;
@@ -62,14 +63,15 @@ PilotPixel trace_pilot_pixel(const PathTracer& tracer, const Camera& camera, std
 
 }  // namespace
 
-CountedMedium::CountedMedium(const Medium& counted) : medium(counted) {
+CountedMedium::CountedMedium(const Medium& counted)
+    : medium(counted), lattice_fullness(brisance::lattice_fullness(counted.extinction)) {
     const std::vector<std::uint8_t> needed = nodes_beside_extinction(medium);
     lit_nodes = double(std::count_if(needed.begin(), needed.end(), [](std::uint8_t n) { return n != 0; }));
 }
 
-int forecast_lattice_level(const ScatteringSettings& settings, double nodes) {
+int forecast_lattice_level(const ScatteringSettings& settings, const CountedMedium& counted) {
     int level = std::max(settings.lattice_level, 0);
-    while (settings.lattice_level < 0 && nodes / std::pow(kNodesOfParent, level) > kMostCoarseNodes)
+    while (settings.lattice_level < 0 && counted.lattice_fullness / std::pow(kNodesOfParent, level) > 1.0)
         ++level;
     return level;
 }
@@ -80,7 +82,7 @@ double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& 
     double coarse = 0.0;
     if (plan.multiple) {
         evaluations += kEvaluationsOfNode * nodes * std::pow(double(shot.scattering.alpha), kPowerOfAlpha);
-        coarse = nodes / std::pow(kNodesOfParent, forecast_lattice_level(shot.scattering, nodes));
+        coarse = nodes / std::pow(kNodesOfParent, forecast_lattice_level(shot.scattering, counted));
     }
     const double map =
         std::pow(double(shadow_resolution(shot.lighting)), 2.0) * shadow_distances(shot.lighting) / kKnownMap;

@@ -13,11 +13,12 @@ namespace brisance {
 struct CountedMedium {
     explicit CountedMedium(const Medium& medium);
     const Medium& medium;
-    double lit_nodes;  // at which light is gathered
+    double lit_nodes = 0.0;   // at which light is gathered
+    double lattice_fullness;  // scattering/lattice_level.h
 };
 
 // That of the lattice on which the orders of scattering are solved, about.
-int forecast_lattice_level(const ScatteringSettings& settings, double nodes);
+int forecast_lattice_level(const ScatteringSettings& settings, const CountedMedium& counted);
 
 // A picture by the lighting grid: evaluations of lights at nodes, shadow maps, orders of scattering, and the camera's
 // rays.

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "gathering/map_layouts.h"
-#include "medium/thin_smoke.h"
+#include "medium/extinction_met.h"
 
 namespace brisance {
 
@@ -120,7 +120,7 @@ std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFra
 
 ExpectedError expected_error(const ModelledFrame& frame) {
     const ScatteringSettings& settings = frame.shot.scattering;
-    const int level = forecast_lattice_level(settings, frame.counted.lit_nodes);
+    const int level = forecast_lattice_level(settings, frame.counted);
     ExpectedError out = ErrorModel(frame, level, settings.remainder).of(brightest(frame.plan));
     out.cell.clear();
     return out;

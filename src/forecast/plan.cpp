@@ -56,6 +56,12 @@ bool scatters_sharply(const Medium& medium) {
     return std::abs(medium.mean_cosine) > 0.5f;
 }
 
+// The share of MS that particles carry, which know directions exactly but have noise. Virtual lights, which have none,
+// carry the rest.
+float share_of_particles(const Medium& medium) {
+    return glm::smoothstep(0.4f, 0.6f, std::abs(medium.mean_cosine));
+}
+
 struct Choice {
     std::string method;
     std::string reason;
@@ -93,7 +99,7 @@ std::string choose_owners(Plan& plan, const Shot& shot, const Medium& medium, co
     const bool twice = plan.multiple || plan.needs(Cell::SM);
     plan.scattering_method = twice ? method : nullptr;
     plan.emitters_by_rays = many_lights && plan.needs(Cell::MA) && (plan.scattering_method || haze_alone(shot));
-    plan.reflected_by_particles = many_lights && plan.needs(Cell::MS) && scatters_sharply(medium);
+    plan.reflected_by_particles = many_lights && plan.needs(Cell::MS) ? share_of_particles(medium) : 0.0f;
     if (method && !plan.scattering_method)
         skip(method->product, "no light is scattered twice");
     if (many_lights && twice && !method)

@@ -30,12 +30,13 @@ struct Plan {
     // The method that computes MM and SM of a picture by many lights; null: the lighting grid, or nothing scatters
     // twice.
     const ScatteringMethod* scattering_method = nullptr;
-    std::string scattering_choice;        // the method that scattering.method resolved to
-    bool emitters_by_rays = false;        // MA on the camera's rays, not at the medium's nodes
-    bool reflected_by_particles = false;  // MS by particles alone, without virtual lights
-    bool surfaces = false;                // there are some
-    bool emitters = false;                // there are lights, emissive surfaces or an environment
-    CellSet needed;                       // the cells that can be other than zero, those above among them
+    std::string scattering_choice;  // the method that scattering.method resolved to
+    bool emitters_by_rays = false;  // MA on the camera's rays, not at the medium's nodes
+    // Of MS: what particles carry of the light that virtual lights would hold.
+    float reflected_by_particles = 0.0f;
+    bool surfaces = false;  // there are some
+    bool emitters = false;  // there are lights, emissive surfaces or an environment
+    CellSet needed;         // the cells that can be other than zero, those above among them
     std::vector<SkippedPart> skipped;
     bool needs(Cell cell) const { return needed.contains(cell); }
     std::vector<std::string> cells() const;

@@ -9,7 +9,7 @@ AutomaticLevels automatic_levels_of(const Medium& medium) {
     if (medium.lattice.brick_count() == 0)
         return {};
     const ExtinctionPyramid pyramid(medium, ExtinctionPyramid::kMaxLevels);
-    return {automatic_levels(medium), automatic_lattice_level(pyramid)};
+    return {automatic_levels(medium), automatic_lattice(pyramid).level};
 }
 
 }  // namespace brisance

@@ -46,8 +46,7 @@ LitLattice::LitLattice(const MediumLightingInput& input)
             pyramid_.set_occluders(surfaces_.get());
     }
     if (input.single || input.multiple)
-        thin_medium_ = ThinMedium(input.medium, depths_, needed_,
-                                  input.directional ? std::optional<vec3>(input.eye) : std::nullopt);
+        thin_medium_ = ThinMedium(input.medium, depths_, needed_, {input.eye, input.directional}, input.lighting.error);
     if (!thin_medium_.empty())
         pyramid_.set_homogeneous_bricks(&thin_medium_.homogeneous_bricks());
     const auto nodes = std::count_if(needed_.begin(), needed_.end(), [](std::uint8_t n) { return n != 0; });

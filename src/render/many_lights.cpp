@@ -116,10 +116,11 @@ void ManyLights::light_medium(const DrawInput& input, Statistics& statistics, Pr
     const int bounces =
         input.plan.scattering_method ? bounces_beside_scattering_method(input.plan) : input.shot.scattering.bounces;
     if (plan.needs(Cell::MS)) {
-        const VirtualLights* const shining = plan.reflected_by_particles ? nullptr : virtual_lights_.get();
+        const float cast = plan.reflected_by_particles;
+        const VirtualLights* const shining = cast < 1.0f ? virtual_lights_.get() : nullptr;
         if (shining)
-            reflecting_ = points_of_virtual_lights(*shining);
-        cast_.emplace(paths_->direct(), shining, input.shot.virtual_lights);
+            reflecting_ = points_of_virtual_lights(*shining, 1.0f - cast);
+        cast_.emplace(paths_->direct(), shining, input.shot.virtual_lights, cast);
     }
     const ReflectedLight reflected{reflecting_ ? &*reflecting_ : nullptr, cast_ && !cast_->empty() ? &*cast_ : nullptr};
     medium_ = std::make_unique<LitMedium>(input, plan, bounces, reflected, input.shot.output.bounce_layers, statistics,

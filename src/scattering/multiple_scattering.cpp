@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "gathering/sh.h"
 #include "lighting_grid/voxel_lights.h"
 #include "medium/phase.h"
-#include "medium/thin_smoke.h"
 #include "scattering/coarse_operator.h"
 #include "scattering/lattice_level.h"
 
@@ -19,39 +19,6 @@ namespace {
 constexpr std::size_t kSeriesEscapeRays = std::size_t{1} << 16;
 constexpr int kMostBounces = 96;
 constexpr double kDark = 1e-6;  // of the power scattered once: bounces below it are left to the tail
-
-// Level on which the series is solved: the finest with at most this many nodes that scatter. Where haze around dense
-// smoke makes up a good part of them it does not count, as the smoke would be solved the worse for it; but no level is
-// finer than memory and time allow.
-constexpr std::size_t kMostCoarseNodes = 120000, kMostWithHaze = 1000000;
-
-int choose_level(const ExtinctionPyramid& pyramid, int wish) {
-    const int last = pyramid.level_count() - 1;
-    if (wish >= 0)
-        return std::min(wish, last);
-    const auto above = [&](int level, double extinction) {
-        const auto& nodes = pyramid.nodes(level);
-        return std::size_t(std::count_if(nodes.begin(), nodes.end(), [&](float e) { return e > extinction; }));
-    };
-    const auto too_many = [&](int level) {
-        const std::size_t all = above(level, 0.0),
-                          dense = above(level, kThinSmoke * extinction_met(pyramid.nodes(level)));
-        const bool haze = double(all - dense) > kFringes * double(all);
-        return (haze ? dense : all) > kMostCoarseNodes || all > kMostWithHaze;
-    };
-    int level = 0;
-    while (level < last && too_many(level))
-        ++level;
-    return level;
-}
-
-}  // namespace
-
-int automatic_lattice_level(const ExtinctionPyramid& pyramid) {
-    return choose_level(pyramid, -1);
-}
-
-namespace {
 
 // What is known of the bounces still to come, colour by colour: the geometric series of the last ratio of successive
 // bounces' power, and how much of it the drift of that ratio leaves unknown.
@@ -107,12 +74,12 @@ private:
 };
 
 // Runs the series on the coarse lattice and hands every order's light (scattered twice, three times, ...) to `take`,
-// the extrapolated tail last.
+// the extrapolated tail last. `bounces`: how many are computed one by one; 0: as the settings say.
 template <class Take>
-void run_series(CoarseOperator& op, const ScatteredLight& first, const ScatteringSettings& settings,
+void run_series(CoarseOperator& op, const ScatteredLight& first, const ScatteringSettings& settings, int bounces,
                 SeriesBalance& balance, ScatteringCosts& costs, Progress& progress, const Take& take) {
     const bool endless = settings.bounces < 0;
-    const int wanted = endless ? kMostBounces : settings.bounces - 2;
+    const int wanted = bounces > 0 ? bounces : endless ? kMostBounces : settings.bounces - 2;
     const double start = total_luminance(first.intensity);
     ScatteredLight lights = first;
     SeriesTail tail(first);
@@ -129,7 +96,7 @@ void run_series(CoarseOperator& op, const ScatteredLight& first, const Scatterin
             continue;
         costs.remainder = tail.remainder();
         progress.fraction(std::min(1.0, settings.remainder / std::max(costs.remainder, 1e-9)));
-        if (costs.remainder < settings.remainder)
+        if (bounces == 0 && costs.remainder < settings.remainder)
             break;
     }
     costs.tail_ratio = tail.ratio();
@@ -137,6 +104,59 @@ void run_series(CoarseOperator& op, const ScatteredLight& first, const Scatterin
         return;
     costs.tail_share = tail.share();
     take(lights, Rgb(tail.factor()));
+}
+
+// The series on one level's lattice: light scattered twice or more often, one entry in all or one per order. `once`:
+// light scattered once. `bounces` as above.
+std::vector<ScatteredLight> solve_series(const ScatteringInput& input, const ScatteredLight& once, int level,
+                                         int bounces, ScatteringCosts& costs, Progress& progress) {
+    const ExtinctionPyramid& pyramid = *input.pyramid;
+    const Medium& medium = pyramid.medium();
+    Stopwatch watch;
+    CoarseOperator op(pyramid, level, input.lighting, input.settings.alpha);
+    costs.lattice_level = level;
+    costs.coarse_nodes = op.active_nodes();
+    costs.operator_seconds = watch.seconds();
+
+    watch = Stopwatch();
+    const ScatteredLight first = op.restricted(once, medium.lattice);
+    ScatteredLight sum = first;
+    sum.add(first, Rgb(-1.0f));
+    std::vector<ScatteredLight> orders;
+    SeriesBalance balance;
+    run_series(op, first, input.settings, bounces, balance, costs, progress,
+               [&](const ScatteredLight& light, const Rgb& factor) {
+                   if (!input.separate_orders)
+                       return sum.add(light, factor);
+                   ScatteredLight scaled = light;
+                   scaled.add(light, factor - 1.0f);
+                   orders.push_back(op.spread_to_fine(scaled, medium));
+               });
+    if (!input.separate_orders)
+        orders.push_back(op.spread_to_fine(sum, medium));
+    costs.series_seconds = watch.seconds();
+    if (input.lighting.energy_balance && !balance.empty())
+        costs.balance = balance.measure(pyramid, level, kSeriesEscapeRays);
+    costs.bytes = op.bytes();
+    return orders;
+}
+
+// Moves `share` of the light of `orders` to that of a second solution.
+void blend_orders(std::vector<ScatteredLight>& orders, const std::vector<ScatteredLight>& other, float share) {
+    for (ScatteredLight& order : orders)
+        order.add(order, Rgb(-share));
+    for (std::size_t k = 0; k < other.size(); ++k)
+        if (k < orders.size()) {
+            orders[k].add(other[k], Rgb(share));
+        } else {
+            orders.push_back(other[k]);
+            orders[k].add(other[k], Rgb(share - 1.0f));
+        }
+}
+
+LatticeChoice choose_lattice(const ScatteringInput& input) {
+    const int wish = input.settings.lattice_level, last = input.pyramid->level_count() - 1;
+    return wish < 0 ? automatic_lattice(*input.pyramid) : LatticeChoice{std::min(wish, last), 0.0f};
 }
 
 }  // namespace
@@ -163,38 +183,25 @@ void prepare_interpolation(const BrickLattice& lattice, const std::vector<std::u
 }
 
 std::vector<ScatteredLight> solve_scattering(const ScatteringInput& input, ScatteringCosts& costs, Progress& progress) {
-    const ExtinctionPyramid& pyramid = *input.pyramid;
-    const Medium& medium = pyramid.medium();
     std::vector<ScatteredLight> orders;
-    orders.push_back(scattered_light(medium, *input.first, *input.needed));
+    orders.push_back(scattered_light(input.pyramid->medium(), *input.first, *input.needed));
     if (input.settings.bounces == 2 || !(total_luminance(orders[0].intensity) > 0.0))
         return orders;
 
-    Stopwatch watch;
-    costs.lattice_level = choose_level(pyramid, input.settings.lattice_level);
-    CoarseOperator op(pyramid, costs.lattice_level, input.lighting, input.settings.alpha);
-    costs.coarse_nodes = op.active_nodes();
-    costs.operator_seconds = watch.seconds();
-
-    watch = Stopwatch();
-    const ScatteredLight first = op.restricted(orders[0], medium.lattice);
-    ScatteredLight sum = first;
-    sum.add(first, Rgb(-1.0f));
-    SeriesBalance balance;
-    run_series(op, first, input.settings, balance, costs, progress,
-               [&](const ScatteredLight& light, const Rgb& factor) {
-                   if (!input.separate_orders)
-                       return sum.add(light, factor);
-                   ScatteredLight scaled = light;
-                   scaled.add(light, factor - 1.0f);
-                   orders.push_back(op.spread_to_fine(scaled, medium));
-               });
+    const LatticeChoice lattice = choose_lattice(input);
+    std::vector<ScatteredLight> further = solve_series(input, orders[0], lattice.level, 0, costs, progress);
+    if (lattice.share_of_coarser > 0.0f) {
+        ScatteringCosts coarser;
+        blend_orders(further, solve_series(input, orders[0], lattice.level + 1, costs.bounces, coarser, progress),
+                     lattice.share_of_coarser);
+        costs.share_of_coarser = lattice.share_of_coarser;
+        costs.operator_seconds += coarser.operator_seconds;
+        costs.series_seconds += coarser.series_seconds;
+    }
     if (!input.separate_orders)
-        orders[0].add(op.spread_to_fine(sum, medium), Rgb(1.0f));
-    costs.series_seconds = watch.seconds();
-    if (input.lighting.energy_balance && !balance.empty())
-        costs.balance = balance.measure(pyramid, costs.lattice_level, kSeriesEscapeRays);
-    costs.bytes = op.bytes();
+        orders[0].add(further[0], Rgb(1.0f));
+    else
+        std::move(further.begin(), further.end(), std::back_inserter(orders));
     return orders;
 }
 

@@ -34,7 +34,8 @@ namespace brisance {
 
 struct ScatteringCosts {
     int lattice_level = 0;
-    std::size_t coarse_nodes = 0;
+    float share_of_coarser = 0.0f;  // of the light, solved on the next coarser level (lattice_level.h)
+    std::size_t coarse_nodes = 0;   // of lattice_level
     double operator_seconds = 0.0;  // escape probabilities and balance factors
     double series_seconds = 0.0;
     std::vector<LevelCost> levels;         // of the first bounce

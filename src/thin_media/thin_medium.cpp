@@ -1,30 +1,20 @@
 #include "thin_media/thin_medium.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/parallel.h"
 #include "gathering/escape_probability.h"
-#include "medium/thin_smoke.h"
+#include "thin_media/seen_share.h"
+#include "thin_media/unresolved_lights.h"
 
 namespace brisance {
 
 namespace {
 
-// Extinction relative to the mean that light meets in the smoke (weighted by extinction): above the first a node is
-// dense, below the second thin.
-constexpr float kSmoke = 0.15f, kThin = kThinSmoke;
-// Fraction of thin nodes at which the thin medium begins to count, and counts in full.
-constexpr float kFewNodes = kFringes, kManyNodes = 0.6f;
 // Mean transmittance to the outside: hollows in the smoke have less, and are not thin media.
 constexpr float kHollow = 0.02f, kOpen = 0.1f;
 // Distance from the camera, in bricks, below which the direction to it turns too fast to be interpolated.
 constexpr float kAroundCamera = 4.0f;
-
-float ramp(float from, float to, float x) {
-    const float t = std::clamp((x - from) / (to - from), 0.0f, 1.0f);
-    return t * t * (3.0f - 2.0f * t);
-}
 
 // Points `kIntervals` + 1 along each side of a brick, shared with the next; between them values are trilinear.
 template <int kIntervals>
@@ -52,18 +42,15 @@ using LightPoints = BrickPoints<2>;
 using OpenPoints = BrickPoints<1>;
 static_assert(LightPoints::kCount <= 2 * Receivers::kGroup);
 
-std::vector<float> thinness(const Medium& medium, const std::vector<std::uint8_t>& needed) {
-    const float typical = float(extinction_met(medium.extinction));
-    std::vector<float> thin(needed.size(), 0.0f);
-    double of_thin = 0.0, all = 0.0;
-    for (std::size_t i = 0; i < needed.size(); ++i) {
-        if (!needed[i])
-            continue;
-        thin[i] = ramp(kSmoke * typical, kThin * typical, medium.extinction[i]);
-        of_thin += medium.extinction[i] > 0.0f ? thin[i] : 0.0f;
-        all += medium.extinction[i] > 0.0f;
-    }
-    const float counts = ramp(kFewNodes, kManyNodes, all > 0.0 ? float(of_thin / all) : 0.0f);
+// Per node: how far it needs lights for receivers outside; empty: nowhere.
+std::vector<float> thinness(const Medium& medium, const PointDepths& depths, const std::vector<std::uint8_t>& needed,
+                            const vec3& eye, float error) {
+    std::vector<float> thin = unresolved_lights(medium);
+    for (std::size_t i = 0; i < needed.size(); ++i)
+        thin[i] *= float(needed[i] != 0);
+    const float share = seen_share(medium, depths, thin, eye);
+    // Without these lights, haze is about half as bright: the picture is wrong by half of its share.
+    const float counts = glm::smoothstep(error, 2.0f * error, share);
     if (counts == 0.0f)
         return {};
     for (float& t : thin)
@@ -74,9 +61,9 @@ std::vector<float> thinness(const Medium& medium, const std::vector<std::uint8_t
 }  // namespace
 
 ThinMedium::ThinMedium(const Medium& medium, const PointDepths& depths, const std::vector<std::uint8_t>& needed,
-                       const std::optional<vec3>& eye)
-    : eye_(eye) {
-    const std::vector<float> thin = thinness(medium, needed);
+                       const Viewer& viewer, float error)
+    : viewer_(viewer) {
+    const std::vector<float> thin = thinness(medium, depths, needed, viewer.eye, error);
     if (thin.empty())
         return;
     find_even_bricks(medium, thin);
@@ -84,7 +71,7 @@ ThinMedium::ThinMedium(const Medium& medium, const PointDepths& depths, const st
     weight_.resize(thin.size());
     nodes_.resize(thin.size());
     for (std::size_t i = 0; i < thin.size(); ++i) {
-        weight_[i] = thin[i] * ramp(kHollow, kOpen, open_[i]);
+        weight_[i] = thin[i] * glm::smoothstep(kHollow, kOpen, open_[i]);
         nodes_[i] = weight_[i] > 0.0f;
     }
     single_ = nodes_;
@@ -110,7 +97,7 @@ void ThinMedium::find_even_bricks(const Medium& medium, const std::vector<float>
     const float brick = BrickLattice::kSize * medium.spacing;
     for (std::uint32_t b = 0; b < wholly.size(); ++b) {
         const vec3 middle = medium.local_of_node(lattice.first_node(b) + BrickLattice::kSize / 2);
-        const bool slow = !eye_ || glm::distance(*eye_, middle) > kAroundCamera * brick;
+        const bool slow = !viewer_.directional || glm::distance(viewer_.eye, middle) > kAroundCamera * brick;
         if (slow && homogeneous_bricks_.at(lattice.brick(b) - (medium.reference_node >> 3)))
             even_.push_back(b);
     }

@@ -2,9 +2,9 @@
 //
 // A burst may keep all but a hundredth of its light. A thin medium around it scatters that hundredth, which the lights
 // and shadow maps made for the dense smoke represent badly (exterior_hierarchy.h): with them, thin media were five
-// times too dark. Nodes of thin media therefore gather from the lights made for exterior receivers. Both solutions are
-// blended between thin and dense smoke, and the effect fades in with the thin medium's share of the smoke, so that
-// there is no seam in space or time.
+// times too dark. Nodes that see opaque smoke from afar (unresolved_lights.h) therefore gather from the lights made for
+// exterior receivers. Both solutions are blended between such nodes and dense smoke, and the effect fades in with the
+// share of such nodes in what the camera sees (seen_share.h), so that there is no seam in space or time.
 //
 // These lights are many, and so may be the nodes of thin media. Where everything within some voxels is thin, light
 // changes slowly: such bricks gather at 27 points and interpolate. Neighbours share the points of their common face.
@@ -13,7 +13,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "gathering/gather.h"
@@ -25,9 +24,15 @@ namespace brisance {
 class ThinMedium {
 public:
     ThinMedium() = default;  // no thin medium
-    // Classifies the nodes `needed`. `eye`: position of the camera if scattered light has a direction, local [m].
+    // The camera: its position, local [m], and whether light is scattered toward it by direction.
+    struct Viewer {
+        vec3 eye{0.0f};
+        bool directional = false;
+    };
+    // Classifies the nodes `needed`. `error`: that the picture may have, relative. Nodes that could change the picture
+    // by less than half of it are not treated; the treatment fades in up to twice that.
     ThinMedium(const Medium& medium, const PointDepths& depths, const std::vector<std::uint8_t>& needed,
-               const std::optional<vec3>& eye);
+               const Viewer& viewer, float error);
 
     bool empty() const { return weight_.empty(); }
     std::size_t node_count() const;   // nodes that are thin, wholly or in part
@@ -52,7 +57,7 @@ private:
     void find_even_bricks(const Medium& medium, const std::vector<float>& thin);
     void look_outside(const Medium& medium, const PointDepths& depths, const std::vector<float>& thin);
 
-    std::optional<vec3> eye_;
+    Viewer viewer_;
     std::vector<float> weight_;  // per node: 1 in thin, 0 in dense smoke
     std::vector<float> open_;
     std::vector<std::uint8_t> nodes_;   // with a weight above zero

@@ -1,9 +1,12 @@
 // Light that mirrors reflect onto smoke.
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "fixtures/media.h"
 #include "fixtures/sets.h"
 #include "medium_lighting/stages/specular_photons.h"
+#include "medium_lighting/stages/virtual_lights_as_points.h"
 
 namespace brisance {
 namespace {
@@ -67,6 +70,45 @@ TEST(SpecularPhotons, AMirrorCastsTheLightOfAnotherLamp) {
     EXPECT_NEAR(sum / expected, 1.0, 0.01);
     for (int axis = 0; axis < 3; ++axis)
         EXPECT_NEAR(heading[axis], expected_heading[axis], 0.01 * glm::length(expected_heading)) << axis;
+}
+
+// Of a floor that virtual lights hold, particles carry the share that the points of the lights leave.
+TEST(SpecularPhotons, CarryTheShareThatVirtualLightsLeave) {
+    const Medium medium = thin_cube();
+    Scene scene;
+    scene.origin = medium.world_of_local(vec3(0.0f));
+    add_quad(scene, {-5, -5, -2}, {10, 0, 0}, {0, 10, 0}, lambert(0.8f));
+    LightSettings lamp;
+    lamp.position = medium.world_of_local(vec3(0.4f, -0.3f, 1.5f));
+    lamp.power = Rgb(1.0f);
+    const Surroundings surroundings(std::move(scene), {lamp});
+    const DirectLight direct(medium, {}, &surroundings);
+    VirtualLightSettings settings;
+    settings.count = 200;
+    settings.photons = 100000;
+    const PixelCamera camera{16, 16, [](double x, double y) {
+                                 return Ray{dvec3(0.1, 0.2, 4.0), glm::normalize(dvec3(x - 8.0, y - 8.0, -12.0))};
+                             }};
+    const VirtualLights lights(direct, camera, settings);
+    const std::vector<std::uint8_t> needed(medium.lattice.node_count(), 1);
+    const auto fluence = [&](const SpecularPhotons& cast) {
+        const Gathered g = cast.on(medium, {&needed, std::nullopt, false, 0.0f});
+        return std::accumulate(g.fluence.begin(), g.fluence.end(), 0.0);
+    };
+    const double all = fluence(SpecularPhotons(direct, nullptr, settings));
+    ASSERT_GT(all, 0.0);
+    // 100,000 particles: a fortieth is more than four standard errors.
+    EXPECT_NEAR(fluence(SpecularPhotons(direct, &lights, settings, 0.25f)) / all, 0.25, 0.025);
+    EXPECT_NEAR(fluence(SpecularPhotons(direct, &lights, settings, 0.75f)) / all, 0.75, 0.025);
+    const auto power = [&](float share) {
+        double sum = 0.0;
+        for (const PointLights& side : points_of_virtual_lights(lights, share))
+            for (const Rgb& intensity : side.intensity)
+                sum += luminance(intensity);
+        return sum;
+    };
+    ASSERT_GT(power(1.0f), 0.0);
+    EXPECT_NEAR(power(0.25f), 0.25 * power(1.0f), 1e-4 * power(1.0f));
 }
 
 TEST(SpecularPhotons, IsNotWantedWithoutSurfacesOrLight) {

@@ -2,6 +2,7 @@
 // representations differ by less than the stated error, lighting.error, in every cell, and the same stages light both.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "same_picture.h"
@@ -46,6 +47,28 @@ INSTANTIATE_TEST_SUITE_P(Of, Resampling, ::testing::Values(smoke_ball(0.0f), smo
 
 TEST_P(Resampling, HalfTheVoxelsEdgeChangesNothing) {
     expect_same_picture(GetParam(), finer(GetParam()), "voxels of half the edge");
+}
+
+// Seven eighths of the volume are smoke then that nobody can see, of an optical depth of a millionth per metre.
+SameScene among_invisible_smoke(const SameScene& scene) {
+    const NodeBox box = scene.volumes.front().box;
+    const ivec3 more((box.high.x - box.low.x) / 2);
+    SameScene out = padded(scene, more, more);
+    for (Recipe& r : out.volumes)
+        r.density = [density = r.density, invisible = 1e-6f / r.settings.smoke.extinction_per_metre](const ivec3& n) {
+            return std::max(density(n), invisible);
+        };
+    return out;
+}
+
+// Whether lights are made for receivers outside, and on which lattice the series is solved, goes by what is seen.
+TEST(InvisibleSmoke, ChangesNeitherThePictureNorWhatLightsIt) {
+    for (const SameScene& scene : {smoke_ball(0.0f), burst_in_veil()}) {
+        const LitPicture picture = light(scene), among = light(among_invisible_smoke(scene));
+        expect_near_light(picture, among, {"V", "MV", "MM"}, 0.5 * scene.shot.lighting.error,
+                          scene.name + ", among invisible smoke");
+        EXPECT_EQ(picture.mechanism.haze_nodes.empty(), among.mechanism.haze_nodes.empty()) << scene.name;
+    }
 }
 
 // What haze shows of a burst came through its skin, and the lights that stand for the skin are those of the voxels:

@@ -91,7 +91,11 @@ INSTANTIATE_TEST_SUITE_P(Phases, BurstInHaze, ::testing::Values(0.0f, 0.6f));
 struct Around {
     explicit Around(const Medium& medium) : pyramid(medium, 4), depths(pyramid, 2) {}
     ThinMedium haze(const Medium& medium) const {
-        return {medium, depths, std::vector<std::uint8_t>(medium.lattice.node_count(), 1), std::nullopt};
+        return {medium,
+                depths,
+                std::vector<std::uint8_t>(medium.lattice.node_count(), 1),
+                {vec3(0.5f, -7.0f, 0.3f)},
+                0.02f};
     }
     ExtinctionPyramid pyramid;
     PointDepths depths;
@@ -106,17 +110,23 @@ TEST(ThinMedium, HollowsInTheSmokeAreNone) {
     Recipe recipe;
     recipe.box = cube(-40, 40);
     recipe.world_from_index = cubic(0.05);
-    // Two thirds of the ball are hollow, and nothing sees into it.
-    recipe.density = [](const ivec3& n) { return ball(n, dvec3(0.0), 38) * (1.0f - 0.999f * ball(n, dvec3(0.0), 33)); };
+    // Two thirds of the ball are hollow, and nothing sees into it. There is haze in it and around it.
+    recipe.density = [](const ivec3& n) {
+        return std::max(0.001f, ball(n, dvec3(0.0), 38) * (1.0f - ball(n, dvec3(0.0), 33)));
+    };
     recipe.flame = [](const ivec3& n) { return ball(n, dvec3(0.0), 5); };
     recipe.settings = black_smoke();
+    recipe.settings.smoke.albedo = Rgb(0.5f);
     recipe.settings.smoke.extinction_per_metre = 60.0f;
     const Medium medium = make_medium(recipe);
     const ThinMedium haze = Around(medium).haze(medium);
     ASSERT_FALSE(haze.empty());
     const std::int64_t middle = medium.lattice.find_node(medium.reference_node);
+    const std::int64_t outside = medium.lattice.find_node(medium.reference_node + ivec3(39, 39, 0));
     ASSERT_GE(middle, 0);
+    ASSERT_GE(outside, 0);
     EXPECT_EQ(haze.nodes()[std::size_t(middle)], 0);
+    EXPECT_EQ(haze.nodes()[std::size_t(outside)], 1);
 }
 
 TEST(ThinMedium, AsksAtFewerPointsThanItHasNodes) {

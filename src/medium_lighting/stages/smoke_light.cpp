@@ -21,6 +21,7 @@ std::vector<ScatteredLight> orders_of_scattering(const LitLattice& lattice, cons
         progress);
     StageCost series{"orders of scattering on the coarse lattice", watch.seconds(), costs.bytes, {}};
     series.detail = {{"lattice_level", costs.lattice_level},
+                     {"share_of_coarser_level", costs.share_of_coarser},
                      {"nodes", costs.coarse_nodes},
                      {"operator_seconds", costs.operator_seconds},
                      {"series_seconds", costs.series_seconds},

@@ -81,11 +81,11 @@ private:
 };
 
 SpecularPhotons::SpecularPhotons(const DirectLight& scene, const VirtualLights* lights,
-                                 const VirtualLightSettings& settings)
-    : scene_(scene), lights_(lights), seed_(settings.seed) {
+                                 const VirtualLightSettings& settings, float share)
+    : scene_(scene), lights_(lights), seed_(settings.seed), share_(share) {
     if (!scene.lights_surfaces())
         return;
-    if (!lights || scene.surroundings()->scene().is_glossy() ||
+    if (!lights || share > 0.0f || scene.surroundings()->scene().is_glossy() ||
         lights->report().photons.unshared_fraction() > kUnsharedLeft)
         particles_ = static_cast<std::size_t>(settings.photons);
 }
@@ -94,7 +94,7 @@ SpecularPhotons::SpecularPhotons(const DirectLight& scene, const VirtualLights* 
 // equal.
 void SpecularPhotons::cast(const RaySegment& segment, const Rgb& power, Rng& rng, Tracks& tracks) const {
     const SurfacePoint& point = *segment.point;
-    const bool held = lights_ && lights_->hold_base(*segment.hit, point);
+    const bool held = lights_ && lights_->hold_base(*segment.hit, point) && !(share_ > 0.0f && rng.next() < share_);
     if (held && !needs_energy_tables(point.material))
         return;
     const PathVertex vertex(point, Bsdf(point.material, point.frame, held ? Lobes::Specular : Lobes::All),

@@ -18,8 +18,10 @@ namespace brisance {
 
 class SpecularPhotons {
 public:
-    // Keeps references. `lights`: the virtual lights that hold the rest; null: none.
-    SpecularPhotons(const DirectLight& scene, const VirtualLights* lights, const VirtualLightSettings& settings);
+    // Keeps references. `lights`: the virtual lights that hold the rest; null: none. `share`: of what they hold, the
+    // part that particles carry in their place, in [0, 1].
+    SpecularPhotons(const DirectLight& scene, const VirtualLights* lights, const VirtualLightSettings& settings,
+                    float share = 0.0f);
 
     // Whether no surface reflects light that the virtual lights do not hold.
     bool empty() const { return particles_ == 0; }
@@ -39,6 +41,7 @@ private:
     const VirtualLights* lights_;
     std::size_t particles_ = 0;
     std::uint32_t seed_;
+    float share_;
 };
 
 }  // namespace brisance

@@ -18,10 +18,10 @@ constexpr vec3 kAside(0.517f, 0.382f, 0.766f);
 
 }  // namespace
 
-PointsOfSides points_of_virtual_lights(const VirtualLights& lights) {
+PointsOfSides points_of_virtual_lights(const VirtualLights& lights, float share) {
     PointsOfSides sides;
     for (const VirtualLight& light : lights.lights()) {
-        const Rgb flux = light.base_flux;
+        const Rgb flux = share * light.base_flux;
         if (!(luminance(flux) > 0.0f))
             continue;
         const vec3 normal(light.frame.normal);

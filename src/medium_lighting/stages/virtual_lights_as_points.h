@@ -13,7 +13,8 @@ namespace brisance {
 using PointsOfSides = std::array<PointLights, 2>;
 
 // Each shines by Lambert's cosine about its normal, in spherical harmonics of degree 2 (6 % too bright along the
-// normal, less than 2 % wrong on average over the hemisphere). Glossy profiles count by their power alone.
-PointsOfSides points_of_virtual_lights(const VirtualLights& lights);
+// normal, less than 2 % wrong on average over the hemisphere). Glossy profiles count by their power alone. `share`: of
+// their light, in (0, 1].
+PointsOfSides points_of_virtual_lights(const VirtualLights& lights, float share);
 
 }  // namespace brisance

@@ -1,4 +1,4 @@
-// The definition of thin smoke beside dense smoke, shared by all code that treats it separately.
+// The extinction that light meets in a medium.
 #pragma once
 
 #include <span>
@@ -15,11 +15,5 @@ inline double extinction_met(std::span<const float> extinction) {
     }
     return sum > 0.0 ? squares / sum : 0.0;
 }
-
-// Smoke is thin up to this share of extinction_met().
-constexpr float kThinSmoke = 0.05f;
-// Share of thin nodes among those with extinction. Fringes of real smoke make up to a third; above this share the
-// volume holds thin smoke of its own.
-constexpr float kFringes = 0.4f;
 
 }  // namespace brisance

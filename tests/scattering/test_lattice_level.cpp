@@ -1,0 +1,57 @@
+// The lattice of the series follows the volume that the smoke fills.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "fixtures/media.h"
+#include "scattering/lattice_level.h"
+
+namespace brisance {
+namespace {
+
+using namespace testing;
+
+LatticeChoice choice(const NodeBox& box, const NodeScalar& density) {
+    Recipe recipe;
+    recipe.box = box;
+    recipe.world_from_index = cubic(0.05);
+    recipe.density = density;
+    recipe.settings = black_smoke();
+    const Medium medium = make_medium(recipe);
+    return automatic_lattice(ExtinctionPyramid(medium, ExtinctionPyramid::kMaxLevels));
+}
+
+double mean_level(const LatticeChoice& c) {
+    return c.level + double(c.share_of_coarser);
+}
+
+TEST(LatticeLevel, GivesWayGraduallyToTheNext) {
+    double last = 0.0;
+    for (int nodes = 40; nodes <= 46; ++nodes) {
+        const double level = mean_level(choice({ivec3(0), ivec3(nodes - 1)}, [](const ivec3&) { return 1.0f; }));
+        EXPECT_GE(level, last) << nodes;
+        EXPECT_LT(level - last, 0.5) << nodes;
+        last = level;
+    }
+    EXPECT_EQ(last, 1.0);
+}
+
+TEST(LatticeLevel, HasTheSameSpacingForFinerVoxels) {
+    const auto of_ball = [](int radius) {
+        return choice(cube(-radius, radius), [radius](const ivec3& n) { return ball(n, dvec3(0.0), radius); });
+    };
+    const LatticeChoice coarse = of_ball(22), fine = of_ball(44);
+    EXPECT_EQ(coarse.level + 1, fine.level);
+    EXPECT_NEAR(coarse.share_of_coarser, fine.share_of_coarser, 0.02);
+}
+
+TEST(LatticeLevel, IsTheSameAmongSmokeTooThinToBeSeen) {
+    const auto among = [](float thin) {
+        return choice(cube(-40, 40), [thin](const ivec3& n) { return std::max(thin, ball(n, dvec3(0.0), 20)); });
+    };
+    EXPECT_EQ(among(0.0f).level, 0);
+    EXPECT_NEAR(mean_level(among(1e-7f)), mean_level(among(0.0f)), 1e-3);
+}
+
+}  // namespace
+}  // namespace brisance
