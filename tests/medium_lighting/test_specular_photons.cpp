@@ -72,12 +72,13 @@ TEST(SpecularPhotons, AMirrorCastsTheLightOfAnotherLamp) {
         EXPECT_NEAR(heading[axis], expected_heading[axis], 0.01 * glm::length(expected_heading)) << axis;
 }
 
-// Of a floor that virtual lights hold, particles carry the share that the points of the lights leave.
+// Of walls that virtual lights hold, particles carry the share that the points of the lights leave, and of other places
+// all.
 TEST(SpecularPhotons, CarryTheShareThatVirtualLightsLeave) {
     const Medium medium = thin_cube();
     Scene scene;
     scene.origin = medium.world_of_local(vec3(0.0f));
-    add_quad(scene, {-5, -5, -2}, {10, 0, 0}, {0, 10, 0}, lambert(0.8f));
+    add_box(scene, vec3(-2), vec3(2), lambert(0.5f), true);
     LightSettings lamp;
     lamp.position = medium.world_of_local(vec3(0.4f, -0.3f, 1.5f));
     lamp.power = Rgb(1.0f);
@@ -87,7 +88,7 @@ TEST(SpecularPhotons, CarryTheShareThatVirtualLightsLeave) {
     settings.count = 200;
     settings.photons = 100000;
     const PixelCamera camera{16, 16, [](double x, double y) {
-                                 return Ray{dvec3(0.1, 0.2, 4.0), glm::normalize(dvec3(x - 8.0, y - 8.0, -12.0))};
+                                 return Ray{dvec3(0.1, 0.2, 1.8), glm::normalize(dvec3(x - 8.0, y - 8.0, -6.0))};
                              }};
     const VirtualLights lights(direct, camera, settings);
     const std::vector<std::uint8_t> needed(medium.lattice.node_count(), 1);
@@ -97,9 +98,13 @@ TEST(SpecularPhotons, CarryTheShareThatVirtualLightsLeave) {
     };
     const double all = fluence(SpecularPhotons(direct, nullptr, settings));
     ASSERT_GT(all, 0.0);
+    const double not_held = fluence(SpecularPhotons(direct, &lights, settings, 1e-9f)) / all;
+    ASSERT_LT(not_held, 0.5);
     // 100,000 particles: a fortieth is more than four standard errors.
-    EXPECT_NEAR(fluence(SpecularPhotons(direct, &lights, settings, 0.25f)) / all, 0.25, 0.025);
-    EXPECT_NEAR(fluence(SpecularPhotons(direct, &lights, settings, 0.75f)) / all, 0.75, 0.025);
+    for (const float share : {0.25f, 0.75f}) {
+        const double carried = fluence(SpecularPhotons(direct, &lights, settings, share)) / all;
+        EXPECT_NEAR(carried, not_held + share * (1.0 - not_held), 0.025) << share;
+    }
     const auto power = [&](float share) {
         double sum = 0.0;
         for (const PointLights& side : points_of_virtual_lights(lights, share))
