@@ -11,11 +11,16 @@
 #include "virtual_lights/gatherers/all_lights.h"
 #include "virtual_lights/gatherers/bsdf_rays.h"
 #include "virtual_lights/gatherers/combined.h"
+#include "virtual_lights/gatherers/lightcuts.h"
 #include "virtual_lights/gatherers/one_light.h"
 #include "virtual_lights/gatherers/resampled.h"
+#include "virtual_lights/gatherers/stochastic_lightcuts.h"
 #include "virtual_lights/kinds/patch_light.h"
 #include "virtual_lights/kinds/point_light.h"
 #include "virtual_lights/kinds/sphere_light.h"
+#include "virtual_lights/placement/bidirectional.h"
+#include "virtual_lights/placement/metropolis.h"
+#include "virtual_lights/placement/rejection.h"
 
 namespace brisance {
 
@@ -31,7 +36,13 @@ constexpr std::array kPlacements = {
     Placement{"light_paths", "where particles from fire and lamps arrive", light_path_deposits, thin_at_random,
               power_alone, light_path_flux},
     Placement{"relaxed_light_paths", "those of them near the camera's paths, thinned out evenly",
-              relaxed_light_path_deposits, thin_to_blue_noise, equal_importance, nullptr}};
+              relaxed_light_path_deposits, thin_to_blue_noise, equal_importance, nullptr},
+    Placement{"rejection", "where they arrive, kept by what the camera sees of them", rejected_deposits,
+              thin_at_random, equal_importance, rejected_flux},
+    Placement{"bidirectional", "half of those, half of the camera's, by what the camera sees of them",
+              bidirectional_deposits, thin_at_random, equal_importance, nullptr},
+    Placement{"metropolis", "where particles mutated toward what the camera sees arrive", metropolis_deposits,
+              thin_at_random, equal_importance, metropolis_flux}};
 
 template <class T>
 struct Row {
@@ -45,15 +56,21 @@ constexpr std::tuple kFluxes = {Row<GatheredFlux>{"gathered", "of all photons ar
 
 constexpr std::tuple kKinds = {Row<PatchKind>{"patch", "the surface itself, interpolated between lights"},
                                Row<SphereKind>{"sphere", "a sphere that reaches to a near light (sphere_neighbours)"},
-                               Row<PointKind>{"point", "a point with a bound on its geometry term (point_bound)"}};
+                               Row<PointKind>{"point", "a point with a bound on its geometry term (point_bound)"},
+                               Row<DiffusePointKind>{"diffuse_point", "the same, of the material's Lambert base alone"}};
 
 constexpr std::tuple kGatherers = {
     Row<Combined<PowerChooser>>{"combined", "a light by power and a ray by BSDF, by the balance heuristic"},
     Row<Combined<TreeChooser>>{"combined_tree", "the same with a light by a tree of bounds"},
     Row<OneLight<PowerChooser>>{"power", "a light by power"},
     Row<OneLight<TreeChooser>>{"light_tree", "a light by a tree of bounds"},
+    Row<OneLight<PlainPowerChooser>>{"plain_power", "a light by its own power, also where power is by area"},
+    Row<OneLight<UniformChooser>>{"uniform", "a light, all alike"},
     Row<BsdfRays>{"bsdf", "a ray by BSDF"},
     Row<Resampled>{"resampled", "of several lights one by its unoccluded contribution"},
+    Row<ResampledCombined>{"resampled_combined", "the same of lights by power and rays by BSDF"},
+    Row<Lightcuts>{"lightcuts", "one light for each node of a cut through a tree, the same for all vertices"},
+    Row<StochasticLightcuts>{"stochastic_lightcuts", "a random light of each node of a small cut"},
     Row<AllLights>{"all", "every light"}};
 
 // Baselines of the literature, beside virtual blue noise lighting with every gatherer.
@@ -88,7 +105,7 @@ constexpr std::size_t kGathererCount = std::tuple_size_v<decltype(kGatherers)>;
 // A kind of light with a flux: whether there is such a thing, and what gatherers need to know of it.
 struct KindWithFlux {
     void (*fit)(LightSet&) = nullptr;  // null: the kind needs what the flux does not have
-    bool hittable = false;
+    bool hittable = false, bounded = false;
     std::array<decltype(Technique::gather), kGathererCount> gather{};  // null: the gatherer needs what the kind lacks
 };
 
@@ -107,7 +124,7 @@ constexpr KindWithFlux kind_with_flux() {
     if constexpr (requires { typename Family::template Of<Flux>; }) {
         using Kind = typename Family::template Of<Flux>;
         static_assert(VirtualLightKind<Kind>);
-        return {Kind::fit, Hittable<Kind>,
+        return {Kind::fit, Hittable<Kind>, Bounded<Kind>,
                 std::apply(
                     [](const auto&... row) {
                         return std::array{gather_from<typename std::decay_t<decltype(row)>::Type, Kind>()...};
@@ -219,6 +236,14 @@ std::string extension_complaint(const Chosen& c, bool path_extension) {
            " goes with path_extension=false";
 }
 
+std::string compensation_complaint(const Chosen& c, bool compensation) {
+    if (!c.with_flux().fit || c.with_flux().bounded || !compensation)
+        return {};
+    return std::string("compensation needs ") + kBounded + ": kind " +
+           kinds_that([](const KindWithFlux& k) { return k.bounded; }) + "; kind " + light_kinds()[c.kind].name +
+           " goes with compensation=false";
+}
+
 std::vector<TechniquePreset> make_presets() {
     std::vector<TechniquePreset> out;
     for (const TechniqueChoice& gatherer : light_gatherers())
@@ -276,7 +301,8 @@ std::string why_not_together(const VirtualLightSettings& settings) {
     const Chosen c = chosen(settings);
     std::string out;
     for (const std::string& complaint :
-         {flux_complaint(c), kind_complaint(c), gatherer_complaint(c), extension_complaint(c, settings.path_extension)})
+         {flux_complaint(c), kind_complaint(c), gatherer_complaint(c), extension_complaint(c, settings.path_extension),
+          compensation_complaint(c, settings.compensation)})
         if (!complaint.empty())
             out += (out.empty() ? "" : "; and ") + complaint;
     return out;

@@ -5,8 +5,6 @@
 
 namespace brisance {
 
-namespace {
-
 std::vector<LightBounds> bounds_of(const std::vector<VirtualLight>& lights) {
     std::vector<LightBounds> out;
     out.reserve(lights.size());
@@ -15,8 +13,6 @@ std::vector<LightBounds> bounds_of(const std::vector<VirtualLight>& lights) {
                        l.intensity, false});
     return out;
 }
-
-}  // namespace
 
 PowerChooser::PowerChooser(const std::vector<VirtualLight>& lights, LightImportance importance) {
     double sum = 0.0;
@@ -40,6 +36,13 @@ double PowerChooser::probability(const LitPoint&, std::size_t light) const {
     if (cumulative_.empty())
         return 0.0;
     return cumulative_[light] - (light > 0 ? cumulative_[light - 1] : 0.0);
+}
+
+std::optional<LightTree::Choice> UniformChooser::choose(const LitPoint& point, double u) const {
+    if (count_ == 0)
+        return std::nullopt;
+    const auto light = std::min(static_cast<std::size_t>(u * double(count_)), count_ - 1);
+    return LightTree::Choice{light, probability(point, light)};
 }
 
 TreeChooser::TreeChooser(const std::vector<VirtualLight>& lights, LightImportance) : tree_(bounds_of(lights)) {}
