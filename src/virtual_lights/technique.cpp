@@ -73,28 +73,56 @@ constexpr std::tuple kGatherers = {
     Row<StochasticLightcuts>{"stochastic_lightcuts", "a random light of each node of a small cut"},
     Row<AllLights>{"all", "every light"}};
 
-// Baselines of the literature, beside virtual blue noise lighting with every gatherer.
+// The settings of one preset with those of another, which has its name and its help.
+TechniquePreset changed(const TechniquePreset& from, const TechniquePreset& by) {
+    TechniquePreset out{by.name, by.help, from.settings};
+    for (const auto& [key, value] : by.settings) {
+        const auto same = std::find_if(out.settings.begin(), out.settings.end(),
+                                       [&, &k = key](const auto& setting) { return setting.first == k; });
+        if (same != out.settings.end())
+            same->second = value;
+        else
+            out.settings.emplace_back(key, value);
+    }
+    return out;
+}
+
+// Baselines of the literature, beside virtual blue noise lighting with every gatherer: by name, help, and what differs
+// from instant radiosity.
 const std::vector<TechniquePreset>& baselines() {
-    static const std::vector<TechniquePreset> all = {{"rich_vsl",
-                                                      "rich virtual spherical lights",
-                                                      {{"placement", "relaxed_light_paths"},
-                                                       {"kind", "sphere"},
-                                                       {"sampling", "power"},
-                                                       {"path_extension", "false"}}},
-                                                     {"vsl",
-                                                      "virtual spherical lights",
-                                                      {{"placement", "light_paths"},
-                                                       {"flux", "own"},
-                                                       {"kind", "sphere"},
-                                                       {"sampling", "power"},
-                                                       {"path_extension", "false"}}},
-                                                     {"vpl",
-                                                      "virtual point lights",
-                                                      {{"placement", "light_paths"},
-                                                       {"flux", "own"},
-                                                       {"kind", "point"},
-                                                       {"sampling", "power"},
-                                                       {"path_extension", "false"}}}};
+    static const std::vector<TechniquePreset> differences = {
+        {"rich_vsl",
+         "rich virtual spherical lights",
+         {{"placement", "relaxed_light_paths"}, {"flux", "gathered"}, {"kind", "sphere"}}},
+        {"vsl", "virtual spherical lights", {{"kind", "sphere"}}},
+        {"vsl_cone", "the same, directions by the cone alone", {{"kind", "sphere"}, {"sphere_sampling", "cone"}}},
+        {"vsl_vertex", "by the BSDF at the vertex", {{"kind", "sphere"}, {"sphere_sampling", "vertex"}}},
+        {"vsl_light", "by the BSDF at the light", {{"kind", "sphere"}, {"sphere_sampling", "light"}}},
+        {"vpl", "virtual point lights", {}},
+        {"vpl_diffuse", "the same, of Lambert bases alone", {{"kind", "diffuse_point"}}},
+        {"vpl_compensated",
+         "with the whole geometry term bounded, and compensation by paths",
+         {{"point_bound_of", "both_cosines"}, {"compensation", "true"}}},
+        {"vpl_lightcuts", "chosen by lightcuts", {{"sampling", "lightcuts"}}},
+        {"vpl_stochastic_lightcuts", "chosen by stochastic lightcuts", {{"sampling", "stochastic_lightcuts"}}},
+        {"vpl_rejection", "rejected where the camera does not see them", {{"placement", "rejection"}}},
+        {"vpl_metropolis", "Metropolis instant radiosity", {{"placement", "metropolis"}}},
+        {"vpl_bidirectional",
+         "bidirectional instant radiosity, rich",
+         {{"placement", "bidirectional"}, {"flux", "gathered"}}}};
+    static const std::vector<TechniquePreset> all = [] {
+        const TechniquePreset instant_radiosity{"",
+                                                "",
+                                                {{"placement", "light_paths"},
+                                                 {"flux", "own"},
+                                                 {"kind", "point"},
+                                                 {"sampling", "power"},
+                                                 {"path_extension", "false"}}};
+        std::vector<TechniquePreset> out;
+        for (const TechniquePreset& other : differences)
+            out.push_back(changed(instant_radiosity, other));
+        return out;
+    }();
     return all;
 }
 
