@@ -31,7 +31,7 @@ struct LitPoint {
 
 // A group of lights as seen from a point: what it sends there at most, and where it may lie.
 struct LightsInView {
-    double intensity = 0.0;  // the largest toward the point, luminance [W/sr]; 0: none reaches it
+    double intensity = 0.0;                  // the largest toward the point, luminance [W/sr]; 0: none reaches it
     double nearest2 = 0.0, farthest2 = 0.0;  // to the box of the lights, squared [m^2]
     dvec3 direction{0.0, 0.0, 1.0};          // unit, from the point: of the cone around all lights ...
     double cos_around = -1.0;                // ... and of its half angle; -1: the lights are all around the point
@@ -76,7 +76,7 @@ public:
     std::size_t node_count() const { return nodes_.size(); }
     const LightCone& lights(std::uint32_t node) const { return nodes_[node].lights; }
     bool is_leaf(std::uint32_t node) const { return nodes_[node].left == 0; }
-    std::uint32_t left(std::uint32_t node) const { return nodes_[node].left; }   // of inner nodes
+    std::uint32_t left(std::uint32_t node) const { return nodes_[node].left; }  // of inner nodes
     std::uint32_t right(std::uint32_t node) const { return nodes_[node].right; }
     std::size_t light(std::uint32_t leaf) const { return nodes_[leaf].right; }
     // A light below `node`, by a number in [0, 1). `share_of_left(left, right)`: the probability of the left of two

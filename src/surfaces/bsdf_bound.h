@@ -16,8 +16,8 @@ public:
     BsdfBound(const Bsdf& bsdf, const dvec3& wo);
 
     // At least the largest channel of evaluate(wo, wi) for every wi in the cone [1/sr]. `axis`: unit, world;
-    // `cos_around`: of the cone's half angle, -1 for all directions. Rough glass has no bound: there it is a guess above
-    // zero.
+    // `cos_around`: of the cone's half angle, -1 for all directions. Rough glass has no bound: there it is a guess
+    // above zero.
     double over(const dvec3& axis, double cos_around) const;
 
 private:
@@ -25,7 +25,7 @@ private:
 
     const Bsdf& bsdf_;
     Bsdf::View view_;
-    dvec3 wo_, normal_;         // world; the normal on the side of wo
+    dvec3 wo_, normal_;          // world; the normal on the side of wo
     double cosine_lobes_ = 0.0;  // over cos / pi: of all that is about proportional to the cosine
     double facets_ = 0.0;        // masking of wo; 0 without rough facets
     double transmitted_ = 0.0;   // [1/sr]

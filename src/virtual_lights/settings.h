@@ -28,11 +28,11 @@ struct VirtualLightSettings {
     std::string placement = "blue_noise";
     std::string flux = "gathered";
     std::string kind = "patch";
-    double point_bound = 100.0;          // kind point: upper bound on cosine over squared distance [1/m^2]
+    double point_bound = 100.0;  // kind point: upper bound on cosine over squared distance [1/m^2]
     BoundedTerm point_bound_of = BoundedTerm::LightCosine;
-    bool compensation = false;           // kind point: paths find what the bound takes away
-    int sphere_neighbours = 10;          // kind sphere: its radius is the distance to the neighbour of this number
-    int sphere_samples = 4;              // kind sphere: directions sampled for each light
+    bool compensation = false;   // kind point: paths find what the bound takes away
+    int sphere_neighbours = 10;  // kind sphere: its radius is the distance to the neighbour of this number
+    int sphere_samples = 4;      // kind sphere: directions sampled for each light
     SphereSampling sphere_sampling = SphereSampling::Combined;
     double candidates_per_pixel = 0.25;  // camera paths; never fewer than eight per light
     double importance_floor = 0.05;      // placements rejection, metropolis: share of lights that no one needs to see

@@ -305,8 +305,8 @@ TEST(Baselines, AreTheSameBitsOnAnyThreads) {
     mutated.placement = "metropolis";
     VirtualLightSettings both_ways = sampled_by("stochastic_lightcuts", "sphere");
     both_ways.placement = "bidirectional";
-    for (const VirtualLightSettings& settings : {rich, of_photons("sphere", "light_tree"), of_photons("point"),
-                                                 rejected, mutated, both_ways}) {
+    for (const VirtualLightSettings& settings :
+         {rich, of_photons("sphere", "light_tree"), of_photons("point"), rejected, mutated, both_ways}) {
         const std::vector<float> one = fingerprint(settings, 1);
         EXPECT_GT(one.size(), 2000u);
         EXPECT_EQ(one, fingerprint(settings, 2));
@@ -362,7 +362,8 @@ TEST(Baselines, SaysWhatDoesNotGoTogether) {
     using S = VirtualLightSettings;
     const S plain = of_photons("point"), rich = sampled_by("power", "sphere");
     refused(
-        plain, [](S& s) { s.placement = "blue_noise"; }, "placement light_paths, rejection, metropolis, not blue_noise");
+        plain, [](S& s) { s.placement = "blue_noise"; },
+        "placement light_paths, rejection, metropolis, not blue_noise");
     refused(
         plain, [](S& s) { s.kind = "patch"; }, "flux own goes with kind sphere, point, diffuse_point");
     refused(

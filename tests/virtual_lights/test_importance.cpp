@@ -141,7 +141,8 @@ TEST(Bidirectional, LiesWhereLightIsAndIsSeen) {
     PlacementReport report;
     const std::vector<Deposit> deposits = bidirectional_deposits({room.direct, camera, s, report});
     EXPECT_NEAR(double(deposits.size()), double(s.count), 2.0);
-    const auto unseen = std::count_if(deposits.begin(), deposits.end(), [](const Deposit& d) { return d.position.x > 2.0f; });
+    const auto unseen =
+        std::count_if(deposits.begin(), deposits.end(), [](const Deposit& d) { return d.position.x > 2.0f; });
     EXPECT_LT(double(unseen), 0.15 * s.count);
     EXPECT_LT(report.acceptance, 0.5);
 }

@@ -59,7 +59,8 @@ void add_kind_keys(std::vector<Key>& keys) {
         whole_in(Ranges::sphere_samples), [](Shot & s) -> auto& { return s.virtual_lights.sphere_samples; }));
     keys.push_back(make_key(
         "virtual_lights.sphere_sampling",
-        "for kind sphere: by its cone, by the BSDF at the vertex, by that at the light, or combined; sampling resampled "
+        "for kind sphere: by its cone, by the BSDF at the vertex, by that at the light, or combined; sampling "
+        "resampled "
         "takes the cone",
         choice<SphereSampling>({{"combined", SphereSampling::Combined},
                                 {"cone", SphereSampling::Cone},

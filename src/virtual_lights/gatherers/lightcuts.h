@@ -70,9 +70,7 @@ struct Lightcuts {
             return total;
         }
 
-        std::uint64_t bytes() const override {
-            return tree_.bytes() + representatives_.size() * sizeof(std::uint32_t);
-        }
+        std::uint64_t bytes() const override { return tree_.bytes() + representatives_.size() * sizeof(std::uint32_t); }
 
     private:
         struct Represented : CutNode {

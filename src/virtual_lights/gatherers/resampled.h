@@ -37,8 +37,8 @@ private:
 
 struct CandidateLight {
     Connection connection;
-    double target = 0.0;       // luminance of what would be scattered
-    Rgb seen{0.0f};            // what is scattered, of a candidate that a ray has found
+    double target = 0.0;  // luminance of what would be scattered
+    Rgb seen{0.0f};       // what is scattered, of a candidate that a ray has found
     bool found_by_ray = false;
 };
 

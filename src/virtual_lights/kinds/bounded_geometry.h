@@ -15,8 +15,8 @@ namespace brisance {
 inline constexpr const char* kBounded = "a kind of light with a bound";
 
 // The share min(G, b) / G of the light that reaches a vertex from a point at a squared distance [m^2] and the cosine of
-// whose normal is given. `direction`: unit, from the vertex to the point. The bounded term is cos_y / d^2, or also holds
-// the vertex's own cosine; vertices in a medium have none.
+// whose normal is given. `direction`: unit, from the vertex to the point. The bounded term is cos_y / d^2, or also
+// holds the vertex's own cosine; vertices in a medium have none.
 inline double kept_by_bound(const VirtualLightSettings& s, const LitPoint& vertex, const dvec3& direction,
                             double cosine, double square) {
     double term = cosine;

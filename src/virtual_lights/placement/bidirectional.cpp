@@ -28,8 +28,7 @@ double leaving_radiance(const PlacementInput& input, const Deposit& deposit, con
                         Rng& rng) {
     const DirectLight& scene = input.scene;
     const Scene& surfaces = scene.surroundings()->scene();
-    const PathVertex vertex(surface_point(surfaces, deposit.hit, dvec3(deposit.direction)),
-                            -dvec3(deposit.direction));
+    const PathVertex vertex(surface_point(surfaces, deposit.hit, dvec3(deposit.direction)), -dvec3(deposit.direction));
     Rgb sum(0.0f);
     if (scene.has_emitters())
         sum += scene.from_emitters(vertex, rng);

@@ -169,7 +169,9 @@ bool mutate(const LightPaths& paths, State& state, Rng& rng) {
     State taken;
     double sum = 0.0;
     for (int i = 0; i < kTries; ++i) {
-        std::optional<State> drawn = whole ? paths.redraw_path(rng) : flights ? paths.redraw_flights(state, rng) : state;
+        std::optional<State> drawn = whole     ? paths.redraw_path(rng)
+                                     : flights ? paths.redraw_flights(state, rng)
+                                               : state;
         if (!drawn)
             continue;
         if (!whole && !flights)
@@ -223,8 +225,8 @@ PhotonArrivals sample_chains(const PlacementInput& input, std::size_t count) {
         chains.size(),
         [&](std::size_t i) {
             const std::size_t samples = (i + 1) * count / chains.size() - i * count / chains.size();
-            chains[i] = run_chain(paths, beginning(pilot, i, chains.size(), shift), samples,
-                                  pilot.mean / double(count), Rng(kChain, i, s.seed));
+            chains[i] = run_chain(paths, beginning(pilot, i, chains.size(), shift), samples, pilot.mean / double(count),
+                                  Rng(kChain, i, s.seed));
         },
         1);
     PhotonArrivals out;

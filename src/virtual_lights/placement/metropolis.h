@@ -10,8 +10,8 @@
 // so that deposits that nobody has seen yet can be reached. Mutations draw anew a whole light path, its last two
 // flights, or the receivers alone, several at a time, and one of those is proposed in proportion to w ([2]); as each
 // try is drawn independently of the state's own numbers, the tries that were not taken stand in for those of the way
-// back. A sample of the chain becomes a light of power P b / (N w), with the mean b of w over plain light paths, which a
-// separate estimate gives. Chains begin at deposits of that estimate, in proportion to w: there is no start-up bias.
+// back. A sample of the chain becomes a light of power P b / (N w), with the mean b of w over plain light paths, which
+// a separate estimate gives. Chains begin at deposits of that estimate, in proportion to w: there is no start-up bias.
 //
 // Departs from [1]: the receivers are several points, so that a light's power follows from what it brings to all of
 // them; and the floor keeps the mean right also for lights that none of them sees.
