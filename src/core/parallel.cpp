@@ -9,8 +9,8 @@
 #if defined(__SANITIZE_THREAD__)
 #include <sanitizer/tsan_interface.h>
 
-// What oneTBB's templates, and OpenVDB's in tests that write files, do to objects that the uninstrumented libraries
-// hand from thread to thread, atomics among them; not what our loops' bodies do.
+// What oneTBB's templates, and OpenVDB's in tests that write files, do to objects that the uninstrumented libraries hand
+// from thread to thread, atomics among them; not what our loops' bodies do.
 extern "C" const char* __tsan_default_suppressions() {  // NOLINT(readability-identifier-naming,bugprone-*)
     return "race_top:tbb::detail\nrace_top:oneapi/tbb/\nrace_top:bits/atomic_base.h\nrace:openvdb::\n";
 }
