@@ -22,7 +22,7 @@ SceneSettings room_beside_another() {
     return scene;
 }
 
-VirtualLightSettings of_photons(const std::string& placement) {
+VirtualLightSettings placed_by(const std::string& placement) {
     VirtualLightSettings s;
     s.count = 500;
     s.placement = placement;
@@ -57,11 +57,11 @@ OverSets over_sets(const Room& room, VirtualLightSettings s) {
     return {sum, std::sqrt(squares - sum * sum)};
 }
 
-// Nine tenths of the photons land next door, where half of all deposits are: those are rejected, and their place is
+// Four fifths of the photons land next door, and so do their deposits: those are rejected, and their place is
 // taken by lights that serve the picture.
 TEST(Rejection, LeavesOutWhatNobodySees) {
     const Room room(room_beside_another());
-    const VirtualLights plain = room.lights(of_photons("light_paths")), kept = room.lights(of_photons("rejection"));
+    const VirtualLights plain = room.lights(placed_by("light_paths")), kept = room.lights(placed_by("rejection"));
     const auto next_door = [](const VirtualLights& lights) {
         const auto& all = lights.lights();
         return double(std::count_if(all.begin(), all.end(), [](const VirtualLight& l) { return l.position.x > 2.0; })) /
@@ -77,9 +77,9 @@ TEST(Rejection, LeavesOutWhatNobodySees) {
 
 TEST(Importance, MakesSetsOfLightsAgree) {
     const Room room(room_beside_another());
-    const OverSets plain = over_sets(room, of_photons("light_paths"));
+    const OverSets plain = over_sets(room, placed_by("light_paths"));
     for (const char* placement : {"rejection", "metropolis"}) {
-        const OverSets by_importance = over_sets(room, of_photons(placement));
+        const OverSets by_importance = over_sets(room, placed_by(placement));
         EXPECT_LT(by_importance.deviation, 0.7 * plain.deviation) << placement;
         EXPECT_NEAR(by_importance.mean, plain.mean,
                     kSigmas * std::hypot(by_importance.deviation, plain.deviation) / std::sqrt(24.0))
@@ -90,7 +90,7 @@ TEST(Importance, MakesSetsOfLightsAgree) {
 // The spread of what lights bring to the camera, over their mean.
 double spread_of(const Room& room, const std::function<PhotonArrivals(const PlacementInput&)>& place,
                  const std::string& placement) {
-    const VirtualLightSettings s = of_photons(placement);
+    const VirtualLightSettings s = placed_by(placement);
     const PixelCamera camera = room.camera();
     PlacementReport report;
     const PlacementInput input{room.direct, camera, s, report};
@@ -123,7 +123,7 @@ TEST(Importance, BehindWallsIsBlack) {
     add_lamp(scene, {3.7, 0.0, -0.3}, {4.3, 0.0, 0.3}, 0.95, Rgb(20.0f));
     const Room room(scene);
     for (const char* placement : {"rejection", "metropolis", "bidirectional"}) {
-        VirtualLightSettings s = of_photons(placement);
+        VirtualLightSettings s = placed_by(placement);
         if (s.placement == "bidirectional")
             s.flux = "gathered";
         const VirtualLights lights = room.lights(s);

@@ -4,8 +4,10 @@
 #include <numeric>
 
 #include "room.h"
+#include "virtual_lights/flux/deposit_flux.h"
 #include "virtual_lights/gatherers/lightcuts.h"
 #include "virtual_lights/gatherers/stochastic_lightcuts.h"
+#include "virtual_lights/kinds/point_light.h"
 #include "virtual_lights/technique.h"
 
 namespace brisance {
