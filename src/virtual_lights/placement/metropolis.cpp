@@ -153,10 +153,15 @@ ChainPilot chain_pilot(LightPaths& paths, const VirtualLightSettings& s) {
 // Of chain `chain` of `chains`: evenly spaced through the weights of the pilot.
 const State& beginning(const ChainPilot& pilot, std::size_t chain, std::size_t chains, double shift) {
     double left = (double(chain) + shift) / double(chains) * pilot.total;
-    for (const State& state : pilot.states)
+    const State* last = nullptr;
+    for (const State& state : pilot.states) {
+        if (!(state.weight > 0.0))
+            continue;
+        last = &state;
         if ((left -= state.weight) < 0.0)
-            return state;
-    return pilot.states.back();
+            break;
+    }
+    return *last;
 }
 
 // One mutation by several tries. True: the deposit is another.

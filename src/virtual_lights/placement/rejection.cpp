@@ -14,6 +14,7 @@ constexpr Stream kRejectionPilot = stream_of("virtual_lights/rejection/pilot");
 constexpr Stream kRejectionPilotReceivers = stream_of("virtual_lights/rejection/pilot_receivers");
 constexpr Stream kRejectionReceivers = stream_of("virtual_lights/rejection/receivers");
 constexpr Stream kRejectionChance = stream_of("virtual_lights/rejection/chance");
+constexpr Stream kRejectionPositions = stream_of("virtual_lights/rejection/positions");
 constexpr double kMostPathsPerLight = 256.0;
 constexpr double kSurvivorsPerLight = 2.0;
 
@@ -38,14 +39,15 @@ RejectionPilot rejection_pilot(const PlacementInput& input, const CameraReceiver
     return out;
 }
 
-PhotonArrivals survivors(const PlacementInput& input, double count) {
+// `stream`: of the light paths. Lights that photons find later must not lie where those photons are.
+PhotonArrivals survivors(const PlacementInput& input, double count, Stream stream) {
     const CameraReceivers receivers(input);
     const RejectionPilot pilot = rejection_pilot(input, receivers);
     if (!(pilot.survivors > 0.0))
         return {};
     const VirtualLightSettings& s = input.settings;
     const double paths = std::ceil(std::min(count / pilot.survivors, kMostPathsPerLight * count));
-    PhotonArrivals all = photon_arrivals(input.scene, static_cast<std::size_t>(paths), Stream::Photon, s.seed);
+    PhotonArrivals all = photon_arrivals(input.scene, static_cast<std::size_t>(paths), stream, s.seed);
     const std::vector<double> contribution = receivers.contributions(all.arrivals, kRejectionReceivers);
     std::vector<Deposit> kept;
     for (std::size_t i = 0; i < all.arrivals.size(); ++i) {
@@ -67,11 +69,11 @@ double survival_probability(double contribution, double mean, double floor) {
 }
 
 PhotonArrivals rejected_flux(const PlacementInput& input) {
-    return survivors(input, double(input.settings.count));
+    return survivors(input, double(input.settings.count), Stream::Photon);
 }
 
 std::vector<Deposit> rejected_deposits(const PlacementInput& input) {
-    return survivors(input, kSurvivorsPerLight * input.settings.count).arrivals;
+    return survivors(input, kSurvivorsPerLight * input.settings.count, kRejectionPositions).arrivals;
 }
 
 }  // namespace brisance
