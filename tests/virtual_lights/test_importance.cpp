@@ -25,6 +25,7 @@ SceneSettings room_beside_another() {
 VirtualLightSettings placed_by(const std::string& placement) {
     VirtualLightSettings s;
     s.count = 500;
+    s.photons = 20000;
     s.placement = placement;
     s.flux = "own";
     s.kind = "point";

@@ -24,6 +24,7 @@ struct Points {
         settings.placement = "light_paths";
         settings.flux = "own";
         settings.kind = "point";
+        settings.sampling = "power";
         settings.path_extension = false;
         settings.point_bound = 3.0;
         set = lights_of(settings);
@@ -97,9 +98,6 @@ TEST(NodeBounds, HoldForTheLightsBelowThem) {
         for (auto node = static_cast<std::uint32_t>(tree.node_count()); node-- > 0;) {
             if (tree.is_leaf(node)) {
                 const std::size_t light = tree.light(node);
-                // Of glossy lights the tree knows the power, not the lobe.
-                if (needs_energy_tables(points.set->lights[light].material))
-                    continue;
                 Rng rng(Stream::Path, 0);
                 const dvec3 direction = kind.sample(light, vertex, rng);
                 sum[node] = luminance(kind.radiance(light, vertex, direction) * vertex.at(direction).value);
@@ -151,7 +149,7 @@ TEST(Lightcuts, HaveTheRightMeanOverRepresentatives) {
     VirtualLightSettings s = points.settings;
     s.sampling = "lightcuts";
     s.lightcuts_most = 4;
-    constexpr int kTrees = 4000;
+    constexpr int kTrees = 1000;
     const std::vector<double> truth = points.of_all();
     for (const int vertex : {0, 20, 40}) {
         double sum = 0.0, squares = 0.0;
@@ -217,13 +215,13 @@ TEST(LightSamples, AreThatManyLights) {
 }
 
 // As many lights as you like in one point are one light.
-TEST(StochasticLightcuts, OfAMillionLightsInOnePoint) {
+TEST(StochasticLightcuts, OfVeryManyLightsInOnePoint) {
     LightBounds one;
     one.low = one.high = dvec3(0.0, 1.0, 0.0);
     one.axis = dvec3(0.0, -1.0, 0.0);
     one.reach = std::acos(-1.0) / 2.0;
     one.intensity = 1.0;
-    constexpr std::size_t kLights = 1000000;
+    constexpr std::size_t kLights = 200000;
     const LightTree tree(std::vector<LightBounds>(kLights, one));
     EXPECT_EQ(representatives(tree, 0).size(), tree.node_count());
     for (const dvec3& at : {dvec3(0.0), dvec3(0.0, 1.0, 0.0)}) {

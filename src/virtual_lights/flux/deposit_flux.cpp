@@ -5,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "core/stopwatch.h"
+#include "surfaces/bsdf_bound.h"
 
 namespace brisance {
 
@@ -29,12 +30,20 @@ Rgb reflectance(const VirtualLight& light, std::uint64_t index, std::uint32_t se
     return sum / float(kReflectanceSamples);
 }
 
+// Over all directions, luminance [W/sr].
+double largest_intensity(const VirtualLight& light) {
+    const Bsdf bsdf(light.material, light.frame);
+    return luminance(light.irradiance) * BsdfBound(bsdf, light.toward_source).over(light.frame.normal, -1.0);
+}
+
 VirtualLight light_of(const Scene& scene, const Deposit& deposit, std::uint64_t index, std::uint32_t seed) {
     VirtualLight light = light_of_deposit(scene, deposit);
     light.flux = deposit.power * reflectance(light, index, seed);
     light.base_flux = deposit.power * Bsdf(light.material, light.frame).base_albedo(light.toward_source);
     light.power = luminance(glm::max(light.flux, kLeastPower * deposit.power));
     light.intensity = light.power / std::numbers::pi;
+    if (needs_energy_tables(light.material))
+        light.intensity = std::max(light.intensity, largest_intensity(light));
     return light;
 }
 

@@ -5,12 +5,22 @@
 
 namespace brisance {
 
+namespace {
+
+constexpr double kBeyond = 1e-3;  // [rad]
+
+}  // namespace
+
 std::vector<LightBounds> bounds_of(const std::vector<VirtualLight>& lights) {
     std::vector<LightBounds> out;
     out.reserve(lights.size());
-    for (const VirtualLight& l : lights)
-        out.push_back({l.position - l.radius, l.position + l.radius, l.frame.normal, l.spread, std::numbers::pi / 2.0,
-                       l.intensity, false});
+    for (const VirtualLight& l : lights) {
+        // A lobe without a profile may be as bright at grazing angles as along the normal: such a light reaches a
+        // little further than a right angle, and counts as equally bright everywhere.
+        const bool lobed = l.profile < 0 && needs_energy_tables(l.material);
+        out.push_back({l.position - l.radius, l.position + l.radius, l.frame.normal, l.spread,
+                       std::numbers::pi / 2.0 + (lobed ? kBeyond : 0.0), l.intensity, false});
+    }
     return out;
 }
 
