@@ -11,15 +11,16 @@ constexpr double kBeyond = 1e-3;  // [rad]
 
 }  // namespace
 
-std::vector<LightBounds> bounds_of(const std::vector<VirtualLight>& lights) {
+std::vector<LightBounds> bounds_of(const std::vector<VirtualLight>& lights, LobeBrightness lobes) {
     std::vector<LightBounds> out;
     out.reserve(lights.size());
     for (const VirtualLight& l : lights) {
-        // A lobe without a profile may be as bright at grazing angles as along the normal: such a light reaches a
-        // little further than a right angle, and counts as equally bright everywhere.
-        const bool lobed = l.profile < 0 && needs_energy_tables(l.material);
+        const bool lobed = l.profile < 0 && needs_energy_tables(l.material), by_peak = lobes == LobeBrightness::Peak;
+        // A lobe may be as bright at grazing angles as along the normal: such a light reaches a little further than a
+        // right angle, and counts as equally bright everywhere.
         out.push_back({l.position - l.radius, l.position + l.radius, l.frame.normal, l.spread,
-                       std::numbers::pi / 2.0 + (lobed ? kBeyond : 0.0), l.intensity, false});
+                       std::numbers::pi / 2.0 + (lobed && by_peak ? kBeyond : 0.0),
+                       lobed && !by_peak ? l.power / std::numbers::pi : l.intensity, false});
     }
     return out;
 }
@@ -55,6 +56,7 @@ std::optional<LightTree::Choice> UniformChooser::choose(const LitPoint& point, d
     return LightTree::Choice{light, probability(point, light)};
 }
 
-TreeChooser::TreeChooser(const std::vector<VirtualLight>& lights, LightImportance) : tree_(bounds_of(lights)) {}
+TreeChooser::TreeChooser(const std::vector<VirtualLight>& lights, LightImportance)
+    : tree_(bounds_of(lights, LobeBrightness::Mean)) {}
 
 }  // namespace brisance

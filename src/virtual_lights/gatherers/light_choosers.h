@@ -11,8 +11,11 @@
 
 namespace brisance {
 
-// A virtual light as a light tree sees it: the box of its sphere, its cone, and its largest intensity.
-std::vector<LightBounds> bounds_of(const std::vector<VirtualLight>& lights);
+// Glossy lights without a profile have a lobe that is many times brighter than their mean. Bounds need its peak; by the
+// peak, most samples would go to lobes that point elsewhere.
+enum class LobeBrightness { Mean, Peak };
+// Virtual lights as a light tree sees them: the boxes of their spheres, their cones, and their largest intensities.
+std::vector<LightBounds> bounds_of(const std::vector<VirtualLight>& lights, LobeBrightness lobes);
 
 // Made of lights whose power, intensity, area and spread are known.
 template <class Chooser>

@@ -33,7 +33,7 @@ struct Lightcuts {
         Of(const LightSet& set, LightImportance)
             : kind_(set),
               lights_(set.lights),
-              tree_(bounds_of(set.lights)),
+              tree_(bounds_of(set.lights, LobeBrightness::Peak)),
               representatives_(representatives(tree_, set.settings().seed)),
               error_(set.settings().lightcuts_error),
               most_(static_cast<std::size_t>(set.settings().lightcuts_most)) {}

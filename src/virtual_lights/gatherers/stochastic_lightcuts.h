@@ -29,7 +29,9 @@ struct StochasticLightcuts {
     class Of : public Gatherer {
     public:
         Of(const LightSet& set, LightImportance)
-            : kind_(set), tree_(bounds_of(set.lights)), size_(set.settings().stochastic_cut_size) {}
+            : kind_(set),
+              tree_(bounds_of(set.lights, LobeBrightness::Mean)),
+              size_(set.settings().stochastic_cut_size) {}
 
         Rgb from_lights(const PathVertex& vertex, Rng& rng) const override {
             if (tree_.empty())
