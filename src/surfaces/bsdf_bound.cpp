@@ -24,11 +24,6 @@ double nearest_cosine(double cosine, double cos_around) {
     return cosine * cos_around + sine(cosine) * sine(cos_around);
 }
 
-// The loss of single scattering is a smooth function of the angle: its largest value lies at one of these cosines, or
-// hardly above it.
-constexpr double kCosines[] = {0.0, 0.05, 0.1, 0.2, 0.35, 0.6, 1.0};
-constexpr double kBetweenCosines = 1.05;
-
 }  // namespace
 
 BsdfBound::BsdfBound(const Bsdf& bsdf, const dvec3& wo)
@@ -42,13 +37,10 @@ BsdfBound::BsdfBound(const Bsdf& bsdf, const dvec3& wo)
         facets_ = b.ggx_.masking_per_cosine(view_.wo.z) / 4.0;
     if (view_.side == 1)
         return;
-    if (!b.smooth_ && b.has_specular_ && b.lost_mean_ > 0.0) {
-        double lost = 0.0;
-        for (const double cosine : kCosines)
-            lost = std::max(lost, 1.0 - b.albedos(cosine).reflect);
-        cosine_lobes_ += kBetweenCosines * lost * view_.lost / b.lost_mean_ *
+    // At most all of the light is lost to single scattering in the other direction.
+    if (!b.smooth_ && b.has_specular_ && b.lost_mean_ > 0.0)
+        cosine_lobes_ += view_.lost / b.lost_mean_ *
                          largest_channel(b.metal_ * b.metal_multiple_ + (b.coated_ + b.sheet_) * b.coat_multiple_);
-    }
     if (b.has_base_ && b.base_share_mean_ > 0.0f) {
         const double there = std::max(0.0f, 1.0f - b.coat_albedo(b.smooth_ ? Albedos{} : b.albedos(1.0), 1.0));
         cosine_lobes_ += b.coated_ * largest_channel(b.base_) * view_.base_share * there / b.base_share_mean_;
