@@ -148,7 +148,7 @@ TEST(Lightcuts, HaveTheRightMeanOverRepresentatives) {
     const Points points;
     VirtualLightSettings s = points.settings;
     s.sampling = "lightcuts";
-    s.lightcuts_most = 4;
+    s.lightcuts_most = 16;
     constexpr int kTrees = 1000;
     const std::vector<double> truth = points.of_all();
     for (const int vertex : {0, 20, 40}) {
