@@ -5,8 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "emitters/tree_descent.h"
-
 namespace brisance {
 
 namespace {
@@ -128,6 +126,7 @@ LightCone::LightCone(const LightBounds& b)
       axis_(b.axis),
       radius2_(0.25 * glm::dot(b.high - b.low, b.high - b.low)),
       intensity_(b.intensity),
+      half_(0.5 * (b.high - b.low)),
       cos_spread_(std::cos(b.spread)),
       sin_spread_(std::sin(b.spread)),
       cos_reach_(std::cos(b.reach)),
@@ -157,6 +156,27 @@ double LightCone::importance(const LitPoint& point) const {
         received = Angle::of_cosine(both ? std::abs(toward) : toward).less(around).cosine;
     }
     return std::max(0.0, intensity_ * emitted * received / distance2);
+}
+
+LightsInView LightCone::seen_from(const dvec3& point) const {
+    LightsInView out;
+    const dvec3 offset = middle_ - point, apart = glm::abs(offset), half(half_);
+    const dvec3 near = glm::max(apart - half, dvec3(0.0)), far = apart + half;
+    out.nearest2 = glm::dot(near, near);
+    out.farthest2 = glm::dot(far, far);
+    out.intensity = intensity_;
+    const double distance2 = glm::dot(offset, offset);
+    if (distance2 <= radius2_ || !(distance2 > 0.0))
+        return out;
+    out.direction = offset / std::sqrt(distance2);
+    const Angle around = Angle::of_sine(std::sqrt(radius2_ / distance2));
+    out.cos_around = around.cosine;
+    const double along = -glm::dot(axis_, out.direction);
+    const Angle off =
+        Angle::of_cosine(two_sided_ ? std::abs(along) : along).less({cos_spread_, sin_spread_}).less(around);
+    const double emitted = cos_reach_ >= -kRightAngle ? off.cosine : 1.0;
+    out.intensity = off.cosine <= cos_reach_ ? 0.0 : intensity_ * std::max(0.0, emitted);
+    return out;
 }
 
 LightTree::LightTree(const std::vector<LightBounds>& lights) : leaf_of_(lights.size()) {

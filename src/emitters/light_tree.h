@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/vec.h"
+#include "emitters/tree_descent.h"
 
 namespace brisance {
 
@@ -28,6 +29,14 @@ struct LitPoint {
     enum class Kind { Medium, Surface, Transmitting } kind = Kind::Medium;
 };
 
+// A group of lights as seen from a point: what it sends there at most, and where it may lie.
+struct LightsInView {
+    double intensity = 0.0;                  // the largest toward the point, luminance [W/sr]; 0: none reaches it
+    double nearest2 = 0.0, farthest2 = 0.0;  // to the box of the lights, squared [m^2]
+    dvec3 direction{0.0, 0.0, 1.0};          // unit, from the point: of the cone around all lights ...
+    double cos_around = -1.0;                // ... and of its half angle; -1: the lights are all around the point
+};
+
 // Importance: the most that bounded lights can send to a point, by the geometry of the bounds. Angles are stored as
 // cosines and sines, since every choice evaluates them at every branch.
 class LightCone {
@@ -35,11 +44,15 @@ public:
     LightCone() = default;
     explicit LightCone(const LightBounds& lights);
     double importance(const LitPoint& point) const;
+    // Without the cosine of the point's normal, which belongs to its BSDF.
+    LightsInView seen_from(const dvec3& point) const;
+    double intensity() const { return intensity_; }
 
 private:
     dvec3 middle_{0.0}, axis_{0.0, 0.0, 1.0};
     double radius2_ = 0.0;  // of the ball around the box [m^2]
     double intensity_ = 0.0;
+    vec3 half_{0.0f};  // size of the box [m]
     double cos_spread_ = 1.0, sin_spread_ = 0.0, cos_reach_ = 1.0;
     bool two_sided_ = false;
 };
@@ -58,6 +71,24 @@ public:
     std::optional<Choice> choose(const LitPoint& point, double u) const;
     // The probability with which choose() picks that light.
     double probability(const LitPoint& point, std::size_t light) const;
+
+    // The tree itself, for those who choose otherwise. Node 0 is the root; children have greater numbers.
+    std::size_t node_count() const { return nodes_.size(); }
+    const LightCone& lights(std::uint32_t node) const { return nodes_[node].lights; }
+    bool is_leaf(std::uint32_t node) const { return nodes_[node].left == 0; }
+    std::uint32_t left(std::uint32_t node) const { return nodes_[node].left; }  // of inner nodes
+    std::uint32_t right(std::uint32_t node) const { return nodes_[node].right; }
+    std::size_t light(std::uint32_t leaf) const { return nodes_[leaf].right; }
+    // A light below `node`, by a number in [0, 1). `share_of_left(left, right)`: the probability of the left of two
+    // nodes, below 0 where neither has any. None there.
+    template <class ShareOfLeft>
+    std::optional<Choice> choose_below(std::uint32_t node, double u, const ShareOfLeft& share_of_left) const {
+        const auto found = descend(
+            nodes_, u, [&](const Node& n) { return share_of_left(n.left, n.right); }, node);
+        if (!found)
+            return std::nullopt;
+        return Choice{nodes_[found->leaf].right, found->probability};
+    }
 
     std::uint64_t bytes() const { return nodes_.size() * sizeof(Node) + leaf_of_.size() * sizeof(std::uint32_t); }
 

@@ -17,10 +17,11 @@ struct TreeDescent {
     int branches = 0;  // visited
 };
 
-// `u` in [0, 1): neighbouring numbers find neighbouring leaves.
+// `u` in [0, 1): neighbouring numbers find neighbouring leaves. `from`: the node where it starts.
 template <class Node, class ShareOfLeft>
-std::optional<TreeDescent> descend(const std::vector<Node>& nodes, double u, const ShareOfLeft& share_of_left) {
-    TreeDescent at;
+std::optional<TreeDescent> descend(const std::vector<Node>& nodes, double u, const ShareOfLeft& share_of_left,
+                                   std::uint32_t from = 0) {
+    TreeDescent at{from};
     while (nodes[at.leaf].left != 0) {
         const double left = share_of_left(nodes[at.leaf]);
         if (left < 0.0)

@@ -21,6 +21,7 @@ std::unique_ptr<VirtualLights> place_virtual_lights(const DrawInput& input, cons
                                  r.bytes + r.photon_bytes,
                                  {{"candidates", r.candidates},
                                   {"lights", r.lights},
+                                  {"acceptance", r.acceptance},
                                   {"with_profiles", r.profiles},
                                   {"reflected_watts", {r.flux.x, r.flux.y, r.flux.z}},
                                   {"photons", r.photons.photons},

@@ -70,6 +70,8 @@ public:
     Rgb base_albedo(const dvec3& wo) const;
 
 private:
+    friend class BsdfBound;
+
     // Everything that depends on wo alone. Directions are local, and mirrored where wo lies inside: wo.z >= 0.
     struct View {
         dvec3 wo;

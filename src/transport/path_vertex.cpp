@@ -71,6 +71,27 @@ PathVertex::Value PathVertex::at(const dvec3& wi) const {
     return out;
 }
 
+ScatteringBound PathVertex::bound() const {
+    ScatteringBound out;
+    out.arriving_ = arriving_;
+    out.mean_cosine_ = mean_cosine_;
+    if (on_surface())
+        out.bsdf_.emplace(surface_->bsdf, -arriving_);
+    return out;
+}
+
+// A phase function is largest at the smallest angle of the cone, or at the largest.
+double ScatteringBound::over(const dvec3& axis, double cos_around) const {
+    if (bsdf_)
+        return bsdf_->over(axis, cos_around);
+    const double angle = std::acos(std::clamp(glm::dot(arriving_, axis), -1.0, 1.0));
+    const double around = std::acos(std::clamp(cos_around, -1.0, 1.0));
+    const auto phase = [&](double a) {
+        return henyey_greenstein(static_cast<float>(std::cos(std::clamp(a, 0.0, std::numbers::pi))), mean_cosine_);
+    };
+    return std::max(phase(angle - around), phase(angle + around));
+}
+
 // The factor by which shading normals change the adjoint BSDF; none where a side is seen edge-on.
 std::optional<float> PathVertex::shading_normal_factor(const dvec3& wi) const {
     const auto cosine = [](const dvec3& n, const dvec3& v) { return std::abs(glm::dot(n, v)); };

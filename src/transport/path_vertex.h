@@ -6,8 +6,22 @@
 #include "core/rng.h"
 #include "emitters/light_tree.h"
 #include "geometry/surface_point.h"
+#include "surfaces/bsdf_bound.h"
 
 namespace brisance {
+
+// Upper bounds of PathVertex::at() over cones of directions: made once for a vertex, asked for many groups of lights.
+class ScatteringBound {
+public:
+    // Largest channel [1/sr]. `axis`: unit, from the vertex; `cos_around`: of the cone's half angle, -1: everywhere.
+    double over(const dvec3& axis, double cos_around) const;
+
+private:
+    friend class PathVertex;
+    std::optional<BsdfBound> bsdf_;
+    dvec3 arriving_{0.0};
+    float mean_cosine_ = 0.0f;
+};
 
 class PathVertex {
 public:
@@ -35,6 +49,8 @@ public:
         double pdf = 0.0;
     };
     Value at(const dvec3& wi) const;
+    // Refers to the vertex.
+    ScatteringBound bound() const;
 
     struct Sample {
         dvec3 wi;

@@ -32,6 +32,12 @@ void check(const VirtualLightSettings& s) {
     require_in(R::photons, s.photons, "photons");
     require_in(R::profile_resolution, s.profile_resolution, "profile_resolution");
     require_in(R::resampling_candidates, s.resampling_candidates, "resampling_candidates");
+    require_in(R::importance_floor, s.importance_floor, "importance_floor");
+    require_in(R::light_samples, s.light_samples, "light_samples");
+    require_in(R::resampling_rays, s.resampling_rays, "resampling_rays");
+    require_in(R::lightcuts_error, s.lightcuts_error, "lightcuts_error");
+    require_in(R::lightcuts_most, s.lightcuts_most, "lightcuts_most");
+    require_in(R::stochastic_cut_size, s.stochastic_cut_size, "stochastic_cut_size");
     require_in(R::n_min, s.n_min, "n_min");
     require_in(R::n_max, s.n_max, "n_max");
     if (!(s.n_max >= s.n_min))

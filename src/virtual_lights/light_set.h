@@ -15,7 +15,8 @@ namespace brisance {
 
 struct VirtualLightReport {
     std::uint64_t candidates = 0, lights = 0, profiles = 0;
-    Rgb flux{0.0f};  // that all lights reflect [W]
+    Rgb flux{0.0f};           // that all lights reflect [W]
+    double acceptance = 1.0;  // PlacementReport
     PhotonReport photons;
     double candidate_seconds = 0.0, elimination_seconds = 0.0, area_seconds = 0.0, photon_seconds = 0.0,
            profile_seconds = 0.0, choice_seconds = 0.0;

@@ -5,6 +5,7 @@
 
 #include "transport/emitters_along_ray.h"
 #include "transport/path_step.h"
+#include "virtual_lights/kinds/bounded_geometry.h"
 #include "virtual_lights/virtual_lights.h"
 
 namespace brisance {
@@ -24,6 +25,15 @@ Rgb VirtualLights::lamps_on(const RaySegment& segment, Rng& rng) const {
     thread_local RayMedium seen;
     seen.look(scene_.field(), segment.ray, segment.end);
     return emitters_along_ray(scene_, seen, segment.ray, kLampPoints, rng);
+}
+
+double VirtualLights::share_kept(const PathVertex& vertex, const RaySegment& segment) const {
+    const VirtualLightSettings& s = set_->settings();
+    if (!s.compensation)
+        return 1.0;
+    const dvec3 offset = segment.point->position - vertex.position();
+    const double cosine = std::abs(glm::dot(segment.point->geometric_normal, segment.ray.direction));
+    return kept_by_bound(s, vertex.lit(), segment.ray.direction, cosine, glm::dot(offset, offset));
 }
 
 // A path from a receiver over surfaces, until virtual lights hold what they reflect. The receiver itself gathers only
@@ -74,7 +84,8 @@ public:
         if (step.medium.collision || step.sample->delta)
             return true;
         const Seen seen = lights_.seen_by(step.segment);
-        const auto ended = static_cast<float>(lights_.termination_probability(seen, step.sample->pdf));
+        const auto ended = static_cast<float>(lights_.termination_probability(seen, step.sample->pdf) *
+                                              lights_.share_kept(state.vertex, step.segment));
         if (ended > 0.0f)
             sum_ += next.throughput * ended * lights_.at_end_of_ray(state.vertex, seen, step.sample->pdf);
         next.throughput *= 1.0f - ended;

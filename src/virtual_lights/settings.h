@@ -13,23 +13,41 @@ enum class LightRadius {
     Uniform    // one for all
 };
 
+// How directions toward a spherical light are sampled.
+enum class SphereSampling { Combined, Cone, Vertex, Light };
+
+// What the bound of point lights is on.
+enum class BoundedTerm {
+    LightCosine,  // the light's cosine over squared distance
+    BothCosines   // the whole geometry term
+};
+
 // Placement, flux, kind and sampling are names; choices.h lists them and says which go together.
 struct VirtualLightSettings {
     int count = 12000;  // virtual lights; 0: none, all surface light is found by paths
     std::string placement = "blue_noise";
     std::string flux = "gathered";
     std::string kind = "patch";
-    double point_bound = 100.0;          // kind point: upper bound on cosine over squared distance [1/m^2]
-    int sphere_neighbours = 10;          // kind sphere: its radius is the distance to the neighbour of this number
-    int sphere_samples = 4;              // kind sphere: directions sampled for each light
+    double point_bound = 100.0;  // kind point: upper bound on cosine over squared distance [1/m^2]
+    BoundedTerm point_bound_of = BoundedTerm::LightCosine;
+    bool compensation = false;   // kind point: paths find what the bound takes away
+    int sphere_neighbours = 10;  // kind sphere: its radius is the distance to the neighbour of this number
+    int sphere_samples = 4;      // kind sphere: directions sampled for each light
+    SphereSampling sphere_sampling = SphereSampling::Combined;
     double candidates_per_pixel = 0.25;  // camera paths; never fewer than eight per light
+    double importance_floor = 0.05;      // placements rejection, metropolis: share of lights that no one needs to see
     LightRadius radius = LightRadius::Adaptive;
     int neighbours = 128;         // candidates from whose distance their density is estimated
     double radius_factor = 1.1;   // radius over the distance that a light would keep from others
     int photons = 1000000;        // particles from fire and emitters; 0: no lights
     int profile_resolution = 16;  // of directions of lights that are not plain Lambert: texels along a side
     std::string sampling = "combined";
-    int resampling_candidates = 32;  // sampling resampled: lights to choose from
+    int light_samples = 1;           // sampling power, plain_power, uniform, light_tree: lights at every vertex
+    int resampling_candidates = 32;  // sampling resampled, resampled_combined: lights to choose from
+    int resampling_rays = 1;         // sampling resampled_combined: candidates by BSDF beside them
+    double lightcuts_error = 0.02;   // sampling lightcuts: what a node may err, over the sum of all
+    int lightcuts_most = 1000;       // ... and the most nodes of a cut
+    int stochastic_cut_size = 10;    // sampling stochastic_lightcuts: nodes of a cut, each with one light
     bool path_extension = true;      // paths continue where a ray's footprint covers few lights
     double n_min = 40.0;             // lights in the footprint: with fewer the path continues, ...
     double n_max = 80.0;             // ... with more it ends; between them it does both in part
@@ -58,6 +76,12 @@ struct VirtualLightRanges {
     static constexpr SettingRange<int> photons{0, 2000000000};
     static constexpr SettingRange<int> profile_resolution{2, 128};
     static constexpr SettingRange<int> resampling_candidates{1, 65536};
+    static constexpr SettingRange<double> importance_floor{0.0, 1.0, true};
+    static constexpr SettingRange<int> light_samples{1, 65536};
+    static constexpr SettingRange<int> resampling_rays{1, 65536};
+    static constexpr SettingRange<double> lightcuts_error{0.0, 1.0};
+    static constexpr SettingRange<int> lightcuts_most{1, 100000000};
+    static constexpr SettingRange<int> stochastic_cut_size{1, 1000000};
     static constexpr SettingRange<double> n_min{0.0, kUnlimited};  // and not above n_max
     static constexpr SettingRange<double> n_max{0.0, kUnlimited};
 };

@@ -11,11 +11,16 @@
 #include "virtual_lights/gatherers/all_lights.h"
 #include "virtual_lights/gatherers/bsdf_rays.h"
 #include "virtual_lights/gatherers/combined.h"
+#include "virtual_lights/gatherers/lightcuts.h"
 #include "virtual_lights/gatherers/one_light.h"
 #include "virtual_lights/gatherers/resampled.h"
+#include "virtual_lights/gatherers/stochastic_lightcuts.h"
 #include "virtual_lights/kinds/patch_light.h"
 #include "virtual_lights/kinds/point_light.h"
 #include "virtual_lights/kinds/sphere_light.h"
+#include "virtual_lights/placement/bidirectional.h"
+#include "virtual_lights/placement/metropolis.h"
+#include "virtual_lights/placement/rejection.h"
 
 namespace brisance {
 
@@ -31,7 +36,13 @@ constexpr std::array kPlacements = {
     Placement{"light_paths", "where particles from fire and lamps arrive", light_path_deposits, thin_at_random,
               power_alone, light_path_flux},
     Placement{"relaxed_light_paths", "those of them near the camera's paths, thinned out evenly",
-              relaxed_light_path_deposits, thin_to_blue_noise, equal_importance, nullptr}};
+              relaxed_light_path_deposits, thin_to_blue_noise, equal_importance, nullptr},
+    Placement{"rejection", "where they arrive, kept by what the camera sees of them", rejected_deposits, thin_at_random,
+              equal_importance, rejected_flux},
+    Placement{"bidirectional", "half of those, half of the camera's, by what the camera sees of them",
+              bidirectional_deposits, thin_at_random, equal_importance, nullptr},
+    Placement{"metropolis", "where particles mutated toward what the camera sees arrive", metropolis_deposits,
+              thin_at_random, equal_importance, metropolis_flux}};
 
 template <class T>
 struct Row {
@@ -43,41 +54,86 @@ struct Row {
 constexpr std::tuple kFluxes = {Row<GatheredFlux>{"gathered", "of all photons around the light"},
                                 Row<DepositFlux>{"own", "of the one photon that placed the light"}};
 
-constexpr std::tuple kKinds = {Row<PatchKind>{"patch", "the surface itself, interpolated between lights"},
-                               Row<SphereKind>{"sphere", "a sphere that reaches to a near light (sphere_neighbours)"},
-                               Row<PointKind>{"point", "a point with a bound on its geometry term (point_bound)"}};
+constexpr std::tuple kKinds = {
+    Row<PatchKind>{"patch", "the surface itself, interpolated between lights"},
+    Row<SphereKind>{"sphere", "a sphere that reaches to a near light (sphere_neighbours)"},
+    Row<PointKind>{"point", "a point with a bound on its geometry term (point_bound)"},
+    Row<DiffusePointKind>{"diffuse_point", "the same, of the material's Lambert base alone"}};
 
 constexpr std::tuple kGatherers = {
     Row<Combined<PowerChooser>>{"combined", "a light by power and a ray by BSDF, by the balance heuristic"},
     Row<Combined<TreeChooser>>{"combined_tree", "the same with a light by a tree of bounds"},
     Row<OneLight<PowerChooser>>{"power", "a light by power"},
     Row<OneLight<TreeChooser>>{"light_tree", "a light by a tree of bounds"},
+    Row<OneLight<PlainPowerChooser>>{"plain_power", "a light by its own power, also where power is by area"},
+    Row<OneLight<UniformChooser>>{"uniform", "a light, all alike"},
     Row<BsdfRays>{"bsdf", "a ray by BSDF"},
     Row<Resampled>{"resampled", "of several lights one by its unoccluded contribution"},
+    Row<ResampledCombined>{"resampled_combined", "the same of lights by power and rays by BSDF"},
+    Row<Lightcuts>{"lightcuts", "one light for each node of a cut through a tree, the same for all vertices"},
+    Row<StochasticLightcuts>{"stochastic_lightcuts", "a random light of each node of a small cut"},
     Row<AllLights>{"all", "every light"}};
 
-// Baselines of the literature, beside virtual blue noise lighting with every gatherer.
+// The settings of one preset with those of another, which has its name and its help.
+TechniquePreset changed(const TechniquePreset& from, const TechniquePreset& by) {
+    TechniquePreset out{by.name, by.help, from.settings};
+    for (const auto& [key, value] : by.settings) {
+        const auto same = std::find_if(out.settings.begin(), out.settings.end(),
+                                       [&, &k = key](const auto& setting) { return setting.first == k; });
+        if (same != out.settings.end())
+            same->second = value;
+        else
+            out.settings.emplace_back(key, value);
+    }
+    return out;
+}
+
+// Baselines of the literature, beside virtual blue noise lighting with every gatherer: by name, help, and what differs
+// from instant radiosity.
 const std::vector<TechniquePreset>& baselines() {
-    static const std::vector<TechniquePreset> all = {{"rich_vsl",
-                                                      "rich virtual spherical lights",
-                                                      {{"placement", "relaxed_light_paths"},
-                                                       {"kind", "sphere"},
-                                                       {"sampling", "power"},
-                                                       {"path_extension", "false"}}},
-                                                     {"vsl",
-                                                      "virtual spherical lights",
-                                                      {{"placement", "light_paths"},
-                                                       {"flux", "own"},
-                                                       {"kind", "sphere"},
-                                                       {"sampling", "power"},
-                                                       {"path_extension", "false"}}},
-                                                     {"vpl",
-                                                      "virtual point lights",
-                                                      {{"placement", "light_paths"},
-                                                       {"flux", "own"},
-                                                       {"kind", "point"},
-                                                       {"sampling", "power"},
-                                                       {"path_extension", "false"}}}};
+    static const std::vector<TechniquePreset> differences = {
+        {"rich_vsl",
+         "rich virtual spherical lights",
+         {{"placement", "relaxed_light_paths"}, {"flux", "gathered"}, {"kind", "sphere"}}},
+        {"vsl", "virtual spherical lights", {{"kind", "sphere"}}},
+        {"vsl_cone",
+         "virtual spherical lights sampled by their cone",
+         {{"kind", "sphere"}, {"sphere_sampling", "cone"}}},
+        {"vsl_vertex",
+         "virtual spherical lights sampled by the BSDF at the vertex",
+         {{"kind", "sphere"}, {"sphere_sampling", "vertex"}}},
+        {"vsl_light",
+         "virtual spherical lights sampled by the BSDF at the light",
+         {{"kind", "sphere"}, {"sphere_sampling", "light"}}},
+        {"vpl", "virtual point lights", {}},
+        {"vpl_diffuse", "virtual point lights of Lambert bases alone", {{"kind", "diffuse_point"}}},
+        {"vpl_compensated",
+         "virtual point lights with a bounded geometry term, compensated by paths",
+         {{"point_bound_of", "both_cosines"}, {"compensation", "true"}}},
+        {"vpl_lightcuts", "virtual point lights by lightcuts", {{"sampling", "lightcuts"}}},
+        {"vpl_stochastic_lightcuts",
+         "virtual point lights by stochastic lightcuts",
+         {{"sampling", "stochastic_lightcuts"}}},
+        {"vpl_rejection",
+         "virtual point lights, rejected where the camera does not see them",
+         {{"placement", "rejection"}}},
+        {"vpl_metropolis", "Metropolis instant radiosity", {{"placement", "metropolis"}}},
+        {"vpl_bidirectional",
+         "bidirectional instant radiosity, with rich lights",
+         {{"placement", "bidirectional"}, {"flux", "gathered"}}}};
+    static const std::vector<TechniquePreset> all = [] {
+        const TechniquePreset instant_radiosity{"",
+                                                "",
+                                                {{"placement", "light_paths"},
+                                                 {"flux", "own"},
+                                                 {"kind", "point"},
+                                                 {"sampling", "power"},
+                                                 {"path_extension", "false"}}};
+        std::vector<TechniquePreset> out;
+        for (const TechniquePreset& other : differences)
+            out.push_back(changed(instant_radiosity, other));
+        return out;
+    }();
     return all;
 }
 
@@ -88,7 +144,7 @@ constexpr std::size_t kGathererCount = std::tuple_size_v<decltype(kGatherers)>;
 // A kind of light with a flux: whether there is such a thing, and what gatherers need to know of it.
 struct KindWithFlux {
     void (*fit)(LightSet&) = nullptr;  // null: the kind needs what the flux does not have
-    bool hittable = false;
+    bool hittable = false, bounded = false;
     std::array<decltype(Technique::gather), kGathererCount> gather{};  // null: the gatherer needs what the kind lacks
 };
 
@@ -107,7 +163,7 @@ constexpr KindWithFlux kind_with_flux() {
     if constexpr (requires { typename Family::template Of<Flux>; }) {
         using Kind = typename Family::template Of<Flux>;
         static_assert(VirtualLightKind<Kind>);
-        return {Kind::fit, Hittable<Kind>,
+        return {Kind::fit, Hittable<Kind>, Bounded<Kind>,
                 std::apply(
                     [](const auto&... row) {
                         return std::array{gather_from<typename std::decay_t<decltype(row)>::Type, Kind>()...};
@@ -219,6 +275,14 @@ std::string extension_complaint(const Chosen& c, bool path_extension) {
            " goes with path_extension=false";
 }
 
+std::string compensation_complaint(const Chosen& c, bool compensation) {
+    if (!c.with_flux().fit || c.with_flux().bounded || !compensation)
+        return {};
+    return std::string("compensation needs ") + kBounded + ": kind " +
+           kinds_that([](const KindWithFlux& k) { return k.bounded; }) + "; kind " + light_kinds()[c.kind].name +
+           " goes with compensation=false";
+}
+
 std::vector<TechniquePreset> make_presets() {
     std::vector<TechniquePreset> out;
     for (const TechniqueChoice& gatherer : light_gatherers())
@@ -276,7 +340,8 @@ std::string why_not_together(const VirtualLightSettings& settings) {
     const Chosen c = chosen(settings);
     std::string out;
     for (const std::string& complaint :
-         {flux_complaint(c), kind_complaint(c), gatherer_complaint(c), extension_complaint(c, settings.path_extension)})
+         {flux_complaint(c), kind_complaint(c), gatherer_complaint(c), extension_complaint(c, settings.path_extension),
+          compensation_complaint(c, settings.compensation)})
         if (!complaint.empty())
             out += (out.empty() ? "" : "; and ") + complaint;
     return out;

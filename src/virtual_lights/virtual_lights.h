@@ -61,6 +61,8 @@ private:
     double termination_probability(const Seen& seen, double pdf) const {
         return set_->termination_probability(seen, pdf);
     }
+    // Of the light at the segment's end, the share that virtual lights are not bounded to give less of.
+    double share_kept(const PathVertex& vertex, const RaySegment& segment) const;
     Rgb at_end_of_ray(const PathVertex& vertex, const Seen& seen, double pdf) const {
         return gatherer_->from_ray(vertex, seen, pdf);
     }

@@ -1,11 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "core/error.h"
 #include "expect.h"
 #include "measure_runs.h"
 #include "methods.h"
+#include "virtual_lights/choices.h"
 
 namespace brisance {
 namespace {
@@ -174,20 +176,23 @@ TEST(Runs, OfVirtualLightsChangeTheirChoicesAndTheSamples) {
     Shot base = fire_shot();
     base.camera.eye = dvec3(0.0, -6.0, 0.0);
     base.camera_given = true;
-    const std::vector<std::string> names = {"vbnl",
-                                            "vbnl_resampled",
-                                            "vbnl_power",
-                                            "vbnl_light_tree",
-                                            "vbnl_bsdf",
-                                            "rich_vsl",
-                                            "vsl",
-                                            "vpl",
-                                            "ray_lights",
-                                            "volumetric_photons",
-                                            "volumetric_vpls",
-                                            "volumetric_vpls_bounded",
-                                            "volumetric_vpls_compensated",
-                                            "volumetric_vpls_local"};
+    std::vector<std::string> names = {"vbnl",
+                                      "vbnl_resampled",
+                                      "vbnl_power",
+                                      "vbnl_light_tree",
+                                      "vbnl_bsdf",
+                                      "rich_vsl",
+                                      "vsl",
+                                      "vpl",
+                                      "ray_lights",
+                                      "volumetric_photons",
+                                      "volumetric_vpls",
+                                      "volumetric_vpls_bounded",
+                                      "volumetric_vpls_compensated",
+                                      "volumetric_vpls_local"};
+    for (const TechniquePreset& preset : light_presets())
+        if (std::find(names.begin(), names.end(), preset.name) == names.end())
+            names.push_back(preset.name);
     const std::vector<PlannedMethod> planned = plan_runs(base, parse(names, {"rich_vsl:2,4", "4"}));
     ASSERT_EQ(planned.size(), names.size());
     std::set<std::string> looks;

@@ -94,12 +94,17 @@ void expect_same(const Mean& ours, const Mean& theirs, double allowed, const std
     EXPECT_LT(ours.error, 0.03 * theirs.value) << what << ": not sampled enough";
 }
 
-// What a bound that is nowhere reached takes is nothing: instant radiosity is unbiased.
+// What a bound that is nowhere reached takes is nothing: instant radiosity is unbiased, wherever the lights come from.
 TEST(PlainPoints, WithoutBoundAreUnbiased) {
     const Room room(two_plates());
-    VirtualLightSettings settings = of_photons("point");
-    settings.point_bound = 1e9;
-    expect_same(over_sets_of_lights(room, settings), by_paths(room), 0.0, "points");
+    const Mean truth = by_paths(room);
+    for (const TechniqueChoice& placement : light_placements()) {
+        VirtualLightSettings settings = of_photons("point");
+        settings.point_bound = 1e9;
+        settings.placement = placement.name;
+        if (why_not_together(settings).empty())
+            expect_same(over_sets_of_lights(room, settings), truth, 0.0, placement.name);
+    }
 }
 
 // Half of what the nearest lights send may pass: at 2 m a quarter over m^2 is what there is.
@@ -126,6 +131,42 @@ TEST(PlainPoints, LoseLessWithALargerBound) {
         before = bounded.value;
     }
     EXPECT_GT(before, 0.9 * truth.value);
+}
+
+// The whole geometry term is smaller than its part: the same bound takes less.
+TEST(PlainPoints, LoseLessByABoundOnBothCosines) {
+    const Room room(coloured_room());
+    VirtualLightSettings settings = of_photons("point");
+    settings.point_bound = 0.3;
+    const Mean one = over_sets_of_lights(room, settings);
+    settings.point_bound_of = BoundedTerm::BothCosines;
+    const Mean both = over_sets_of_lights(room, settings), truth = by_paths(room);
+    EXPECT_GT(both.value, one.value + kSigmas * std::hypot(both.error, one.error));
+    EXPECT_LT(both.value, truth.value - kSigmas * std::hypot(both.error, truth.error));
+}
+
+// T = T_b + T_r: what the bound takes away paths find again, whatever the bound is on.
+TEST(PlainPoints, AreUnbiasedWithCompensation) {
+    for (const SceneSettings& scene : {coloured_room(), glossy_room()}) {
+        const Room room(scene);
+        const Mean truth = by_paths(room);
+        for (const BoundedTerm of : {BoundedTerm::LightCosine, BoundedTerm::BothCosines}) {
+            VirtualLightSettings settings = of_photons("point");
+            settings.compensation = true;
+            settings.point_bound = 0.3;
+            settings.point_bound_of = of;
+            expect_same(over_sets_of_lights(room, settings), truth, 0.0, std::to_string(static_cast<int>(of)));
+        }
+    }
+}
+
+// Of Lambert surfaces there is nothing else; of a rough metal floor nothing is left.
+TEST(DiffusePoints, LoseWhatIsNotLambert) {
+    VirtualLightSettings diffuse = of_photons("diffuse_point"), full = of_photons("point");
+    const Room plain(coloured_room()), glossy(glossy_room());
+    expect_same(by_lights(plain, diffuse, 128), by_lights(plain, full, 128), 0.0, "Lambert surfaces");
+    const Mean some = by_lights(glossy, diffuse, 256), all = by_lights(glossy, full, 256);
+    EXPECT_LT(some.value + kSigmas * some.error, all.value - kSigmas * all.error);
 }
 
 // A ball of 0.15 m spreads what it sends over directions two metres off: about r^2 / d^2, less than 2 %; over the edge
@@ -169,7 +210,9 @@ void expect_one_mean(VirtualLightSettings settings, const SceneSettings& scene =
     const Mean truth = by_lights(room, settings, 24);
     for (const std::string& sampling : by_lights_alone()) {
         settings.sampling = sampling;
-        const bool all = sampling == "all";
+        // Of one set of lights lightcuts have the mean only if they may not err.
+        settings.lightcuts_error = 0.0;
+        const bool all = sampling == "all" || sampling == "lightcuts";
         expect_same(by_lights(room, settings, all ? 24 : 256), truth, 0.0,
                     "sampling " + sampling + " of kind " + settings.kind);
     }
@@ -218,14 +261,20 @@ TEST(Resampling, OfManyCandidatesHasLessNoise) {
     EXPECT_LT(error_of(32), 0.7 * error_of(1));
 }
 
-// One direction is of the cone alone; of sixteen some are of the floor's BSDF and some of a glossy light's.
-TEST(SphereSamples, OfAnyNumberHaveOneMean) {
+// One direction is of the cone alone; of sixteen some are of the floor's BSDF and some of a glossy light's. Each of the
+// three alone has the same mean.
+TEST(SphereSamples, OfAnyNumberAndAnyTechniqueHaveOneMean) {
     const Room room(glossy_room());
     for (VirtualLightSettings settings : {of_photons("sphere"), sampled_by("power", "sphere")}) {
         settings.sphere_samples = 1;
         const Mean one = by_lights(room, settings, 512);
         settings.sphere_samples = 16;
-        expect_same(by_lights(room, settings, 256), one, 0.0, settings.flux);
+        for (const SphereSampling sampling :
+             {SphereSampling::Combined, SphereSampling::Cone, SphereSampling::Vertex, SphereSampling::Light}) {
+            settings.sphere_sampling = sampling;
+            expect_same(by_lights(room, settings, 256), one, 0.0,
+                        settings.flux + std::to_string(static_cast<int>(sampling)));
+        }
     }
 }
 
@@ -250,7 +299,13 @@ std::vector<float> fingerprint(const VirtualLightSettings& settings, int threads
 TEST(Baselines, AreTheSameBitsOnAnyThreads) {
     VirtualLightSettings rich = sampled_by("resampled", "sphere");
     rich.placement = "relaxed_light_paths";
-    for (const VirtualLightSettings& settings : {rich, of_photons("sphere", "light_tree"), of_photons("point")}) {
+    VirtualLightSettings rejected = of_photons("point", "lightcuts"), mutated = of_photons("point", "plain_power");
+    rejected.placement = "rejection";
+    mutated.placement = "metropolis";
+    VirtualLightSettings both_ways = sampled_by("stochastic_lightcuts", "sphere");
+    both_ways.placement = "bidirectional";
+    for (const VirtualLightSettings& settings :
+         {rich, of_photons("sphere", "light_tree"), of_photons("point"), rejected, mutated, both_ways}) {
         const std::vector<float> one = fingerprint(settings, 1);
         EXPECT_GT(one.size(), 2000u);
         EXPECT_EQ(one, fingerprint(settings, 2));
@@ -306,19 +361,29 @@ TEST(Baselines, SaysWhatDoesNotGoTogether) {
     using S = VirtualLightSettings;
     const S plain = of_photons("point"), rich = sampled_by("power", "sphere");
     refused(
-        plain, [](S& s) { s.placement = "blue_noise"; }, "placement light_paths, not blue_noise");
+        plain, [](S& s) { s.placement = "blue_noise"; },
+        "placement light_paths, rejection, metropolis, not blue_noise");
     refused(
-        plain, [](S& s) { s.kind = "patch"; }, "flux own goes with kind sphere, point");
+        plain, [](S& s) { s.kind = "patch"; }, "flux own goes with kind sphere, point, diffuse_point");
     refused(
         plain, [](S& s) { s.kind = "patch"; }, "kind patch needs flux that covers surface: flux gathered");
     refused(
         plain, [](S& s) { s.sampling = "combined"; },
         "sampling combined needs a kind of light that rays can hit: kind patch; kind point goes with sampling power, "
-        "light_tree, resampled, all");
+        "light_tree, plain_power, uniform, resampled, lightcuts, stochastic_lightcuts, all");
+    refused(
+        rich, [](S& s) { s.compensation = true; },
+        "compensation needs a kind of light with a bound: kind point, diffuse_point; kind sphere goes with "
+        "compensation=false");
+    refused(
+        plain, [](S& s) { s.placement = "bidirectional"; },
+        "flux own needs deposits that carry flux: placement light_paths, rejection, metropolis, not bidirectional");
+    refused(
+        plain, [](S& s) { s.sampling = "resampled_combined"; }, "sampling resampled_combined needs");
     refused(
         rich, [](S& s) { s.path_extension = true; }, "kind sphere goes with path_extension=false");
     refused(
-        rich, [](S& s) { s.kind = "ball"; }, "\"ball\" is not known; there are patch, sphere, point");
+        rich, [](S& s) { s.kind = "ball"; }, "\"ball\" is not known; there are patch, sphere, point, diffuse_point");
     refused(
         rich, [](S& s) { s.sphere_neighbours = 0; }, "sphere_neighbours");
     refused(

@@ -58,7 +58,8 @@ TEST(Choices, ByDefaultGoTogether) {
 }
 
 // Every product is either built or refused with a reason. Of gathered flux, patches go with all gatherers, spheres and
-// points with all but the three that need rays; flux of deposits is for spheres and points, where photons place them.
+// points with all but the four that need rays; flux of deposits is for spheres and points, where photons place them in
+// three ways.
 TEST(Choices, AreAllBuiltOrRefused) {
     const Room room(coloured_room());
     int built = 0, refused = 0;
@@ -87,15 +88,15 @@ TEST(Choices, AreAllBuiltOrRefused) {
                     ++built;
                 }
     const auto gatherers = static_cast<int>(light_gatherers().size());
-    EXPECT_EQ(built, 4 * (gatherers + 2 * (gatherers - 3)) + 2 * (gatherers - 3));
-    EXPECT_EQ(built + refused, 4 * 2 * 3 * gatherers);
+    EXPECT_EQ(built, 7 * (gatherers + 3 * (gatherers - 4)) + 3 * 3 * (gatherers - 4));
+    EXPECT_EQ(built + refused, 7 * 2 * 4 * gatherers);
 }
 
 TEST(Presets, AreSettingsOfAShotThatGoTogether) {
     for (const TechniquePreset& preset : light_presets()) {
         Shot shot;
         for (const auto& [name, value] : preset.settings) {
-            const Json json = value == "false" ? Json(false) : Json(value);
+            const Json json = value == "false" || value == "true" ? Json(value == "true") : Json(value);
             EXPECT_TRUE(key_of(name).set(shot, json)) << preset.name << ": " << name << "=" << value;
         }
         EXPECT_EQ(why_not_together(shot.virtual_lights), "") << preset.name;
@@ -139,7 +140,9 @@ TEST_P(Ranges, OfTheSchemaAreTheRenderers) {
 INSTANTIATE_TEST_SUITE_P(OfVirtualLights, Ranges,
                          ::testing::Values("count", "point_bound", "sphere_neighbours", "sphere_samples",
                                            "candidates_per_pixel", "neighbours", "radius_factor", "photons",
-                                           "profile_resolution", "resampling_candidates", "n_min", "n_max"));
+                                           "profile_resolution", "resampling_candidates", "n_min", "n_max",
+                                           "importance_floor", "light_samples", "resampling_rays", "lightcuts_error",
+                                           "lightcuts_most", "stochastic_cut_size"));
 
 // Every key with numbers is in the list above, but for the seed, of which the renderer takes any.
 TEST(AllRanges, AreTested) {
@@ -148,7 +151,7 @@ TEST(AllRanges, AreTested) {
         if (key.path.starts_with("virtual_lights.") && key.path != "virtual_lights.seed" &&
             (key.schema.value("type", "") == "integer" || key.schema.value("type", "") == "number"))
             ++numbers;
-    EXPECT_EQ(numbers, 12);
+    EXPECT_EQ(numbers, 18);
 }
 
 // What the check takes the renderer can build, where it does not take long.

@@ -4,7 +4,7 @@
 //   NAME is lighting_grid; path, or path_plain (the path tracer without its acceleration techniques); a preset of one
 //   of the scattering methods (scattering_methods/list.h), such as ray_lights or volumetric_vpls_bounded; or a preset
 //   of virtual lights (virtual_lights/choices.h): vbnl (virtual blue noise lighting), vbnl_GATHERER (the same lights,
-//   sampled otherwise), rich_vsl, vsl, vpl.
+//   sampled otherwise), vpl, vsl and others like them.
 // A budget:  LIST for all path methods, or LABEL:LIST:     4,16,64,256    path:16,64    lighting_grid:2,4
 //   For path methods samples per pixel, for lighting_grid numbers of steps of the built-in ladder, 1 to 4, for those
 //   of virtual lights samples along a pixel's side.

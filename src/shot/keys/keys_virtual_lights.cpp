@@ -36,11 +36,20 @@ void add_choice_keys(std::vector<Key>& keys) {
         [](Shot & s) -> auto& { return s.virtual_lights.kind; }));
 }
 
-void add_placement_keys(std::vector<Key>& keys) {
+void add_kind_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "virtual_lights.point_bound",
         "for kind point: upper bound on cosine over squared distance; the rest is lost [1/m^2]",
         real_in(Ranges::point_bound), [](Shot & s) -> auto& { return s.virtual_lights.point_bound; }));
+    keys.push_back(make_key(
+        "virtual_lights.point_bound_of",
+        "light_cosine: the bound is on the light's cosine over squared distance; both_cosines: on the whole geometry "
+        "term",
+        choice<BoundedTerm>({{"light_cosine", BoundedTerm::LightCosine}, {"both_cosines", BoundedTerm::BothCosines}}),
+        [](Shot & s) -> auto& { return s.virtual_lights.point_bound_of; }));
+    keys.push_back(make_key(
+        "virtual_lights.compensation", "for kind point: paths find what the bound takes away", flag(),
+        [](Shot & s) -> auto& { return s.virtual_lights.compensation; }));
     keys.push_back(make_key(
         "virtual_lights.sphere_neighbours",
         "for kind sphere: its radius is the distance to the neighbour of this number",
@@ -49,10 +58,27 @@ void add_placement_keys(std::vector<Key>& keys) {
         "virtual_lights.sphere_samples", "for kind sphere: directions sampled for each light",
         whole_in(Ranges::sphere_samples), [](Shot & s) -> auto& { return s.virtual_lights.sphere_samples; }));
     keys.push_back(make_key(
+        "virtual_lights.sphere_sampling",
+        "for kind sphere: by its cone, by the BSDF at the vertex, by that at the light, or combined; sampling "
+        "resampled "
+        "takes the cone",
+        choice<SphereSampling>({{"combined", SphereSampling::Combined},
+                                {"cone", SphereSampling::Cone},
+                                {"vertex", SphereSampling::Vertex},
+                                {"light", SphereSampling::Light}}),
+        [](Shot & s) -> auto& { return s.virtual_lights.sphere_sampling; }));
+}
+
+void add_placement_keys(std::vector<Key>& keys) {
+    keys.push_back(make_key(
         "virtual_lights.candidates_per_pixel",
         "camera paths that place lights, per pixel; at least eight for each light",
         real_in(Ranges::candidates_per_pixel),
         [](Shot & s) -> auto& { return s.virtual_lights.candidates_per_pixel; }));
+    keys.push_back(make_key(
+        "virtual_lights.importance_floor",
+        "for placements rejection and metropolis: what a light counts as of the mean contribution, even unseen",
+        real_in(Ranges::importance_floor), [](Shot & s) -> auto& { return s.virtual_lights.importance_floor; }));
     keys.push_back(make_key(
         "virtual_lights.radius", "adaptive: small where the camera looks; uniform: for comparison",
         choice<LightRadius>({{"adaptive", LightRadius::Adaptive}, {"uniform", LightRadius::Uniform}}),
@@ -71,14 +97,35 @@ void add_placement_keys(std::vector<Key>& keys) {
         whole_in(Ranges::profile_resolution), [](Shot & s) -> auto& { return s.virtual_lights.profile_resolution; }));
 }
 
+void add_cut_keys(std::vector<Key>& keys) {
+    keys.push_back(make_key(
+        "virtual_lights.lightcuts_error", "for sampling lightcuts: what a node of the cut may err, over the sum of all",
+        real_in(Ranges::lightcuts_error), [](Shot & s) -> auto& { return s.virtual_lights.lightcuts_error; }));
+    keys.push_back(make_key(
+        "virtual_lights.lightcuts_most", "for sampling lightcuts: the most nodes of a cut",
+        whole_in(Ranges::lightcuts_most), [](Shot & s) -> auto& { return s.virtual_lights.lightcuts_most; }));
+    keys.push_back(make_key(
+        "virtual_lights.stochastic_cut_size", "for sampling stochastic_lightcuts: nodes of the cut, one light of each",
+        whole_in(Ranges::stochastic_cut_size), [](Shot & s) -> auto& { return s.virtual_lights.stochastic_cut_size; }));
+}
+
 void add_gathering_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "virtual_lights.sampling", help_of(light_gatherers()), name_in(light_gatherers()),
         [](Shot & s) -> auto& { return s.virtual_lights.sampling; }));
     keys.push_back(make_key(
-        "virtual_lights.resampling_candidates", "for sampling resampled: lights of which one is chosen",
+        "virtual_lights.light_samples",
+        "for sampling power, plain_power, uniform and light_tree: lights sampled at every vertex",
+        whole_in(Ranges::light_samples), [](Shot & s) -> auto& { return s.virtual_lights.light_samples; }));
+    add_cut_keys(keys);
+    keys.push_back(make_key(
+        "virtual_lights.resampling_candidates",
+        "for sampling resampled and resampled_combined: lights of which one is chosen",
         whole_in(Ranges::resampling_candidates),
         [](Shot & s) -> auto& { return s.virtual_lights.resampling_candidates; }));
+    keys.push_back(make_key(
+        "virtual_lights.resampling_rays", "for sampling resampled_combined: rays by BSDF beside those lights",
+        whole_in(Ranges::resampling_rays), [](Shot & s) -> auto& { return s.virtual_lights.resampling_rays; }));
     keys.push_back(make_key(
         "virtual_lights.path_extension", "camera paths continue where a ray's footprint covers few lights", flag(),
         [](Shot & s) -> auto& { return s.virtual_lights.path_extension; }));
@@ -100,6 +147,7 @@ void add_virtual_light_keys(std::vector<Key>& keys) {
         "virtual_lights.count", "about how many; 0: none, all light from surfaces is found by paths",
         whole_in(Ranges::count), [](Shot & s) -> auto& { return s.virtual_lights.count; }));
     add_choice_keys(keys);
+    add_kind_keys(keys);
     add_placement_keys(keys);
     add_gathering_keys(keys);
 }

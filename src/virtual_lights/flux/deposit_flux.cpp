@@ -5,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "core/stopwatch.h"
+#include "surfaces/bsdf_bound.h"
 
 namespace brisance {
 
@@ -29,15 +30,20 @@ Rgb reflectance(const VirtualLight& light, std::uint64_t index, std::uint32_t se
     return sum / float(kReflectanceSamples);
 }
 
+// Over all directions, luminance [W/sr].
+double largest_intensity(const VirtualLight& light) {
+    const Bsdf bsdf(light.material, light.frame);
+    return luminance(light.irradiance) * BsdfBound(bsdf, light.toward_source).over(light.frame.normal, -1.0);
+}
+
 VirtualLight light_of(const Scene& scene, const Deposit& deposit, std::uint64_t index, std::uint32_t seed) {
-    VirtualLight light = light_at(scene, deposit);
-    light.toward_source = dvec3(deposit.direction);
-    light.area = 1.0;
-    light.irradiance = deposit.power;
+    VirtualLight light = light_of_deposit(scene, deposit);
     light.flux = deposit.power * reflectance(light, index, seed);
     light.base_flux = deposit.power * Bsdf(light.material, light.frame).base_albedo(light.toward_source);
     light.power = luminance(glm::max(light.flux, kLeastPower * deposit.power));
     light.intensity = light.power / std::numbers::pi;
+    if (needs_energy_tables(light.material))
+        light.intensity = std::max(light.intensity, largest_intensity(light));
     return light;
 }
 
@@ -45,7 +51,9 @@ VirtualLight light_of(const Scene& scene, const Deposit& deposit, std::uint64_t 
 
 void DepositFlux::build(LightSet& set, const Placement& placement, const PixelCamera& camera) {
     const Stopwatch watch;
-    const PhotonArrivals photons = placement.flux_deposits({set.scene(), camera, set.settings()});
+    PlacementReport placed;
+    const PhotonArrivals photons = placement.flux_deposits({set.scene(), camera, set.settings(), placed});
+    set.report.acceptance = placed.acceptance;
     set.report.photons = photons.report;
     set.lights.resize(photons.arrivals.size());
     const Scene& surfaces = set.scene().surroundings()->scene();
@@ -59,8 +67,16 @@ void DepositFlux::build(LightSet& set, const Placement& placement, const PixelCa
     set.report.photon_seconds = watch.seconds();
 }
 
+VirtualLight light_of_deposit(const Scene& scene, const Deposit& deposit) {
+    VirtualLight light = light_at(scene, deposit);
+    light.toward_source = dvec3(deposit.direction);
+    light.area = 1.0;
+    light.irradiance = deposit.power;
+    return light;
+}
+
 // The BSDF includes the cosine to its second direction.
-Rgb DepositFlux::intensity(const VirtualLight& light, const dvec3& toward) const {
+Rgb deposit_intensity(const VirtualLight& light, const dvec3& toward) {
     if (!needs_energy_tables(light.material))
         return light.irradiance * light.material.base_colour *
                (float(std::max(0.0, glm::dot(light.frame.normal, toward))) / std::numbers::pi_v<float>);

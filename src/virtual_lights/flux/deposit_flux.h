@@ -10,6 +10,12 @@
 
 namespace brisance {
 
+// A light of radius 0 and area 1 m^2 that holds what arrives at the deposit. Of its flux only what deposit_intensity()
+// reads is known.
+VirtualLight light_of_deposit(const Scene& scene, const Deposit& deposit);
+// Reflected along unit `toward` [W/sr].
+Rgb deposit_intensity(const VirtualLight& light, const dvec3& toward);
+
 class DepositFlux {
 public:
     // Whether the flux is that of the placement's deposits.
@@ -21,7 +27,7 @@ public:
     static void build(LightSet& set, const Placement& placement, const PixelCamera& camera);
 
     // Along unit `toward` [W/sr].
-    Rgb intensity(const VirtualLight& light, const dvec3& toward) const;
+    Rgb intensity(const VirtualLight& light, const dvec3& toward) const { return deposit_intensity(light, toward); }
     // The lobes by which directions of glossy light can be sampled; none for Lambert surfaces.
     std::optional<Bsdf> lobes(const VirtualLight& light) const;
 };

@@ -75,7 +75,9 @@ void finish_lights(LightSet& set, const LightAccounts& accounts) {
 void GatheredFlux::build(LightSet& set, const Placement& placement, const PixelCamera& camera) {
     VirtualLightReport& report = set.report;
     Lap lap;
-    const std::vector<Deposit> deposits = placement.deposits({set.scene(), camera, set.settings()});
+    PlacementReport placed;
+    const std::vector<Deposit> deposits = placement.deposits({set.scene(), camera, set.settings(), placed});
+    report.acceptance = placed.acceptance;
     report.candidates = deposits.size();
     report.candidate_seconds = lap.take();
     set.lights = place_lights(set, placement, deposits);

@@ -116,6 +116,12 @@ Rgb LightAccounts::read(std::size_t record) const {
     return Rgb(sums_.read(record));
 }
 
+Deposit deposit_of(const DirectLight& scene, const RaySegment& flight, const Rgb& power) {
+    const dvec3 toward_source = -flight.ray.direction;
+    return {*flight.hit, vec3(flight.point->position), vec3(toward_source), material_of(scene, flight),
+            power * brightness_by_shading(*flight.point, toward_source)};
+}
+
 PhotonArrivals photon_arrivals(const DirectLight& scene, std::size_t paths, Stream stream, std::uint32_t seed) {
     const PhotonPaths all(scene, ball_around(scene), paths, stream, seed);
     std::vector<PhotonArrivals> parts((paths + kBlock - 1) / kBlock);
@@ -126,11 +132,8 @@ PhotonArrivals photon_arrivals(const DirectLight& scene, std::size_t paths, Stre
                       [&, &arrivals = arrivals, &report = report](const RaySegment& segment, const Rgb& power) {
                           if (!holds_light(segment.point->material))
                               return;
-                          const dvec3 toward_source = -segment.ray.direction;
                           report.shared += luminance(power);
-                          arrivals.push_back({*segment.hit, vec3(segment.point->position), vec3(toward_source),
-                                              material_of(scene, segment),
-                                              power * brightness_by_shading(*segment.point, toward_source)});
+                          arrivals.push_back(deposit_of(scene, segment, power));
                       });
     });
     PhotonArrivals out;

@@ -48,6 +48,9 @@ private:
     FixedSums sums_;                  // of all records [W]
 };
 
+// What a particle leaves at the end of its flight, which is a surface. `power`: of the particle [W].
+Deposit deposit_of(const DirectLight& scene, const RaySegment& flight, const Rgb& power);
+
 // Deposits, with their power, where the particles of `paths` light paths meet surfaces that hold light. The paths share
 // all emitted power among them.
 struct PhotonArrivals {

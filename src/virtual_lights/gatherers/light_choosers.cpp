@@ -7,16 +7,23 @@ namespace brisance {
 
 namespace {
 
-std::vector<LightBounds> bounds_of(const std::vector<VirtualLight>& lights) {
-    std::vector<LightBounds> out;
-    out.reserve(lights.size());
-    for (const VirtualLight& l : lights)
-        out.push_back({l.position - l.radius, l.position + l.radius, l.frame.normal, l.spread, std::numbers::pi / 2.0,
-                       l.intensity, false});
-    return out;
-}
+constexpr double kBeyond = 1e-3;  // [rad]
 
 }  // namespace
+
+std::vector<LightBounds> bounds_of(const std::vector<VirtualLight>& lights, LobeBrightness lobes) {
+    std::vector<LightBounds> out;
+    out.reserve(lights.size());
+    for (const VirtualLight& l : lights) {
+        const bool lobed = l.profile < 0 && needs_energy_tables(l.material), by_peak = lobes == LobeBrightness::Peak;
+        // A lobe may be as bright at grazing angles as along the normal: such a light reaches a little further than a
+        // right angle, and counts as equally bright everywhere.
+        out.push_back({l.position - l.radius, l.position + l.radius, l.frame.normal, l.spread,
+                       std::numbers::pi / 2.0 + (lobed && by_peak ? kBeyond : 0.0),
+                       lobed && !by_peak ? l.power / std::numbers::pi : l.intensity, false});
+    }
+    return out;
+}
 
 PowerChooser::PowerChooser(const std::vector<VirtualLight>& lights, LightImportance importance) {
     double sum = 0.0;
@@ -42,6 +49,14 @@ double PowerChooser::probability(const LitPoint&, std::size_t light) const {
     return cumulative_[light] - (light > 0 ? cumulative_[light - 1] : 0.0);
 }
 
-TreeChooser::TreeChooser(const std::vector<VirtualLight>& lights, LightImportance) : tree_(bounds_of(lights)) {}
+std::optional<LightTree::Choice> UniformChooser::choose(const LitPoint& point, double u) const {
+    if (count_ == 0)
+        return std::nullopt;
+    const auto light = std::min(static_cast<std::size_t>(u * double(count_)), count_ - 1);
+    return LightTree::Choice{light, probability(point, light)};
+}
+
+TreeChooser::TreeChooser(const std::vector<VirtualLight>& lights, LightImportance)
+    : tree_(bounds_of(lights, LobeBrightness::Mean)) {}
 
 }  // namespace brisance

@@ -11,6 +11,12 @@
 
 namespace brisance {
 
+// Glossy lights without a profile have a lobe that is many times brighter than their mean. Bounds need its peak; by the
+// peak, most samples would go to lobes that point elsewhere.
+enum class LobeBrightness { Mean, Peak };
+// Virtual lights as a light tree sees them: the boxes of their spheres, their cones, and their largest intensities.
+std::vector<LightBounds> bounds_of(const std::vector<VirtualLight>& lights, LobeBrightness lobes);
+
 // Made of lights whose power, intensity, area and spread are known.
 template <class Chooser>
 concept LightChooser = requires(const Chooser& chooser, const std::vector<VirtualLight>& lights,
@@ -33,6 +39,25 @@ public:
 
 private:
     std::vector<double> cumulative_;  // inclusive; ends at 1
+};
+
+// In proportion to power, whatever the placement: intensity sampling (P. Shirley, C. Wang, K. Zimmerman, Monte Carlo
+// Techniques for Direct Lighting Calculations, ACM Transactions on Graphics 15(1), 1996).
+class PlainPowerChooser : public PowerChooser {
+public:
+    PlainPowerChooser(const std::vector<VirtualLight>& lights, LightImportance) : PowerChooser(lights, power_alone) {}
+};
+
+// All alike.
+class UniformChooser {
+public:
+    UniformChooser(const std::vector<VirtualLight>& lights, LightImportance) : count_(lights.size()) {}
+    std::optional<LightTree::Choice> choose(const LitPoint& point, double u) const;
+    double probability(const LitPoint&, std::size_t) const { return 1.0 / double(count_); }
+    std::uint64_t bytes() const { return 0; }
+
+private:
+    std::size_t count_;
 };
 
 // By the bounds of a light tree on what each light sends to the vertex.

@@ -1,4 +1,4 @@
-// One light per vertex, chosen by a LightChooser.
+// Lights chosen by a LightChooser, settings.light_samples of them at every vertex.
 #pragma once
 
 #include "virtual_lights/gatherers/gatherer.h"
@@ -14,11 +14,15 @@ struct OneLight {
     template <VirtualLightKind Kind>
     class Of : public Gatherer {
     public:
-        Of(const LightSet& set, LightImportance importance) : kind_(set), chooser_(set.lights, importance) {}
+        Of(const LightSet& set, LightImportance importance)
+            : kind_(set), chooser_(set.lights, importance), samples_(set.settings().light_samples) {}
 
         Rgb from_lights(const PathVertex& vertex, Rng& rng) const override {
-            const std::optional<LightTree::Choice> choice = chooser_.choose(vertex.lit(), rng.next_double());
-            return choice ? kind_.estimate(choice->light, choice->probability, vertex, rng) : Rgb(0.0f);
+            Rgb sum(0.0f);
+            for (int i = 0; i < samples_; ++i)
+                if (const std::optional<LightTree::Choice> choice = chooser_.choose(vertex.lit(), rng.next_double()))
+                    sum += kind_.estimate(choice->light, choice->probability, vertex, rng);
+            return samples_ > 1 ? sum / float(samples_) : sum;
         }
 
         std::uint64_t bytes() const override { return chooser_.bytes(); }
@@ -26,6 +30,7 @@ struct OneLight {
     private:
         Kind kind_;
         Chooser chooser_;
+        int samples_;
     };
 };
 

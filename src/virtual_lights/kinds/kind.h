@@ -49,6 +49,10 @@ concept Hittable = VirtualLightKind<Kind> &&
 };
 inline constexpr const char* kHittable = "a kind of light that rays can hit";
 
+// Some of the light is lost to a bound, and paths can find it (bounded_geometry.h).
+template <class Kind>
+concept Bounded = VirtualLightKind<Kind> && Kind::kHasBound;
+
 // What a kind of light is to be built of.
 template <class Flux>
 concept LightFlux = requires(const Flux& flux, LightSet& set, const VirtualLight& light, const dvec3& toward) {

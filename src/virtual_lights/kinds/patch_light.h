@@ -2,6 +2,8 @@
 // it meets there, so that nothing is seen through walls.
 #pragma once
 
+#include <numbers>
+
 #include "virtual_lights/kinds/kind.h"
 #include "virtual_lights/kinds/sphere_sampling.h"
 
@@ -29,8 +31,11 @@ struct PatchKind {
             return pdf_toward(set_.lights[light], vertex.lit(), direction);
         }
 
-        Rgb radiance(std::size_t light, const PathVertex&, const dvec3& direction) const {
-            return flux_.surface_light(set_.lights[light], -direction);
+        // Of a Lambert surface as if it were white: its colour is that of the point where a ray meets it.
+        Rgb radiance(std::size_t index, const PathVertex&, const dvec3& direction) const {
+            const VirtualLight& light = set_.lights[index];
+            const Rgb sent = flux_.surface_light(light, -direction);
+            return light.profile < 0 ? sent / std::numbers::pi_v<float> : sent;
         }
 
         Rgb radiance_at(const CoveredHit& hit, int share) const { return set_.reflected(hit, share); }

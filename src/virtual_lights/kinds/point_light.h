@@ -1,8 +1,13 @@
 // Virtual point lights: the power of a light at its centre, with a bound on the geometry term.
+//
+// Lights that reflect by the Lambert base of their material alone make no streaks, and lose what the material's other
+// lobes reflect (M. Hasan et al., Virtual Spherical Lights for Many-Light Rendering of Glossy Scenes, 2009, section 3).
 #pragma once
 
 #include <algorithm>
+#include <numbers>
 
+#include "virtual_lights/kinds/bounded_geometry.h"
 #include "virtual_lights/kinds/kind.h"
 #include "virtual_lights/kinds/shadow_ray.h"
 
@@ -14,6 +19,8 @@ struct PointKind {
     template <LightFlux Flux>
     class Of {
     public:
+        static constexpr bool kHasBound = true;
+
         static void fit(LightSet& set) {
             for (VirtualLight& light : set.lights)
                 light.radius = 0.0;
@@ -27,14 +34,14 @@ struct PointKind {
 
         double pdf(std::size_t, const PathVertex&, const dvec3&) const { return 1.0; }
 
-        // The bound holds for the light's cosine over squared distance; the vertex's cosine belongs to its BSDF.
+        // The vertex's cosine belongs to its BSDF.
         Rgb radiance(std::size_t index, const PathVertex& vertex, const dvec3& direction) const {
             const VirtualLight& light = set_.lights[index];
             const dvec3 offset = light.position - vertex.position();
             const double square = glm::dot(offset, offset), cosine = -glm::dot(light.frame.normal, direction);
             if (!(cosine > 0.0) || !(square > 0.0))
                 return Rgb(0.0f);
-            const double kept = std::min(1.0, set_.settings().point_bound * square / cosine);
+            const double kept = kept_by_bound(set_.settings(), vertex.lit(), direction, cosine, square);
             return flux_.intensity(light, -direction) * float(kept / square);
         }
 
@@ -59,6 +66,25 @@ struct PointKind {
         const LightSet& set_;
         Flux flux_;
     };
+};
+
+// The flux of the Lambert base alone.
+class BaseFlux {
+public:
+    explicit BaseFlux(const LightSet&) {}
+
+    // Along unit `toward` [W/sr].
+    Rgb intensity(const VirtualLight& light, const dvec3& toward) const {
+        const double cosine = std::max(0.0, glm::dot(light.frame.normal, toward));
+        return light.base_flux * float(cosine / std::numbers::pi);
+    }
+};
+
+struct DiffusePointKind {
+    static constexpr const char* kNeeds = "any flux";
+
+    template <LightFlux Flux>
+    using Of = PointKind::Of<BaseFlux>;
 };
 
 }  // namespace brisance

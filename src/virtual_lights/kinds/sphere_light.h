@@ -13,15 +13,29 @@
 
 namespace brisance {
 
-// How many of the directions toward one sphere each technique samples: the sphere's cone, the BSDF of the vertex and
-// that of the light. They are combined by the balance heuristic.
+// How many of the directions toward one sphere each technique samples: the sphere's cone, the BSDF of the vertex (BRDF
+// 1 of the paper) and that of the light (BRDF 2). Combined, half of them or more are of the cone; the balance heuristic
+// weights all.
 struct SphereTechniques {
-    int cone, vertex, light;
+    int cone = 0, vertex = 0, light = 0;
 
-    SphereTechniques(int samples, bool lobed_light)
-        : cone(samples), vertex(samples / 4), light(lobed_light ? samples / 4 : 0) {
-        cone -= vertex + light;
-    }
+    // `lobed_light`: the light's BSDF has lobes other than Lambert's.
+    SphereTechniques(SphereSampling sampling, int samples, bool lobed_light);
+};
+
+// Directions that leave a light by its own BSDF; by Lambert's lobe, where the flux came from many directions.
+class LightLobe {
+public:
+    // Keeps a reference.
+    LightLobe(const VirtualLight& light, std::optional<Bsdf> bsdf) : light_(light), bsdf_(std::move(bsdf)) {}
+
+    bool has_lobes() const { return bsdf_.has_value(); }
+    double pdf(const dvec3& leaving) const;  // [1/sr]
+    std::optional<dvec3> sample(Rng& rng) const;
+
+private:
+    const VirtualLight& light_;
+    std::optional<Bsdf> bsdf_;
 };
 
 // The radius of each light is its distance to the neighbour of number settings.sphere_neighbours.
@@ -65,25 +79,29 @@ struct SphereKind {
         }
 
     private:
-        std::optional<Bsdf> lobes_of(const VirtualLight& light) const {
+        LightLobe lobe_of(const VirtualLight& light) const {
             if constexpr (LobedFlux<Flux>)
-                return flux_.lobes(light);
-            return std::nullopt;
+                return {light, flux_.lobes(light)};
+            else
+                return {light, std::nullopt};
         }
 
         // Scattered intensity of the light over the density of the directions [W/m^2 times area, per sr].
         Rgb sum_of_directions(const VirtualLight& light, const PathVertex& vertex, Rng& rng) const {
-            const std::optional<Bsdf> lobes = lobes_of(light);
-            const SphereTechniques draws(set_.settings().sphere_samples, lobes.has_value());
+            const VirtualLightSettings& s = set_.settings();
+            const LightLobe lobe = lobe_of(light);
+            const SphereTechniques draws(s.sphere_sampling, s.sphere_samples, lobe.has_lobes());
             Rgb sum(0.0f);
             const auto add = [&](const dvec3& direction) {
                 const PathVertex::Value scattered = vertex.at(direction);
                 const Rgb through = scattered.value * flux_.intensity(light, -direction);
                 if (through == Rgb(0.0f))
                     return;
-                double density = draws.cone * pdf_toward(light, vertex.lit(), direction) + draws.vertex * scattered.pdf;
+                double density = draws.vertex * scattered.pdf;
+                if (draws.cone > 0)
+                    density += draws.cone * pdf_toward(light, vertex.lit(), direction);
                 if (draws.light > 0)
-                    density += draws.light * lobes->pdf(light.toward_source, -direction);
+                    density += draws.light * lobe.pdf(-direction);
                 sum += through / float(density);
             };
             for (int i = 0; i < draws.cone; ++i)
@@ -92,12 +110,10 @@ struct SphereKind {
                 if (const std::optional<PathVertex::Sample> s = vertex.sample(rng);
                     s && !s->delta && leads_into(light, vertex.lit(), s->wi))
                     add(s->wi);
-            for (int i = 0; i < draws.light; ++i) {
-                const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
-                if (const std::optional<BsdfSample> s = lobes->sample(light.toward_source, {x, y, z});
-                    s && !s->delta && leads_into(light, vertex.lit(), -s->wi))
-                    add(-s->wi);
-            }
+            for (int i = 0; i < draws.light; ++i)
+                if (const std::optional<dvec3> leaving = lobe.sample(rng);
+                    leaving && leads_into(light, vertex.lit(), -*leaving))
+                    add(-*leaving);
             return sum;
         }
 

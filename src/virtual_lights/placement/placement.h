@@ -7,10 +7,16 @@
 
 namespace brisance {
 
+struct PlacementReport {
+    // Of candidates that were weighed, those that became deposits; of mutations, those that moved. 1: none was weighed.
+    double acceptance = 1.0;
+};
+
 struct PlacementInput {
     const DirectLight& scene;
     const PixelCamera& camera;
     const VirtualLightSettings& settings;
+    PlacementReport& report;
 };
 
 // What a light contributes to the picture, up to a factor: the weight by which lights are sampled by power.

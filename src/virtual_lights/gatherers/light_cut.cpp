@@ -1,0 +1,48 @@
+#include "core/rng.h"
+#include "virtual_lights/gatherers/lightcuts.h"
+#include "virtual_lights/gatherers/stochastic_lightcuts.h"
+
+namespace brisance {
+
+namespace {
+
+// Beside other streams of the module.
+constexpr Stream kRepresentatives = stream_of("virtual_lights/representatives");
+
+// Of the left one. Both weights are above 0 or not finite only where distances are 0.
+double share(double left, double right, double left_distance2, double right_distance2) {
+    const double a = left * right_distance2, b = right * left_distance2;
+    return a + b > 0.0 ? a / (a + b) : -1.0;
+}
+
+}  // namespace
+
+double share_by_distances(const NodeBound& left, const NodeBound& right) {
+    if (!(left.scattered + right.scattered > 0.0))
+        return -1.0;
+    if (!(left.scattered > 0.0) || !(right.scattered > 0.0))
+        return left.scattered > 0.0 ? 1.0 : 0.0;
+    const double far = share(left.scattered, right.scattered, left.farthest2, right.farthest2);
+    const double near = share(left.scattered, right.scattered, left.nearest2, right.nearest2);
+    // Boxes of no size where the vertex is: by power alone.
+    if (far < 0.0)
+        return left.scattered / (left.scattered + right.scattered);
+    return near < 0.0 ? far : 0.5 * (near + far);
+}
+
+// Children have greater numbers than their parents.
+std::vector<std::uint32_t> representatives(const LightTree& tree, std::uint32_t seed) {
+    std::vector<std::uint32_t> out(tree.node_count());
+    for (auto node = static_cast<std::uint32_t>(out.size()); node-- > 0;) {
+        if (tree.is_leaf(node)) {
+            out[node] = static_cast<std::uint32_t>(tree.light(node));
+            continue;
+        }
+        const double left = tree.lights(tree.left(node)).intensity(), right = tree.lights(tree.right(node)).intensity();
+        const bool takes_left = Rng(kRepresentatives, node, seed).next_double() * (left + right) < left;
+        out[node] = out[takes_left ? tree.left(node) : tree.right(node)];
+    }
+    return out;
+}
+
+}  // namespace brisance
