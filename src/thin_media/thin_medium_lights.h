@@ -16,7 +16,7 @@
 namespace brisance {
 
 // Level of the finest lights of homogeneous thin media; their bricks gather at points of the same spacing
-// (thin_smoke.h).
+// (thin_medium.h).
 constexpr int kFinestThinLights = 2;
 
 struct ThinMediumLights {
