@@ -45,7 +45,8 @@ VirtualLight light_of(const Scene& scene, const Deposit& deposit, std::uint64_t 
 
 void DepositFlux::build(LightSet& set, const Placement& placement, const LightSources& sources) {
     const Stopwatch watch;
-    const PhotonArrivals photons = placement.flux_deposits({set.scene(), std::span(&sources.camera, 1), set.settings()});
+    const PhotonArrivals photons =
+        placement.flux_deposits({set.scene(), std::span(&sources.camera, 1), set.settings()});
     set.report.photons = photons.report;
     set.lights.resize(photons.arrivals.size());
     const Scene& surfaces = set.scene().surroundings()->scene();
