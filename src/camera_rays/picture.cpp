@@ -61,6 +61,10 @@ private:
 // Number of rays whose surfaces are lit together: enough for efficient gathers, few enough for memory.
 constexpr std::size_t kRaysAtOnce = 1 << 18;
 
+// Distances between rays, in voxels. Fire seen directly, at 0.46 voxels a pixel: one ray errs by 2.8 %, as the square
+// of that distance; 2^2 rays by 0.16 %, 3^2 by 0.05 %.
+constexpr double kAloneWithin = 0.2, kTogetherWithin = 0.25;
+
 }  // namespace
 
 int automatic_samples(const Camera& camera, const SourceField& field) {
@@ -73,7 +77,9 @@ int automatic_samples(const Camera& camera, const SourceField& field) {
         nearest = std::min(nearest, std::max(0.0, glm::dot(centre - camera.eye_local(), camera.forward())));
     }
     const double footprint = camera.pixel_angle() * nearest / medium.spacing;  // voxels per pixel
-    return std::clamp(static_cast<int>(std::ceil(5.0 * std::min(footprint, 1e3))), 1, 8);
+    if (footprint <= kAloneWithin)
+        return 1;
+    return std::clamp(static_cast<int>(std::ceil(std::min(footprint, 1e3) / kTogetherWithin)), 2, 8);
 }
 
 Image render_picture(const SourceField& field, const Camera& camera, const PictureSettings& settings,

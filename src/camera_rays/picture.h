@@ -55,8 +55,8 @@ struct SurfaceSample {
 // rows of a picture; which of them go together changes the result by no more than what interpolation on planes may.
 using LightSurfaces = std::function<void(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light)>;
 
-// The number of samples along a pixel's side that keeps neighbouring rays within a fifth of a voxel where the medium is
-// nearest.
+// The number of samples along a pixel's side that keeps neighbouring rays within a quarter of a voxel where the medium
+// is nearest; one where pixels are within a fifth.
 int automatic_samples(const Camera& camera, const SourceField& field);
 
 // Beauty (R, G, B, A), cell layers, Z (opacity-weighted mean distance along the view axis, 1e10 where nothing is

@@ -64,8 +64,8 @@ HWY_INLINE V blend(D d, const FarLights& l, V distance) {
 }
 
 // Transmittance from a light's map toward unit direction w (light to receiver) at `distance`.
-HWY_INLINE V map_transmittance(D d, const ShadowMapLayout& layout, const std::uint16_t* map, V wx, V wy, V wz,
-                               V distance) {
+HWY_INLINE V map_transmittance(D d, const ShadowMapLayout& layout, int resolution, const std::uint16_t* map, V wx, V wy,
+                               V wz, V distance) {
     const hn::RebindToSigned<D> di;
     const hn::RebindToUnsigned<D> du;
     const V one = hn::Set(d, 1.0f), zero = hn::Zero(d);
@@ -77,7 +77,8 @@ HWY_INLINE V map_transmittance(D d, const ShadowMapLayout& layout, const std::ui
     const V u = hn::IfThenElse(lower, hn::CopySign(hn::Sub(one, hn::Abs(py)), wx), px);
     const V v = hn::IfThenElse(lower, hn::CopySign(hn::Sub(one, hn::Abs(px)), wy), py);
     // Texel centres are at half-integers of the interior; the border shifts them by one.
-    const V half = hn::Set(d, 0.5f * layout.resolution), middle = hn::Set(d, 0.5f * layout.resolution + 0.5f);
+    const int side = resolution + 2;
+    const V half = hn::Set(d, 0.5f * resolution), middle = hn::Set(d, 0.5f * resolution + 0.5f);
     const V s = hn::MulAdd(u, half, middle), t = hn::MulAdd(v, half, middle);
     // Truncation equals the floor because all three coordinates are positive.
     const auto is = hn::ConvertTo(di, s), it = hn::ConvertTo(di, t);
@@ -91,11 +92,11 @@ HWY_INLINE V map_transmittance(D d, const ShadowMapLayout& layout, const std::ui
     const V as = hn::Sub(s, hn::ConvertTo(d, is)), at = hn::Sub(t, hn::ConvertTo(d, it));
     const V ak = hn::Sub(k, hn::ConvertTo(d, ik));
 
-    const auto texel = hn::Add(hn::Mul(is, hn::Set(di, layout.side())), it);
+    const auto texel = hn::Add(hn::Mul(is, hn::Set(di, side)), it);
     const auto word = hn::Add(hn::Mul(texel, hn::Set(di, layout.distances)), ik);
     V near[4], far[4];  // of the four texels around
     for (int corner = 0; corner < 4; ++corner) {
-        const int texels = (corner >> 1) * layout.side() + (corner & 1);
+        const int texels = (corner >> 1) * side + (corner & 1);
         const auto offset = hn::Add(word, hn::Set(di, texels * layout.distances));
         const auto pair = hn::GatherOffset(du, reinterpret_cast<const std::uint32_t*>(map), hn::ShiftLeft<1>(offset));
         near[corner] = hn::ConvertTo(d, hn::BitCast(di, hn::And(pair, hn::Set(du, 0xffffu))));
@@ -216,8 +217,9 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Rece
     const V minus = hn::Neg(inverse);
     const V wx = hn::Mul(to_light[0], minus), wy = hn::Mul(to_light[1], minus), wz = hn::Mul(to_light[2], minus);
     if (l.shadow == FarLights::Shadow::Maps) {
-        const std::size_t map = l.map_of ? l.map_of[i] : i - l.list_base;
-        w = hn::Mul(w, map_transmittance(d, l.layout, l.maps + map * l.layout.stride(), wx, wy, wz, distance));
+        const std::size_t at_map = l.map_at ? l.map_at[i] : (i - l.list_base) * l.layout.stride();
+        const int resolution = l.map_at ? l.resolution_of[i] : l.layout.resolution;
+        w = hn::Mul(w, map_transmittance(d, l.layout, resolution, l.maps + at_map, wx, wy, wz, distance));
     } else if (l.shadow == FarLights::Shadow::Exact) {
         V t = exact_transmittance(d, l, p, to_light, distance);
         if (l.bottom)
@@ -258,7 +260,7 @@ std::uint64_t gather(const FarLights& l, const Receivers& r, const ReceiverBlock
     const LevelRange range(l);
     std::uint64_t evaluations = 0;
     for (const std::uint32_t i : l.list) {
-        if (l.map_of && l.map_of[i] == FarLights::kNoMap)  // no receiver needs it
+        if (l.map_at && l.map_at[i] == FarLights::kNoMap)  // no receiver needs it
             continue;
         for (std::size_t g = block.first_group; g < block.first_group + block.group_count; ++g) {
             if (!range.meets(r.group_bounds[g], l.position[i]))

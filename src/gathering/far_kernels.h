@@ -26,8 +26,10 @@ struct FarLights {
     enum class Shadow { Maps, Exact, None } shadow;
     const std::uint16_t* maps;  // of light list_base and the following ones
     std::uint32_t list_base;
-    static constexpr std::uint32_t kNoMap = ~0u;
-    const std::uint32_t* map_of;  // of each light, its number among `maps` or kNoMap; null: as above
+    // Of each light, where its map begins in `maps`, or kNoMap, and its resolution; null: as above, all alike.
+    static constexpr std::size_t kNoMap = ~std::size_t{0};
+    const std::size_t* map_at;
+    const std::uint8_t* resolution_of;
     ShadowMapLayout layout;
     const PackedExtinction* extinction;  // level 0, for exact shadows
     mat3 index_from_local;

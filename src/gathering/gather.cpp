@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 
 #include "core/parallel.h"
 #include "core/stopwatch.h"
@@ -64,78 +65,71 @@ public:
         cost.lights = level.size();
         if (level.size() == 0 || receivers_.size() == 0)
             return cost;
-        const bool maps = has_maps(level);
-        ShadowMapLayout layout;
-        std::size_t batch = level.size();
-        if (maps) {
-            layout = map_layout(field_, level, top);
-            fit_to_memory(layout, level.size(), field_.settings.memory_limit_bytes, level.level, progress_);
-            batch = std::clamp<std::size_t>(field_.settings.memory_limit_bytes / layout.bytes_per_light(),
-                                            std::min(kLeastBatch, level.size()), level.size());
-            cost.resolution = layout.resolution;
-            cost.distances = layout.distances;
-            cost.map_bytes = layout.bytes_per_light() * level.size();
-            cost.held_bytes = layout.bytes_per_light() * batch;
+        if (!has_maps(level)) {
+            cost.evaluations = gather_batch(level, far_lights(level, top, {}), 0, level.size(), {}, cost);
+            return cost;
         }
-        if (maps && field_.cache && batch < level.size() && field_.cache->on_demand)
-            gather_needed(level, far_lights(level, top, layout, 0), batch, cost);
-        else
-            gather_batches(level, far_lights(level, top, layout, 0), maps, batch, cost);
+        ShadowMapLayout layout = map_layout(field_, level, top);
+        fit_to_memory(layout, level.size(), memory_limit(), level.level, progress_);
+        cost.resolution = layout.resolution;
+        cost.distances = layout.distances;
+        gather_with_maps(level, far_lights(level, top, layout), cost);
         return cost;
     }
 
 private:
-    void gather_batches(const GridLevel& level, FarLights lights, bool maps, std::size_t batch, LevelCost& cost) {
-        const bool keep = maps && field_.cache && batch == level.size();
-        if (keep)
-            field_.cache->levels.resize(std::max<std::size_t>(field_.cache->levels.size(), level.level + 1));
+    std::uint64_t memory_limit() const { return field_.settings.memory_limit_bytes; }
+
+    void gather_with_maps(const GridLevel& level, const FarLights& lights, LevelCost& cost) {
         ShadowMapCache::Level own;
-        ShadowMapCache::Level& made = keep ? field_.cache->levels[level.level] : own;
-        const bool on_demand = keep && field_.cache->on_demand;
-        for (std::size_t first = 0; first < level.size(); first += batch) {
-            const std::size_t count = std::min(batch, level.size() - first);
-            lights.list_base = static_cast<std::uint32_t>(first);
-            Stopwatch watch;
-            if (on_demand)
-                make_needed_maps(level, lights, made);
-            else if (maps && !(keep && !made.maps.empty()))
-                build_shadow_maps(*field_.pyramid, level, *field_.weight, field_.escape, lights.layout, first, count,
-                                  made.maps, field_.occluders);
-            cost.map_seconds += watch.seconds();
-            watch = Stopwatch();
-            cost.evaluations += gather_batch(level, lights, count, made);
-            cost.gather_seconds += watch.seconds();
-            progress_.fraction(double(first + count) / level.size());
+        std::vector<std::uint8_t> resolution = map_resolutions(level, lights.layout, field_.importance);
+        std::uint64_t bytes = 0;
+        for (const std::uint8_t r : resolution)
+            bytes += lights.layout.of_resolution(r).bytes_per_light();
+        const bool on_demand = field_.cache && field_.cache->on_demand, keeps = field_.cache && bytes <= memory_limit();
+        if (keeps)
+            field_.cache->levels.resize(std::max<std::size_t>(field_.cache->levels.size(), level.level + 1));
+        ShadowMapCache::Level& made = keeps ? field_.cache->levels[level.level] : own;
+        if (made.map_at.empty()) {
+            made.map_at.assign(level.size(), FarLights::kNoMap);
+            made.resolution = std::move(resolution);
         }
+        const Stopwatch watch;
+        std::vector<std::uint32_t> missing;
+        for (std::uint32_t i = 0; i < level.size(); ++i)
+            if (made.map_at[i] == FarLights::kNoMap)
+                missing.push_back(i);
         if (on_demand)
-            cost.map_bytes = cost.held_bytes = made.maps.size() * sizeof(std::uint16_t);
-    }
-
-    // Where not all maps of the level can be held: makes those that are needed, `batch` of them at once, and keeps
-    // none.
-    void gather_needed(const GridLevel& level, FarLights lights, std::size_t batch, LevelCost& cost) {
-        Stopwatch watch;
-        ShadowMapCache::Level made;
-        made.map_of.resize(level.size(), FarLights::kNoMap);
-        const std::vector<std::uint32_t> needed = needed_lights(level, lights, made);
+            missing = needed_lights(level, lights, missing);
         cost.map_seconds += watch.seconds();
-        cost.map_bytes = needed.size() * lights.layout.bytes_per_light();
-        cost.held_bytes = std::min(batch, needed.size()) * lights.layout.bytes_per_light();
-        for (std::size_t begin = 0; begin < needed.size(); begin += batch) {
-            const std::size_t end = std::min(begin + batch, needed.size());
-            watch = Stopwatch();
-            made.maps.clear();
-            make_maps(level, lights, std::span(needed).subspan(begin, end - begin), made);
-            cost.map_seconds += watch.seconds();
-            watch = Stopwatch();
-            lights.list_base = needed[begin];
-            cost.evaluations += gather_batch(level, lights, needed[end - 1] - needed[begin] + 1, made);
-            cost.gather_seconds += watch.seconds();
-            progress_.fraction(double(end) / needed.size());
+        if (keeps) {
+            make_maps(level, lights, missing, made, cost);
+            cost.evaluations += gather_batch(level, lights, 0, level.size(), made, cost);
+            cost.map_bytes = cost.held_bytes = made.maps.size() * sizeof(std::uint16_t);
+        } else {
+            gather_in_batches(level, lights, missing, made, cost);
         }
     }
 
-    FarLights far_lights(const GridLevel& level, bool top, const ShadowMapLayout& layout, std::size_t first) const {
+    // Makes as many of the maps of the lights in `needed` at once as fit the memory limit, and keeps none.
+    void gather_in_batches(const GridLevel& level, const FarLights& lights, std::span<const std::uint32_t> needed,
+                           ShadowMapCache::Level& made, LevelCost& cost) {
+        for (std::size_t begin = 0, end = 0; begin < needed.size(); begin = end) {
+            std::uint64_t bytes = 0;
+            do
+                bytes += lights.layout.of_resolution(made.resolution[needed[end++]]).bytes_per_light();
+            while (end < needed.size() && bytes < memory_limit());
+            made.maps.clear();
+            make_maps(level, lights, needed.subspan(begin, end - begin), made, cost);
+            cost.map_bytes += bytes;
+            cost.held_bytes = std::max(cost.held_bytes, bytes);
+            const std::uint32_t first = needed[begin], count = needed[end - 1] - first + 1;
+            cost.evaluations += gather_batch(level, lights, first, count, made, cost);
+            progress_.fraction(double(end) / double(needed.size()));
+        }
+    }
+
+    FarLights far_lights(const GridLevel& level, bool top, const ShadowMapLayout& layout) const {
         FarLights lights{};
         lights.position = level.position.data();
         lights.intensity = level.intensity.data();
@@ -147,7 +141,6 @@ private:
         lights.shadow = field_.settings.shadows == ShadowMethod::None ? FarLights::Shadow::None
                         : has_maps(level)                             ? FarLights::Shadow::Maps
                                                                       : FarLights::Shadow::Exact;
-        lights.list_base = static_cast<std::uint32_t>(first);
         lights.layout = layout;
         lights.extinction = &fine_;
         lights.index_from_local = field_.pyramid->medium().index_from_local;
@@ -159,23 +152,24 @@ private:
         return field_.settings.shadows == ShadowMethod::Maps && level.level > 0;
     }
 
-    // Lights without a map in `made` that may reach some receiver, as ascending indices.
+    // Those of the lights in `among` that may reach some receiver. Indices ascend.
     std::vector<std::uint32_t> needed_lights(const GridLevel& level, const FarLights& lights,
-                                             const ShadowMapCache::Level& made) {
-        std::vector<std::uint8_t> used(level.size(), 0);
+                                             std::span<const std::uint32_t> among) {
+        std::vector<std::uint8_t> asked(level.size(), 0), used(level.size(), 0);
+        for (const std::uint32_t i : among)
+            asked[i] = 1;
         parallel_for(receivers_.blocks().size(), [&](std::size_t b) {
             thread_local std::vector<std::uint32_t> near;
             const ReceiverBlock& block = receivers_.blocks()[b];
             interaction_list(field_, level, lights.top, block.bounds, near);
             for (const std::uint32_t i : near) {
                 std::atomic_ref<std::uint8_t> mark(used[i]);
-                if (made.map_of[i] == FarLights::kNoMap && mark.load(std::memory_order_relaxed) == 0 &&
-                    may_reach(lights, i, receivers_, block))
+                if (asked[i] && mark.load(std::memory_order_relaxed) == 0 && may_reach(lights, i, receivers_, block))
                     mark.store(1, std::memory_order_relaxed);
             }
         });
         std::vector<std::uint32_t> list;
-        for (std::uint32_t i = 0; i < used.size(); ++i)
+        for (const std::uint32_t i : among)
             if (used[i])
                 list.push_back(i);
         return list;
@@ -183,33 +177,38 @@ private:
 
     // Adds the maps of the lights in `list`.
     void make_maps(const GridLevel& level, const FarLights& lights, std::span<const std::uint32_t> list,
-                   ShadowMapCache::Level& made) {
-        const std::size_t stride = lights.layout.stride(), before = made.maps.size();
-        for (std::size_t k = 0; k < list.size(); ++k)
-            made.map_of[list[k]] = static_cast<std::uint32_t>(before / stride + k);
-        made.maps.resize(before + list.size() * stride);
-        build_shadow_maps(*field_.pyramid, level, *field_.weight, field_.escape, lights.layout, list,
-                          made.maps.data() + before, field_.occluders);
+                   ShadowMapCache::Level& made, LevelCost& cost) {
+        const Stopwatch watch;
+        std::size_t end = made.maps.size();
+        for (const std::uint32_t i : list) {
+            made.map_at[i] = end;
+            end += lights.layout.of_resolution(made.resolution[i]).stride();
+        }
+        made.maps.resize(end);
+        std::vector<WantedMap> wanted;
+        wanted.reserve(list.size());
+        for (const std::uint32_t i : list)
+            wanted.push_back({i, made.resolution[i], made.maps.data() + made.map_at[i]});
+        build_shadow_maps(*field_.pyramid, level, *field_.weight, field_.escape, lights.layout, wanted,
+                          field_.occluders);
+        cost.map_seconds += watch.seconds();
     }
 
-    // Adds to `made` the missing maps of all lights that may reach some receiver.
-    void make_needed_maps(const GridLevel& level, const FarLights& lights, ShadowMapCache::Level& made) {
-        made.map_of.resize(level.size(), FarLights::kNoMap);
-        make_maps(level, lights, needed_lights(level, lights, made), made);
-    }
-
-    std::uint64_t gather_batch(const GridLevel& level, const FarLights& all, std::size_t count,
-                               const ShadowMapCache::Level& made) {
+    // Gathers from `count` lights of the level from `first` on.
+    std::uint64_t gather_batch(const GridLevel& level, const FarLights& all, std::size_t first, std::size_t count,
+                               const ShadowMapCache::Level& made, LevelCost& cost) {
+        const Stopwatch watch;
         std::vector<std::uint64_t> evaluations(receivers_.blocks().size(), 0);
         parallel_for(receivers_.blocks().size(), [&](std::size_t b) {
             thread_local std::vector<std::uint32_t> list;
             const ReceiverBlock& block = receivers_.blocks()[b];
             interaction_list(field_, level, all.top, block.bounds, list);
-            std::erase_if(list, [&](std::uint32_t i) { return i < all.list_base || i >= all.list_base + count; });
+            std::erase_if(list, [&](std::uint32_t i) { return i < first || i >= first + count; });
             FarLights lights = all;
             lights.list = list;
             lights.maps = made.maps.data();
-            lights.map_of = made.map_of.empty() ? nullptr : made.map_of.data();
+            lights.map_at = made.map_at.empty() ? nullptr : made.map_at.data();
+            lights.resolution_of = made.resolution.data();
             const FarOutput output{receivers_.size(),
                                    out_.fluence.data(),
                                    out_.scattered.empty() ? nullptr : out_.scattered.data(),
@@ -218,10 +217,8 @@ private:
                                    kind_};
             evaluations[b] = gather_far(lights, receivers_, block, output);
         });
-        std::uint64_t sum = 0;
-        for (std::uint64_t e : evaluations)
-            sum += e;
-        return sum;
+        cost.gather_seconds += watch.seconds();
+        return std::accumulate(evaluations.begin(), evaluations.end(), std::uint64_t{0});
     }
 
     const LightField& field_;

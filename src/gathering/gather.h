@@ -35,13 +35,20 @@ struct LevelCost {
 // Shadow maps kept for a second gather from the same grid, whose positions and medium must not have changed.
 struct ShadowMapCache {
     struct Level {
-        std::vector<std::uint16_t> maps;    // empty until made
-        std::vector<std::uint32_t> map_of;  // on demand: of each light, its number among the maps (far_kernels.h)
+        std::vector<std::uint16_t> maps;       // empty until made
+        std::vector<std::size_t> map_at;       // of each light (far_kernels.h)
+        std::vector<std::uint8_t> resolution;  // of each light's map, made or not
     };
     std::vector<Level> levels;
     // Makes maps only of lights that may reach some receiver. This pays for few receivers among many lights and changes
     // no bit of the result.
     bool on_demand = false;
+};
+
+// How much the picture shows of the receivers around a place.
+struct ReceiverImportance {
+    BrickLattice lattice;      // of every second node of the lights' lattice
+    std::vector<float> value;  // per node, any scale
 };
 
 // Lights of all levels in one medium.
@@ -58,7 +65,8 @@ struct LightField {
     // For receivers outside of the medium: per node, how likely its light is to leave the medium. Null: receivers are
     // inside.
     const std::vector<float>* escape = nullptr;
-    int bottom = 0;  // the finest level: does not fade in, its lights are balls
+    int bottom = 0;                                  // the finest level: does not fade in, its lights are balls
+    const ReceiverImportance* importance = nullptr;  // sets the resolution of each light's map; null: all alike
 };
 
 // The nodes that need light, and the point toward which they scatter it.

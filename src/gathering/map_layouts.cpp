@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "medium/coarse_medium.h"
 #include "medium/lattice/local_bounds.h"
 
 namespace brisance {
@@ -37,6 +38,26 @@ float growth_for_few(std::size_t lights) {
 
 float times_finer(const LightingSettings& settings) {
     return std::pow(kKnownError / std::max(settings.error, kLeastError), 0.75f);
+}
+
+// Importance of the receivers around each light, as far as it is evaluated: four spacings at alpha 2, as
+// far as the hat of a vertex two levels above.
+std::vector<double> importance_in_reach(const GridLevel& level, const ReceiverImportance& of) {
+    constexpr int kLevelsAbove = 2;
+    BrickLattice lattice = of.lattice;
+    std::vector<float> values = of.value;
+    for (int l = 1; l < level.level + kLevelsAbove; ++l) {
+        BrickLattice coarse;
+        std::vector<float> means;
+        coarsen(lattice, values, 1, coarse, means);
+        lattice = std::move(coarse);
+        values = std::move(means);
+    }
+    std::vector<double> importance(level.size(), 0.0);
+    const CoarseSampler sampler{lattice, kLevelsAbove};
+    for (std::size_t i = 0; i < level.size(); ++i)
+        sampler.at(level.vertex[i], [&](std::size_t node, float w) { importance[i] += double(w) * values[node]; });
+    return importance;
 }
 
 }  // namespace
@@ -78,6 +99,30 @@ ShadowMapLayout map_layout(const LightField& field, const GridLevel& level, bool
         layout.distances = std::max(layout.distances, std::min(256, 1 + int(range / field.pyramid->medium().spacing)));
     }
     return layout;
+}
+
+std::vector<std::uint8_t> map_resolutions(const GridLevel& level, const ShadowMapLayout& layout,
+                                          const ReceiverImportance* importance) {
+    std::vector<std::uint8_t> resolution(level.size(), static_cast<std::uint8_t>(layout.resolution));
+    if (!importance)
+        return resolution;
+    std::vector<double> weight = importance_in_reach(level, *importance);
+    double sum = 0.0, powers = 0.0;
+    for (std::size_t i = 0; i < weight.size(); ++i) {
+        weight[i] *= luminance(level.intensity[i]);
+        sum += weight[i];
+        powers += std::pow(weight[i], 0.6);
+    }
+    if (!(sum > 0.0))
+        return resolution;
+    const double scale = layout.resolution * std::pow(powers / sum, 0.75);
+    const int least = std::min(kLeastResolution, layout.resolution), most = std::min(2 * layout.resolution, 128);
+    for (std::size_t i = 0; i < weight.size(); ++i) {
+        const double wish = std::min(scale * std::pow(weight[i], 0.3), double(most));
+        resolution[i] =
+            static_cast<std::uint8_t>(std::clamp(2 * static_cast<int>(std::lround(0.5 * wish)), least, most));
+    }
+    return resolution;
 }
 
 void fit_to_memory(ShadowMapLayout& layout, std::size_t lights, std::uint64_t limit, int level, Progress& progress) {

@@ -171,6 +171,14 @@ private:
         return largest;
     }
 
+    // Of what is gathered at the next finer level.
+    ReceiverImportance importance_of_gathered(int level, const std::vector<float>& weight) const {
+        ReceiverImportance out{nodes(level), at(level).importance};
+        for (std::size_t i = 0; i < weight.size(); ++i)
+            out.value[i] *= weight[i];
+        return out;
+    }
+
     // Light of the next coarser level at the nodes of this one, mixed with light gathered here where it has weight.
     // `change`: replaced by that of this level's source functions.
     Gathered refine(int level, Gathered& coarse, const std::vector<float>& coarse_weight, std::vector<float>& change,
@@ -190,7 +198,10 @@ private:
         change = level > 0 ? sources(level, out) : std::vector<float>{};
         gathered_.power = dvec3(0.0);
         if (gathered > 0) {
-            Gathered fine = lights_.gather(target(level, mask, true));
+            const ReceiverImportance shown = importance_of_gathered(level + 1, coarse_weight);
+            GatherTarget sparse = target(level, mask, true);
+            sparse.importance = &shown;
+            Gathered fine = lights_.gather(sparse);
             mix(level, mask, weight, fine, out);
         }
         for (std::size_t i = 0; i < change.size(); ++i)

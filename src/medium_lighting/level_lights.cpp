@@ -9,8 +9,9 @@ Gathered LevelLights::gather(const GatherTarget& target) const {
     ShadowMapCache maps{{}, true};
     ShadowMapCache* const cache = target.sparse ? &maps : nullptr;
     const auto of = [&](const HierarchyLights& lights) {
-        return gather_at_nodes(lights.field(target.pyramid, alpha_, settings, cache), target.request, costs_,
-                               progress_);
+        LightField field = lights.field(target.pyramid, alpha_, settings, cache);
+        field.importance = target.importance;
+        return gather_at_nodes(field, target.request, costs_, progress_);
     };
     if (target.level == 0)
         return of(lights_);

@@ -12,6 +12,7 @@ struct GatherTarget {
     const ExtinctionPyramid& pyramid;
     LatticeRequest request;
     bool sparse;  // few of the lattice's nodes are requested
+    const ReceiverImportance* importance = nullptr;
 };
 
 class LevelLights {

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <map>
+#include <optional>
 
 #include "core/parallel.h"
 #include "medium/phase.h"
@@ -159,65 +160,109 @@ void copy_with_border(const std::uint16_t* interior, const ShadowMapLayout& layo
         }
 }
 
+// What rays of all maps of one resolution have in common.
+struct MarchPlan {
+    ShadowMapLayout layout;
+    TexelTable texels;
+    std::vector<ShadowStep> near_steps, steps;
+
+    MarchPlan(const ExtinctionPyramid& pyramid, const GridLevel& level, const ShadowMapLayout& of)
+        : layout(of), texels(pyramid.medium(), of.resolution) {
+        const float far = layout.far_distance;
+        add_steps(pyramid, level, layout, 0.0f, layout.near_distance, 0, near_steps);
+        for (int k = 1; k < layout.distances; ++k) {
+            const auto at = [&](int i) {
+                return glm::mix(layout.near_distance, far, float(i) / (layout.distances - 1));
+            };
+            add_steps(pyramid, level, layout, at(k - 1), at(k), k, steps);
+        }
+    }
+};
+
+// Builds maps of one level, one light at a time. Each thread has its own.
+class MapBuilder {
+public:
+    MapBuilder(const ExtinctionPyramid& pyramid, const GridLevel& level, const NodeWeights& weights,
+               const NodeWeights* escape, const BrickWeights* bricks, const Occluders* occluders)
+        : pyramid_(pyramid),
+          level_(level),
+          escape_(escape),
+          occluders_(occluders),
+          picker_(pyramid.medium(), weights, level.level, bricks) {
+        for (int l = 0; l < pyramid.level_count(); ++l)
+            mips_.push_back(pyramid.view(l));
+        if (const HomogeneousBricks* even = pyramid.homogeneous_bricks())
+            strides_ = {even->view(), std::min(kStrideLevel, pyramid.level_count() - 1)};
+    }
+
+    void build(const MarchPlan& plan, std::size_t light, std::uint16_t* map) {
+        const ShadowMapLayout& layout = plan.layout;
+        const Medium& medium = pyramid_.medium();
+        marched_.resize(plan.texels.rays * layout.distances);
+        interior_.resize(std::size_t(layout.resolution) * layout.resolution * layout.distances);
+        pick_starts(picker_, medium, level_, light, layout.for_outside ? escape_ : nullptr, starts_);
+        march(plan, medium.index_from_local * level_.position[light]);
+        plan.texels.put_in_rows(marched_, layout.distances, interior_.data());
+        if (occluders_) {
+            const vec3& position = level_.position[light];
+            const std::vector<vec3> voxels = starts_.positions(medium, position);
+            cut_at_surfaces(*occluders_, {position, voxels.empty() ? level_.parts_of(light) : voxels}, layout,
+                            interior_);
+        }
+        copy_with_border(interior_.data(), layout, map);
+    }
+
+private:
+    void march(const MarchPlan& plan, const vec3& centre) {
+        const auto& direction = plan.texels.direction;
+        const ShadowRays rays{{direction[0].data(), direction[1].data(), direction[2].data()},
+                              {starts_.offset[0].data(), starts_.offset[1].data(), starts_.offset[2].data()},
+                              starts_.weight.data(),
+                              plan.texels.rays};
+        if (plan.layout.for_outside)
+            march_parallel_rays(mips_.data(), plan.near_steps, plan.steps, centre, rays, plan.layout.distances,
+                                65535.0f / plan.layout.range, marched_.data(), strides_ ? &*strides_ : nullptr);
+        else
+            march_shadow_rays(mips_.data(), plan.near_steps, plan.steps, centre, rays, plan.layout.distances,
+                              marched_.data());
+    }
+
+    const ExtinctionPyramid& pyramid_;
+    const GridLevel& level_;
+    const NodeWeights* escape_;
+    const Occluders* occluders_;
+    std::vector<PackedExtinction> mips_;
+    std::optional<HomogeneousStrides> strides_;
+    FootprintPicker picker_;
+    Starts starts_;
+    std::vector<std::uint16_t> marched_, interior_;
+};
+
 }  // namespace
 
 void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const NodeWeights& weights,
                        const NodeWeights* escape, const ShadowMapLayout& layout, std::size_t first, std::size_t count,
                        std::vector<std::uint16_t>& maps, const Occluders* occluders) {
-    std::vector<std::uint32_t> list(count);
-    std::iota(list.begin(), list.end(), static_cast<std::uint32_t>(first));
     maps.resize(count * layout.stride());
-    build_shadow_maps(pyramid, level, weights, escape, layout, list, maps.data(), occluders);
+    std::vector<WantedMap> wanted(count);
+    for (std::size_t k = 0; k < count; ++k)
+        wanted[k] = {static_cast<std::uint32_t>(first + k), layout.resolution, maps.data() + k * layout.stride()};
+    build_shadow_maps(pyramid, level, weights, escape, layout, wanted, occluders);
 }
 
 void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const NodeWeights& weights,
-                       const NodeWeights* escape, const ShadowMapLayout& layout, std::span<const std::uint32_t> list,
-                       std::uint16_t* maps, const Occluders* occluders) {
-    const Medium& medium = pyramid.medium();
-    const float far = layout.far_distance;
-    std::vector<ShadowStep> near_steps, steps;
-    add_steps(pyramid, level, layout, 0.0f, layout.near_distance, 0, near_steps);
-    for (int k = 1; k < layout.distances; ++k) {
-        const auto at = [&](int i) { return glm::mix(layout.near_distance, far, float(i) / (layout.distances - 1)); };
-        add_steps(pyramid, level, layout, at(k - 1), at(k), k, steps);
-    }
-    const TexelTable texels(medium, layout.resolution);
-    std::vector<PackedExtinction> mips;
-    mips.reserve(std::size_t(pyramid.level_count()));
-    for (int l = 0; l < pyramid.level_count(); ++l)
-        mips.push_back(pyramid.view(l));
-    const HomogeneousBricks* even = pyramid.homogeneous_bricks();
-    const HomogeneousStrides strides{even ? even->view() : HomogeneousBricks::View{},
-                                     std::min(kStrideLevel, pyramid.level_count() - 1)};
+                       const NodeWeights* escape, const ShadowMapLayout& layout, std::span<const WantedMap> wanted,
+                       const Occluders* occluders) {
+    std::map<int, MarchPlan> plans;
+    for (const WantedMap& map : wanted)
+        if (!plans.contains(map.resolution))
+            plans.emplace(map.resolution, MarchPlan(pyramid, level, layout.of_resolution(map.resolution)));
     const bool by_bricks = !layout.for_outside && level.level >= FootprintPicker::kLevelOfWholeBricks;
-    const BrickWeights bricks = by_bricks ? sum_over_bricks(medium, weights) : BrickWeights{};
-    parallel_blocks(list.size(), 8, [&](std::size_t begin, std::size_t end) {
-        std::vector<std::uint16_t> marched(texels.rays * layout.distances);
-        std::vector<std::uint16_t> interior(std::size_t(layout.resolution) * layout.resolution * layout.distances);
-        Starts starts;
-        FootprintPicker picker(medium, weights, level.level, by_bricks ? &bricks : nullptr);
-        for (std::size_t k = begin; k < end; ++k) {
-            const std::size_t light = list[k];
-            pick_starts(picker, medium, level, light, layout.for_outside ? escape : nullptr, starts);
-            const ShadowRays rays{{texels.direction[0].data(), texels.direction[1].data(), texels.direction[2].data()},
-                                  {starts.offset[0].data(), starts.offset[1].data(), starts.offset[2].data()},
-                                  starts.weight.data(),
-                                  texels.rays};
-            const vec3 centre = medium.index_from_local * level.position[light];
-            if (layout.for_outside)
-                march_parallel_rays(mips.data(), near_steps, steps, centre, rays, layout.distances,
-                                    65535.0f / layout.range, marched.data(), even ? &strides : nullptr);
-            else
-                march_shadow_rays(mips.data(), near_steps, steps, centre, rays, layout.distances, marched.data());
-            texels.put_in_rows(marched, layout.distances, interior.data());
-            if (occluders) {
-                const vec3& position = level.position[light];
-                const std::vector<vec3> voxels = starts.positions(medium, position);
-                cut_at_surfaces(*occluders, {position, voxels.empty() ? level.parts_of(light) : voxels}, layout,
-                                interior);
-            }
-            copy_with_border(interior.data(), layout, maps + k * layout.stride());
-        }
+    const BrickWeights bricks = by_bricks ? sum_over_bricks(pyramid.medium(), weights) : BrickWeights{};
+    parallel_blocks(wanted.size(), 8, [&](std::size_t begin, std::size_t end) {
+        MapBuilder builder(pyramid, level, weights, escape, by_bricks ? &bricks : nullptr, occluders);
+        for (std::size_t k = begin; k < end; ++k)
+            builder.build(plans.at(wanted[k].resolution), wanted[k].light, wanted[k].out);
     });
 }
 

@@ -45,6 +45,19 @@ struct ShadowMapLayout {
     // 16-bit values per light; one is spare, since samples are read in pairs.
     std::size_t stride() const { return std::size_t(side()) * side() * distances + 2; }
     std::size_t bytes_per_light() const { return stride() * 2; }
+    // The same for a light whose map has another resolution.
+    ShadowMapLayout of_resolution(int texels) const {
+        ShadowMapLayout own = *this;
+        own.resolution = texels;
+        return own;
+    }
+};
+
+// A map to be built.
+struct WantedMap {
+    std::uint32_t light;
+    int resolution;
+    std::uint16_t* out;  // of_resolution(resolution).stride() values
 };
 
 // Builds the maps of the lights [first, first + count) of `level`, one after another in `maps` (transmittance over
@@ -55,9 +68,9 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
                        const NodeWeights* escape, const ShadowMapLayout& layout, std::size_t first, std::size_t count,
                        std::vector<std::uint16_t>& maps, const Occluders* occluders = nullptr);
 
-// Builds the maps of the lights in `list`, one after another in `maps`.
+// Builds maps of any lights of the level; their resolutions replace that of the layout.
 void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const NodeWeights& weights,
-                       const NodeWeights* escape, const ShadowMapLayout& layout, std::span<const std::uint32_t> list,
-                       std::uint16_t* maps, const Occluders* occluders = nullptr);
+                       const NodeWeights* escape, const ShadowMapLayout& layout, std::span<const WantedMap> wanted,
+                       const Occluders* occluders = nullptr);
 
 }  // namespace brisance
