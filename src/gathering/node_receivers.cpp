@@ -11,9 +11,9 @@ namespace brisance {
 
 namespace {
 
-// The distance between the nodes at which a level's light is gathered, over its blending radius. A cubic errs as the
-// fourth power of that distance.
-constexpr float kShareOfRadius = 0.125f, kErrorOfShare = 0.02f;
+// The distance between the nodes at which a level's light is gathered, over its blending radius. An interpolant errs as
+// the square of that distance.
+constexpr float kShareOfRadius = 0.0625f, kErrorOfShare = 0.02f;
 
 // The k-th node of a brick, in sub-blocks of 4 x 2 x 2 so that groups of 16 are compact.
 ivec3 node_in_sub_blocks(int k) {
@@ -61,65 +61,19 @@ void place_receivers(const Medium& medium, const LatticeRequest& request, int co
         bricks.size(), [&](std::size_t i) { place_brick(medium, request, coarsening, bricks[i], i, out); }, 64);
 }
 
-// Coarse nodes around one brick of the fine lattice: it reaches from the first node's to beyond the last one's. Second
-// differences want one more to either side.
-constexpr int kParents = BrickLattice::kSize / 2 + 1, kWide = kParents + 2;
-constexpr std::size_t kBox = std::size_t{kWide} * kWide * kWide;
+// Coarse nodes around one brick of the fine lattice: it reaches from the first node's to beyond the last one's.
+constexpr int kParents = BrickLattice::kSize / 2 + 1;
 
-// Where a correction is larger than this part of the value that it corrects, the light changes by a factor from node to
-// node, and a cubic would swing.
-constexpr float kMostCorrected = 0.5f;
-
-// One channel at the parents of a brick's nodes.
-class Parents {
-public:
-    // `gathered`: per coarse node, 1 where light was gathered.
-    Parents(const BrickLattice& lattice, std::span<const float> gathered, const ivec3& first) : lattice_(lattice) {
-        low_ = (first >> 1) - 1;
-        copy_box(lattice, gathered, 1, low_, ivec3(kWide), gathered_);
-    }
-
-    void load(std::span<const float> values) {
-        copy_box(lattice_, values, 1, low_, ivec3(kWide), value_);
-        for (int a = 0; a < 3; ++a)
-            for (std::size_t i = kStride[a]; i + kStride[a] < kBox; ++i) {
-                const bool known = gathered_[i - kStride[a]] * gathered_[i] * gathered_[i + kStride[a]] != 0.0f;
-                second_[a][i] = known ? value_[i - kStride[a]] + value_[i + kStride[a]] - 2.0f * value_[i] : 0.0f;
-            }
-    }
-
-    // At node `p` of the brick: the cubic through four parents along each axis on which it lies between two, as far as
-    // terms of fourth order; the straight line where one of the four is missing.
-    float between(const ivec3& p) const {
-        const float linear = mean(value_, p);
-        float second = 0.0f;
-        for (int a = 0; a < 3; ++a)
-            if (p[a] & 1)
-                second += mean(second_[a], p);
-        const float most = kMostCorrected * std::abs(linear);
-        return linear - std::clamp(0.125f * second, -most, most);
-    }
-
-private:
-    using Values = std::array<float, kBox>;
-    static constexpr std::size_t kStride[3] = {kWide * kWide, kWide, 1};
-
-    // Of the parents between which the node lies.
-    static float mean(const Values& box, const ivec3& p) {
-        const ivec3 low = (p >> 1) + 1, high = ((p + 1) >> 1) + 1;
-        const auto along_z = [&](int x, int y) {
-            const float* row = &box[std::size_t(x * kWide + y) * kWide];
-            return 0.5f * (row[low.z] + row[high.z]);
-        };
-        const auto along_y = [&](int x) { return 0.5f * (along_z(x, low.y) + along_z(x, high.y)); };
-        return 0.5f * (along_y(low.x) + along_y(high.x));
-    }
-
-    const BrickLattice& lattice_;
-    ivec3 low_;
-    Values gathered_, value_;
-    std::array<Values, 3> second_{};
-};
+// Value at node `p` of a brick whose parents' values are in `box`.
+float between_parents(const float* box, const ivec3& p) {
+    const ivec3 low = p >> 1, high = (p + 1) >> 1;
+    const auto along_z = [&](int x, int y) {
+        const float* row = box + (x * kParents + y) * kParents;
+        return 0.5f * (row[low.z] + row[high.z]);
+    };
+    const auto along_y = [&](int x) { return 0.5f * (along_z(x, low.y) + along_z(x, high.y)); };
+    return 0.5f * (along_y(low.x) + along_y(high.x));
+}
 
 }  // namespace
 
@@ -167,20 +121,20 @@ void add_at_nodes(const NodeReceivers& from, const Gathered& values, Gathered& o
 void add_interpolated(const NodeReceivers& from, const Gathered& values, const NodeReceivers& to, Gathered& out) {
     const auto source = values.planes();
     const auto sum = out.planes();
-    const std::vector<float> gathered(from.needed.begin(), from.needed.end());
     parallel_for(
         to.lattice.brick_count(),
         [&](std::size_t b) {
             const auto needed = to.needed.begin() + std::ptrdiff_t(b * BrickLattice::kNodes);
             if (std::none_of(needed, needed + BrickLattice::kNodes, [](std::uint8_t n) { return n != 0; }))
                 return;
-            Parents parents(from.lattice, gathered, to.lattice.first_node(b));
+            std::array<float, kParents * kParents * kParents> box;
+            const ivec3 low = to.lattice.first_node(b) >> 1;
             for (std::size_t c = 0; c < source.size(); ++c) {
-                parents.load(source[c]);
+                copy_box(from.lattice, source[c], 1, low, ivec3(kParents), box);
                 float* const node = &sum[c][b * BrickLattice::kNodes];
                 for (int k = 0; k < BrickLattice::kNodes; ++k)
                     if (needed[k])
-                        node[k] += parents.between(BrickLattice::node_in_brick(k));
+                        node[k] += between_parents(box.data(), BrickLattice::node_in_brick(k));
             }
         },
         16);

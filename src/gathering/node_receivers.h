@@ -2,9 +2,9 @@
 //
 // A level's shadow maps know its light no finer than by about a quarter of the level's own spacing: their texels, and
 // their steps along a ray, are as long. At the least distance of such a light, an interpolant over that length errs by
-// some thousandths. So the light of level l is gathered at every 2^m-th node, with 2^m at most an eighth of the level's
-// blending radius, and interpolated to the nodes between, coarsest lattice first. This is for an error of 2 %; where
-// less is asked for, the distance falls as its square root. All light of far levels together then costs less than
+// some thousandths. So the light of level l is gathered at every 2^m-th node, with 2^m at most a sixteenth of the
+// level's blending radius, and interpolated to the nodes between, coarsest lattice first. This is for an error of 2 %;
+// where less is asked for, the distance falls as its square root. All light of far levels together then costs less than
 // that of the nearest.
 #pragma once
 
@@ -36,8 +36,7 @@ int coarsening_of(const LightField& field, const GridLevel& level);
 // Adds `values`, one per receiver and channel, to `out`, planar over the nodes.
 void add_at_nodes(const NodeReceivers& from, const Gathered& values, Gathered& out);
 
-// Adds light at the nodes of a lattice to the needed nodes of one twice as fine, by cubics through four nodes along each
-// axis where all of them are needed nodes, and straight lines elsewhere.
+// Adds light at the nodes of a lattice to the needed nodes of one twice as fine, trilinearly.
 void add_interpolated(const NodeReceivers& from, const Gathered& values, const NodeReceivers& to, Gathered& out);
 
 }  // namespace brisance
