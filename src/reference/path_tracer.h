@@ -7,9 +7,11 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "core/cell.h"
+#include "reference/light_guide.h"
 #include "transport/direct_light.h"
 
 namespace brisance {
@@ -70,13 +72,14 @@ public:
 private:
     class Filing;
     void trace_lines(const Ray& ray, double position, Rng& rng, PathSum& sum, PathStatistics& statistics) const;
-    void trace_from(PathState first, Rng& rng, PathSum& sum, PathStatistics& statistics) const;
+    void trace_from(PathState first, Rng& rng, PathSum& sum, PathStatistics& statistics, float expected = 0.0f) const;
     // plain_tracking.cpp
     void trace_plain(Ray ray, Rng& rng, PathSum& sum, PathStatistics& statistics) const;
     void add_seen(Cell cell, const Rgb& radiance, PathSum& sum) const;
 
     int bounces_;
     DirectLight direct_;
+    std::unique_ptr<LightGuide> guide_;
 };
 
 }  // namespace brisance

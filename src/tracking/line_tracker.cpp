@@ -184,6 +184,34 @@ LineResult LineTracker::follow_path(const Ray& ray, Rng& rng, double end) const 
     return out;
 }
 
+LineResult LineTracker::follow_lit(const Ray& ray, const CoarseField& scattering, Rng& rng, double end) const {
+    LineResult out;
+    Visibility visibility(kRouletteDepth);
+    Positions positions(rng);
+    double depth = 0.0, left = rng.next_exponential();
+    walk_bricks(field_.bricks(), field_.enter(ray, end), [&](const VoxelSegment& brick) {
+        const bool burns = field_.burns(brick.brick);
+        return walk_cubics(field_, brick, [&](const VoxelSegment& voxel) {
+            const Cubic sigma = field_.extinction_along(voxel);
+            const double tau = std::max(0.0, sigma.integral(1.0) * (voxel.end - voxel.begin));
+            if (!visibility.ended(depth)) {
+                const auto seen = static_cast<float>(visibility.of(depth));
+                if (burns && field_.voxel_burns(voxel))
+                    out.radiance += seen * VoxelEmission(field_, voxel, sigma, tau).estimate(positions.next());
+                if (tau > 0.0)
+                    out.scattered += seen * float(-std::expm1(-tau)) * scattering.of(voxel);
+            }
+            if (!out.collision && tau > left)
+                out.collision = collision_in(sigma, voxel, left);
+            left -= tau;
+            depth += tau;
+            visibility.pass(depth, rng);
+            return !visibility.ended(depth) || !out.collision;
+        });
+    });
+    return out;
+}
+
 Rgb LineTracker::follow_line(const Ray& ray, Rng& rng, double end) const {
     LatticeRay path = field_.enter(ray, end);
     path.end = end_of_fire(path);
@@ -250,7 +278,11 @@ Collision LineTracker::choose(const CameraLine& line, double position) const {
     const auto voxel = std::upper_bound(line.voxels.begin(), line.voxels.end() - 1, depth,
                                         [](double d, const PassedVoxel& c) { return d < c.end_depth; });
     const double inside = std::clamp(depth - voxel->begin_depth, 0.0, voxel->end_depth - voxel->begin_depth);
-    return collision_in(field_.extinction_along(voxel->segment), voxel->segment, inside);
+    return choose_in(*voxel, inside);
+}
+
+Collision LineTracker::choose_in(const PassedVoxel& voxel, double depth) const {
+    return collision_in(field_.extinction_along(voxel.segment), voxel.segment, depth);
 }
 
 // The whole line in runs of bricks that burn, which are integrated voxel by voxel, and gaps between them, whose

@@ -15,6 +15,7 @@ constexpr double kNoEnd = std::numeric_limits<double>::infinity();
 
 struct LineResult {
     Rgb radiance{0.0f};                  // emission along the line, seen from its origin [W/(m^2 sr)]
+    Rgb scattered{0.0f};                 // likewise of what the smoke scatters, where that is known
     std::optional<Collision> collision;  // the end of a free flight along the line
 };
 
@@ -41,6 +42,11 @@ public:
     // voxel by voxel, or at the null collisions where those are many. No collision: the ray escapes.
     LineResult follow_path(const Ray& ray, Rng& rng, double end = kNoEnd) const;
 
+    // The same, with the emission along all of the line, and with the integral of transmittance times extinction times
+    // `scattering` [W/(m^2 sr)]: what the smoke scatters if that is its source function. Russian roulette ends both
+    // deep in the smoke.
+    LineResult follow_lit(const Ray& ray, const CoarseField& scattering, Rng& rng, double end = kNoEnd) const;
+
     // The emission along the whole line. Russian roulette ends it deep in the smoke.
     Rgb follow_line(const Ray& ray, Rng& rng, double end = kNoEnd) const;
 
@@ -54,6 +60,8 @@ public:
     // A collision forced to lie on the line, whose opacity must be above 0: `position` in [0, 1) inverts the
     // distribution of free flights that collide there.
     Collision choose(const CameraLine& line, double position) const;
+    // The point of the voxel at that optical depth behind its entry.
+    Collision choose_in(const PassedVoxel& voxel, double depth) const;
 
 private:
     double end_of_fire(const LatticeRay& ray) const;

@@ -69,6 +69,21 @@ private:
     std::vector<float> minimum_, majorant_;
 };
 
+// A colour for each cube of 4^3 voxels; one for all of a homogeneous brick.
+class CoarseField {
+public:
+    static constexpr int kCube = 4;
+    static constexpr int kCubes = 8;  // to a brick
+
+    static std::size_t cell_of(std::size_t brick, const ivec3& voxel) {
+        const ivec3 cube = voxel / kCube;
+        return brick * kCubes + (cube.x * 2 + cube.y) * 2 + cube.z;
+    }
+    const Rgb& of(const VoxelSegment& voxel) const { return cells[cell_of(voxel.brick, voxel.cube)]; }
+
+    std::vector<Rgb> cells;  // brick after brick
+};
+
 // Calls visit(part) for the parts of a brick's segment along which the extinction is one cubic, in order, until visit
 // returns false: its voxels, or all of it where the brick is homogeneous. Returns false when visit did.
 template <class Visit>

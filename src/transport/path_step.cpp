@@ -6,7 +6,7 @@ PathState state_in_medium(const DirectLight& scene, const Ray& ray, const Collis
                           const Rgb& throughput_before, int order) {
     return {scene.in_smoke(ray, collision),
             throughput_before * scene.field().albedo(collision.brick, collision.position),
-            scene.fire_lines_in_medium(collision), order};
+            scene.fire_lines_in_medium(collision), order, throughput_before};
 }
 
 PathState state_on_surface(const DirectLight& scene, const SurfacePoint& point, const dvec3& arriving,

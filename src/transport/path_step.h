@@ -28,6 +28,7 @@ struct PathState {
     Rgb throughput;    // includes the albedo of a vertex in the medium; excludes the BSDF of one on a surface
     float fire_lines;  // probability that next-event estimation samples a line toward the fire
     int order;         // scatterings of the path, this one included
+    Rgb before{0.0f};  // throughput before the albedo of a vertex in the medium
 };
 
 PathState state_in_medium(const DirectLight& scene, const Ray& ray, const Collision& collision,
@@ -74,6 +75,11 @@ concept PathReader = requires(R& reader, const PathState& state, const PathStep&
     { reader.arrive(state, step, next) } -> std::same_as<bool>;
     // Whether roulette must be able to end the path here although it has lost no throughput.
     { reader.is_long(state) } -> std::same_as<bool>;
+    // The direction in which the path goes on; none: the vertex absorbs it.
+    { reader.direction(state, rng) } -> std::same_as<std::optional<PathVertex::Sample>>;
+    // Paths that go on from the vertex, by roulette and splitting; sets the throughput of each. `begin`: the largest
+    // component of that with which the path began. With more than one, copies of the reader follow the others.
+    { reader.copies(next, 1.0f, false, rng) } -> std::same_as<int>;
 };
 
 // The answers of a plain path; a reader derives from it and hides what it does otherwise.
@@ -86,8 +92,15 @@ public:
     SegmentMedium medium_along(const PathState&, const PathStep& step, Rng& rng) const;
     bool continues(const PathState&) const { return true; }
     bool arrive(const PathState&, const PathStep&, PathState&) const { return true; }
+    std::optional<PathVertex::Sample> direction(const PathState& state, Rng& rng) const {
+        return state.vertex.sample(rng);
+    }
     // Surfaces may reflect everything for ever; the medium lets paths out.
     bool is_long(const PathState& state) const { return state.vertex.on_surface() && state.order > kManyScatterings; }
+    // Roulette by the throughput that the path has lost.
+    int copies(PathState& state, float begin, bool is_long, Rng& rng) const {
+        return survives(state.throughput, begin, is_long, rng) ? 1 : 0;
+    }
 
 protected:
     const DirectLight& scene_;
@@ -123,7 +136,7 @@ template <PathReader Reader>
 PathStep step_from(const DirectLight& scene, const PathState& state, Reader& reader, Rng& rng) {
     PathStep step;
     detail::sample_lights(scene, state, reader, rng, step);
-    step.sample = state.vertex.sample(rng);
+    step.sample = reader.direction(state, rng);
     if (step.sample)
         detail::follow_segment(scene, state, reader, rng, step);
     reader.gather(state, step);
@@ -133,11 +146,12 @@ PathStep step_from(const DirectLight& scene, const PathState& state, Reader& rea
 // The vertex at the end of the step; none where the path leaves the scene or is absorbed.
 std::optional<PathState> next_state(const DirectLight& scene, const PathState& state, const PathStep& step);
 
-// The path after `state`. Russian roulette ends it by the throughput that it has lost since then.
+namespace detail {
+
+// The path after `state`, which goes on from there.
 template <PathReader Reader>
-void walk_path(const DirectLight& scene, PathState state, Reader& reader, Rng& rng) {
-    const float begin = largest(state.throughput);
-    while (survives(state.throughput, begin, reader.is_long(state), rng)) {
+void follow_path(const DirectLight& scene, PathState state, float begin, Reader& reader, Rng& rng) {
+    for (;;) {
         const PathStep step = step_from(scene, state, reader, rng);
         if (!reader.continues(state))
             return;
@@ -145,7 +159,25 @@ void walk_path(const DirectLight& scene, PathState state, Reader& reader, Rng& r
         if (!next || !reader.arrive(state, step, *next))
             return;
         state = *next;
+        const int copies = reader.copies(state, begin, reader.is_long(state), rng);
+        if (copies == 0)
+            return;
+        if constexpr (std::copy_constructible<Reader>)
+            for (int i = 1; i < copies; ++i) {
+                Reader other = reader;
+                follow_path(scene, state, begin, other, rng);
+            }
     }
+}
+
+}  // namespace detail
+
+// The path after `state`, ended by roulette, or split, as the reader says.
+template <PathReader Reader>
+void walk_path(const DirectLight& scene, PathState state, Reader& reader, Rng& rng) {
+    const float begin = largest(state.throughput);
+    if (reader.copies(state, begin, reader.is_long(state), rng) > 0)
+        detail::follow_path(scene, state, begin, reader, rng);
 }
 
 }  // namespace brisance
