@@ -105,7 +105,7 @@ const std::vector<MediaScene> kScenes = {
      0.1,
      "",
      {},
-     49152,
+     196608,
      {{"", {0.05, 0.15, kSampled}},
       {"V", {0.05, 0.15, kEdges}},
       {"MV", {0.05, 0.1, kGrid}},
