@@ -199,21 +199,32 @@ TEST(WholeFile, LeftoversOfKilledProcessesAreRemovedAndNoOthers) {
     remove_leftovers(folder / "absent" / "state.bin");  // nothing to do, and no error
 }
 
+// However slow the machine: a child is killed once its unfinished file is seen, and not after a fixed time.
+void wait_for_unfinished_file(const TemporaryFolder& folder) {
+    const auto unfinished = [](const std::string& name) { return name != "a.txt"; };
+    for (int wait = 0; wait < 60000 && std::ranges::none_of(folder.names(), unfinished); ++wait)
+        usleep(1000);
+}
+
 TEST(WholeFile, LeftoversOfAKilledWriteAreRemoved) {
     const TemporaryFolder folder;
-    for (int round = 0; round < 20 && folder.names().size() < 2; ++round) {
+    bool whole = false;
+    const auto leftovers = [&] {
+        whole = fs::exists(folder / "a.txt");
+        return folder.names().size() > (whole ? 1u : 0u);
+    };
+    for (int round = 0; round < 20 && !leftovers(); ++round) {
         const pid_t child = fork();
         if (child == 0) {
             const std::string much(64 << 20, 'x');
             for (;;)
                 write_whole_file(folder / "a.txt", much);
         }
-        usleep(static_cast<useconds_t>(50000 + 7000 * round));
+        wait_for_unfinished_file(folder);
         kill(child, SIGKILL);
         waitpid(child, nullptr, 0);
     }
-    const bool whole = fs::exists(folder / "a.txt");
-    EXPECT_GT(folder.names().size(), whole ? 1u : 0u) << "never killed while it wrote";
+    EXPECT_TRUE(leftovers()) << "never killed while it wrote";
     remove_leftovers(folder / "a.txt");
     EXPECT_EQ(folder.names(), whole ? std::vector<std::string>{"a.txt"} : std::vector<std::string>{});
 }
