@@ -80,6 +80,8 @@ Case scattered() {
     c.truth = "integral over the fire's and the smoke's hats (single scattering)";
     c.scatters_twice = false;
     c.tolerance = {0.1, 0.01, "the shadow's edge is as narrow as the smoke"};
+    c.tolerance.limits["lighting_grid"] = {
+        0.4, "seven voxels away lights stand for several voxels, and their shadow maps blur what one voxel covers"};
     c.scene = [] {
         media::Recipe r = nothing();
         r.density = [](const ivec3& n) {
