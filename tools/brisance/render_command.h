@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "progress.h"
+#include "sequence/result_cache.h"
 
 namespace brisance {
 
@@ -21,6 +22,7 @@ struct RenderOptions {
     std::vector<std::string> overrides;
     std::string checkpoint;          // file that keeps the state of a long render, to resume it; empty: none
     std::vector<std::string> debug;  // pictures of how a method works: kDebugVirtualLights
+    CacheOptions cache;
     bool certify = false;            // also where the shot does not enable it
     int threads = 0;                 // 0: all processors
     int task_index = 0;              // from 0

@@ -129,6 +129,22 @@ std::vector<int> covering_frames(const Shot& shot) {
     return covering_frames(shot.time, frames_of(pattern), pattern);
 }
 
+std::vector<std::filesystem::path> files_to_settle_time(const Shot& shot) {
+    std::vector<std::filesystem::path> files;
+    const auto add = [&](const std::string& pattern, const TimeSettings& time, const VelocitySettings& velocity) {
+        const bool settles = !(time.identity() || is_settled(time, velocity));
+        const bool blurs = shot.shutter.length > 0.0 && velocity.unit == VelocityUnit::Automatic;
+        if (!has_frame_token(pattern) || !(settles || blurs))
+            return;
+        for (const int frame : frames_looked_at(frames_on_disk(pattern)))
+            files.push_back(resolve_frame(pattern, frame));
+    };
+    add(pattern_of_own(shot), shot.time, shot.velocity);
+    for (const FurtherVolume& volume : shot.volumes)
+        add(pattern_of_further(shot, volume), time_of(shot, volume), velocity_of(shot, volume));
+    return files;
+}
+
 bool is_settled(const TimeSettings& time, const VelocitySettings& velocity) {
     return time.retime == Retime::Nearest || time.retime == Retime::Linear ||
            (time.retime == Retime::Advect && velocity.unit != VelocityUnit::Automatic);
