@@ -117,7 +117,8 @@ std::vector<LightWindow> light_windows(int frame, int width) {
 }
 
 bool may_share_lights(const Shot& shot) {
-    return shot.method != RenderMethod::Path && !shot.scene.empty() && shot.virtual_lights.count > 0 &&
+    const bool surfaces = !(shot.scene.files.empty() && shot.scene.quads.empty() && shot.scene.spheres.empty());
+    return surfaces && shot.method != RenderMethod::Path && shot.virtual_lights.count > 0 &&
            shot.virtual_lights.window > 0 && has_positions(shot.virtual_lights) && has_sequence(shot);
 }
 

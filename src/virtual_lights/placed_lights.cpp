@@ -1,6 +1,7 @@
 #include "virtual_lights/placed_lights.h"
 
 #include <array>
+#include <bit>
 #include <cstring>
 #include <type_traits>
 
@@ -37,7 +38,8 @@ void take(std::string_view& bytes, std::vector<T>& values, std::size_t count) {
 }  // namespace
 
 std::string to_bytes(const PlacedLights& lights) {
-    const std::array<std::uint64_t, 2> head = {lights.candidates, lights.deposits.size()};
+    const std::array<std::uint64_t, 3> head = {lights.candidates, lights.deposits.size(),
+                                               std::bit_cast<std::uint64_t>(lights.acceptance)};
     std::string bytes;
     append(bytes, head.data(), head.size());
     append(bytes, lights.deposits.data(), lights.deposits.size());
@@ -46,7 +48,7 @@ std::string to_bytes(const PlacedLights& lights) {
 }
 
 std::optional<PlacedLights> placed_lights_of(std::string_view bytes) {
-    std::array<std::uint64_t, 2> head{};
+    std::array<std::uint64_t, 3> head{};
     constexpr std::size_t each = sizeof(Deposit) + sizeof(float);
     if (bytes.size() < sizeof(head))
         return std::nullopt;
@@ -56,6 +58,7 @@ std::optional<PlacedLights> placed_lights_of(std::string_view bytes) {
         return std::nullopt;
     PlacedLights out;
     out.candidates = head[0];
+    out.acceptance = std::bit_cast<double>(head[2]);
     take(bytes, out.deposits, head[1]);
     take(bytes, out.distance, head[1]);
     return out;
@@ -68,7 +71,9 @@ PlacedLights place_lights(const DirectLight& scene, std::span<const PixelCamera>
     if (settings.count == 0 || !scene.surroundings())
         return out;
     const Stopwatch watch;
-    const std::vector<Deposit> deposits = placement.deposits({scene, cameras, settings});
+    PlacementReport placed;
+    const std::vector<Deposit> deposits = placement.deposits({scene, cameras, settings, placed});
+    out.acceptance = placed.acceptance;
     out.candidates = deposits.size();
     out.candidate_seconds = watch.seconds();
     if (deposits.empty())

@@ -24,6 +24,7 @@ struct PlacedLights {
     std::vector<Deposit> deposits;  // on the triangles of their scene: surfaces that move carry them along
     std::vector<float> distance;    // that each keeps from others [m]
     std::uint64_t candidates = 0;   // that they were chosen from
+    double acceptance = 1.0;        // PlacementReport
     double candidate_seconds = 0.0, elimination_seconds = 0.0;
 };
 

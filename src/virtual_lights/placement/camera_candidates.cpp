@@ -42,11 +42,11 @@ Ray camera_ray(const PixelCamera& camera, std::size_t index, std::size_t paths, 
     return camera.ray(x, y);
 }
 
+}  // namespace
+
 bool without_pixels(const PixelCamera& camera) {
     return !(double(camera.width) * camera.height > 0.0);
 }
-
-}  // namespace
 
 std::vector<Deposit> light_candidates(const DirectLight& scene, std::span<const PixelCamera> cameras, std::size_t paths,
                                       std::uint32_t seed) {

@@ -16,6 +16,9 @@ struct PixelCamera {
     std::function<Ray(double x, double y)> ray;  // local; x, y in pixels from the upper left corner
 };
 
+// No path can be sent through its picture.
+bool without_pixels(const PixelCamera& camera);
+
 // The first surface that camera paths meet after they were scattered, by a surface that is no mirror or by smoke; and,
 // where that is glossy, the next. Their density follows how much of the light from there the camera may see. Paths are
 // numbered and draw their random numbers by that number; `paths` of them are divided among the cameras, one by one, and

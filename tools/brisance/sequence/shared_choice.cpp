@@ -107,6 +107,7 @@ Shot trial_of(const Shot& given) {
     shot.tracing.samples = kTrialSamples;
     shot.tracing.seconds = shot.tracing.error = shot.seconds = 0.0;
     shot.certify.enabled = false;
+    shot.virtual_lights.window = 0;  // one frame alone
     if (shot.method == RenderMethod::Automatic)
         shot.method = RenderMethod::LightingGrid;
     shot.output.virtual_lights = shot.output.bounce_layers = false;
