@@ -6,7 +6,7 @@ namespace brisance {
 
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 Json of_time(const TimeSettings& time, const VelocitySettings& velocity) {
     return {{"retime", static_cast<int>(time.retime)},
