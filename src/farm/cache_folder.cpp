@@ -102,8 +102,8 @@ std::optional<std::string> CacheFolder::find(std::string_view key) {
     std::optional<Unpacked> result = unpacked(*bytes);
     std::error_code error;
     if (!result) {
-        progress_.warning("cache", fmt::format("{} is damaged: it is removed, and what it held is made anew",
-                                               file.string()));
+        progress_.warning("cache",
+                          fmt::format("{} is damaged: it is removed, and what it held is made anew", file.string()));
         fs::remove(file, error);
         return std::nullopt;
     }

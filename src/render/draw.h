@@ -22,7 +22,7 @@ struct DrawInput {
     const Medium& medium;
     const Surroundings* surroundings;  // null: none
     const Camera& camera;
-    const OpenShutter* shutter = nullptr;  // null: nothing moves
+    const OpenShutter* shutter = nullptr;                   // null: nothing moves
     std::span<const SharedPositions> light_positions = {};  // of virtual lights; empty: the frame places its own
 
     std::span<const Moment> moments() const {  // empty: nothing moves

@@ -158,8 +158,7 @@ void render_into(RenderedFrame& out, const Shot& given, const FrameView& frame, 
     std::vector<SharedPositions> positions;
     if (positions_for && needs_virtual_lights(plan))
         positions = positions_for(shot, progress);
-    const DrawInput input{shot,   plan,      medium, surroundings, camera, shutter.still() ? nullptr : &shutter,
-                          positions};
+    const DrawInput input{shot, plan, medium, surroundings, camera, shutter.still() ? nullptr : &shutter, positions};
     if (shot.output.virtual_lights)
         if (const std::optional<std::string> reason = why_no_virtual_lights(shot, plan))
             progress.warning("virtual-lights", kNoLightPictures + *reason);

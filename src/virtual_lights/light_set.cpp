@@ -45,7 +45,7 @@ double LightSet::termination_probability(const CoveredHit& hit, double pdf) cons
     if (hit.shares.count == 0)
         return 0.0;
     if (!settings_.path_extension)
-        return 1.0;  // kinds that no ray hits have been sampled for all that such surfaces reflect
+        return 1.0;     // kinds that no ray hits have been sampled for all that such surfaces reflect
     double area = 0.0;  // as of lights that do not fade: of two sets that overlap, each is as dense as one alone
     for (int i = 0; i < hit.shares.count; ++i) {
         const VirtualLight& light = lights[hit.shares.light[i]];

@@ -82,8 +82,9 @@ TEST(SharedPositions, ReflectAConstantWhileTheyFade) {
 TEST(SharedPositions, FadeContinuously) {
     const Room room(coloured_room());
     const auto area_of_second = [&](double share) {
+        const VirtualLights lights = two_sets(room, few_lights(), share);
         double area = 0.0;
-        for (const VirtualLight& light : two_sets(room, few_lights(), share).lights())
+        for (const VirtualLight& light : lights.lights())
             area += light.number >> 32 == 1 ? light.area : 0.0;
         return area;
     };

@@ -83,8 +83,8 @@ void GatheredFlux::build(LightSet& set, const Placement&, const LightSources& so
     VirtualLightReport& report = set.report;
     std::vector<SharedPositions> positions(sources.positions.begin(), sources.positions.end());
     if (positions.empty())
-        positions.push_back({std::make_shared<PlacedLights>(
-            place_lights(set.scene(), std::span(&sources.camera, 1), set.settings()))});
+        positions.push_back(
+            {std::make_shared<PlacedLights>(place_lights(set.scene(), std::span(&sources.camera, 1), set.settings()))});
     for (const SharedPositions& shared : positions) {
         report.candidates += shared.lights->candidates;
         report.candidate_seconds += shared.lights->candidate_seconds;

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "virtual_lights/flux/photon_splitting.h"
+#include "virtual_lights/placed_lights.h"
 #include "virtual_lights/placement/camera_candidates.h"
 #include "virtual_lights/placement/thinning.h"
-#include "virtual_lights/placed_lights.h"
 
 namespace brisance {
 
