@@ -78,7 +78,8 @@ TEST(SharedPositions, ReflectAConstantWhileTheyFade) {
     }
 }
 
-// Lights of a set whose share goes to 0 cover a share of the surface that goes to 0 with it.
+// Of the surface that both sets cover, a set whose share goes to 0 covers a part that goes to 0 with it. What it covers
+// alone stays its own until it is gone, and then paths continue there: little (docs/limits.md).
 TEST(SharedPositions, FadeContinuously) {
     const Room room(coloured_room());
     const auto area_of_second = [&](double share) {
@@ -88,9 +89,10 @@ TEST(SharedPositions, FadeContinuously) {
             area += light.number >> 32 == 1 ? light.area : 0.0;
         return area;
     };
-    const double half = area_of_second(0.5);
-    EXPECT_NEAR(area_of_second(0.05) / half, 0.1, 0.05);
-    EXPECT_LT(area_of_second(0.001) / half, 0.005);
+    const double half = area_of_second(0.5), alone = area_of_second(1e-6);
+    EXPECT_LT(alone / half, 0.03);
+    EXPECT_NEAR((area_of_second(0.05) - alone) / (half - alone), 0.1, 0.05);
+    EXPECT_NEAR((area_of_second(0.001) - alone) / (half - alone), 0.002, 0.002);
 }
 
 TEST(SharedPositions, AgreeWithPathsWhileTheyFade) {
