@@ -144,7 +144,7 @@ Shot with_carried_box(const Square& square, double shutter) {
     box.volume.box = FogBox{dvec3(-1.0, -2.0, 0.0), dvec3(1.0, 2.0, 1.0), 0.25};
     box.volume.node = "square";
     shot.volumes.push_back(box);
-    shot.medium.extinction_per_metre = 1.0f;
+    shot.medium.smoke.extinction_per_metre = 1.0f;
     shot.shutter.length = shutter;
     return shot;
 }
@@ -185,8 +185,7 @@ TEST(CarriedVolumes, TurnWithTheirNode) {
     int found = 0;
     const Medium medium = load_medium(with_carried_box(square, 0.5), "", 10, statistics, silent);
     at_smoke(medium, [&](const dvec3& place, const vec3& v) {
-        // The file's z is the world's -y.
-        const vec3 expected = float(kTurn) * vec3(place.z, 0.0f, -place.x);
+        const vec3 expected = float(kTurn) * vec3(-place.y, place.x, 0.0f);
         EXPECT_NEAR(glm::length(v - expected), 0.0f, 1e-4f);
         ++found;
     });
