@@ -116,7 +116,8 @@ int run(char** argv) {
     s.sampling = "stochastic_lightcuts";
     const Technique technique = technique_of(s);
     LightSet set(direct, s);
-    technique.build(set, *technique.placement, {1, 1, [&](double x, double y) { return view.ray(x, y); }});
+    const PixelCamera camera{1, 1, [&](double x, double y) { return view.ray(x, y); }};
+    technique.build(set, *technique.placement, {camera, {}});
     technique.fit(set);
     const std::vector<PathVertex> vertices =
         visible_vertices(direct, view, static_cast<std::size_t>(std::atoi(argv[3])));

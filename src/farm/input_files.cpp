@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "core/error.h"
 #include "render/input/volume_in_time.h"
+#include "render/light_windows.h"
 #include "scene/gltf/gltf_inputs.h"
 
 namespace brisance {
@@ -17,10 +19,7 @@ void add_once(std::vector<fs::path>& files, const fs::path& file) {
         files.push_back(plain);
 }
 
-}  // namespace
-
-std::vector<fs::path> volume_files(const Shot& shot, const FrameFile& frame) {
-    std::vector<fs::path> files;
+void add_volumes(std::vector<fs::path>& files, const Shot& shot, const FrameFile& frame) {
     const auto add = [&](const SourceFiles& volume) {
         for (const fs::path& file : {volume.first, volume.second})
             if (!file.empty())
@@ -33,6 +32,27 @@ std::vector<fs::path> volume_files(const Shot& shot, const FrameFile& frame) {
     for (const FurtherVolume& v : shot.volumes)
         if (!v.volume.box)
             add(source_files((shot.folder / v.volume.file).string(), time_of(shot, v), frame.frame));
+}
+
+// A window whose files are not there is left out when the frame is rendered, too.
+void add_volumes_of_window(std::vector<fs::path>& files, const Shot& shot, const LightWindow& window) {
+    try {
+        const int frame = frame_of_window(shot, window);
+        add_volumes(files, shot, {frame, shot.volume.file.empty() ? fs::path() : own_files(shot, frame).nearest()});
+    } catch (const Error& error) {
+        if (error.code() == ExitCode::Usage)
+            throw;
+    }
+}
+
+}  // namespace
+
+std::vector<fs::path> volume_files(const Shot& shot, const FrameFile& frame) {
+    std::vector<fs::path> files;
+    add_volumes(files, shot, frame);
+    if (may_share_lights(shot))
+        for (const LightWindow& window : light_windows(frame.frame, shot.virtual_lights.window))
+            add_volumes_of_window(files, shot, window);
     return files;
 }
 

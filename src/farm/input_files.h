@@ -14,7 +14,8 @@ namespace brisance {
 // resolve_frame for a missing volume, and as files_of_gltf.
 std::vector<std::filesystem::path> input_files(const Shot& shot, const FrameFile& frame);
 
-// Those of the volumes alone, and those of the set, which are the same for all frames.
+// Those of the volumes alone, the frame's first and then those of frames by which virtual lights are placed; and those
+// of the set, which are the same for all frames.
 std::vector<std::filesystem::path> volume_files(const Shot& shot, const FrameFile& frame);
 std::vector<std::filesystem::path> set_files(const Shot& shot);
 

@@ -83,7 +83,8 @@ Drawn draw_moving(const DrawInput& input, Statistics& statistics, Progress& prog
     Drawn out;
     for (std::size_t k = 0; k < lightings; ++k) {
         const Instant lit = shutter.lit(k);
-        const DrawInput then{input.shot, input.plan, *lit.medium, lit.surroundings, *lit.camera};
+        const DrawInput then{input.shot,  input.plan, *lit.medium,          lit.surroundings,
+                             *lit.camera, nullptr,    input.light_positions};
         const LitStretch stretch{shutter, lit, k * each, each};
         Drawn drawn = draw_lit(then, &stretch, statistics, progress);
         mean.add(std::move(drawn.image));

@@ -11,6 +11,7 @@
 #include "render/shutter/open_shutter.h"
 #include "shot/shot.h"
 #include "statistics/statistics.h"
+#include "virtual_lights/placed_lights.h"
 
 namespace brisance {
 
@@ -21,7 +22,8 @@ struct DrawInput {
     const Medium& medium;
     const Surroundings* surroundings;  // null: none
     const Camera& camera;
-    const OpenShutter* shutter = nullptr;  // null: nothing moves
+    const OpenShutter* shutter = nullptr;                   // null: nothing moves
+    std::span<const SharedPositions> light_positions = {};  // of virtual lights; empty: the frame places its own
 
     std::span<const Moment> moments() const {  // empty: nothing moves
         return shutter ? shutter->moments() : std::span<const Moment>{};

@@ -14,7 +14,7 @@ std::unique_ptr<VirtualLights> place_virtual_lights(const DrawInput& input, cons
     const Camera& camera = input.camera;
     const PixelCamera pixels{camera.settings().width, camera.settings().height,
                              [&](double x, double y) { return camera.ray(x, y); }};
-    auto lights = std::make_unique<VirtualLights>(scene, pixels, input.shot.virtual_lights);
+    auto lights = std::make_unique<VirtualLights>(scene, pixels, input.shot.virtual_lights, input.light_positions);
     const VirtualLightReport& r = lights->report();
     statistics.stages.push_back({"virtual lights",
                                  watch.seconds(),

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include <ctime>
+#include <functional>
 
 #include "camera/camera.h"
 #include "certificate/certify.h"
@@ -17,6 +18,7 @@
 #include "render/draw.h"
 #include "render/input/frame_input.h"
 #include "render/input/kept_inputs.h"
+#include "render/light_windows.h"
 #include "render/shutter/open_shutter.h"
 
 namespace brisance {
@@ -117,6 +119,14 @@ Shot with_chosen_method(const Shot& shot, const Medium& medium, const Surroundin
     return with_method(shot, forecast);
 }
 
+// Parts of a frame's input, by reference.
+struct FrameView {
+    const Medium& medium;
+    const Surroundings* surroundings;
+    const CameraSettings& camera;
+    const Animation& animation;
+};
+
 // A black picture of something that is there wants a word.
 void warn_of_darkness(const Medium& medium, const Surroundings* surroundings, Progress& progress) {
     if (medium.emits() || (surroundings && !surroundings->emitters().empty()))
@@ -127,17 +137,28 @@ void warn_of_darkness(const Medium& medium, const Surroundings* surroundings, Pr
                          "choose them with --look auto");
 }
 
-void render_into(RenderedFrame& out, const Shot& given, const Medium& medium, const Surroundings* surroundings,
-                 const CameraSettings& camera_settings, const Animation& animation, const Checkpoint& checkpoint,
-                 Progress& progress) {
-    const Shot shot = with_chosen_method(given, medium, surroundings, camera_settings, out, progress);
+// Where virtual lights lie, for a plan that needs them; none: the frame places its own.
+using PositionsFor = std::function<std::vector<SharedPositions>(const Shot&, Progress&)>;
+
+bool needs_virtual_lights(const Plan& plan) {
+    return plan.needs(Cell::SS) || plan.needs(Cell::MS);
+}
+
+void render_into(RenderedFrame& out, const Shot& given, const FrameView& frame, const Checkpoint& checkpoint,
+                 const PositionsFor& positions_for, Progress& progress) {
+    const Medium& medium = frame.medium;
+    const Surroundings* const surroundings = frame.surroundings;
+    const Shot shot = with_chosen_method(given, medium, surroundings, frame.camera, out, progress);
     const Plan plan = plan_cells(shot, medium, surroundings);
     out.statistics.cells = plan.cells();
     out.statistics.skipped = plan.skipped;
     warn_of_darkness(medium, surroundings, progress);
-    const Camera camera(camera_settings, medium);
-    const OpenShutter shutter(shot.shutter, medium, surroundings, camera_settings, animation, progress);
-    const DrawInput input{shot, plan, medium, surroundings, camera, shutter.still() ? nullptr : &shutter};
+    const Camera camera(frame.camera, medium);
+    const OpenShutter shutter(shot.shutter, medium, surroundings, frame.camera, frame.animation, progress);
+    std::vector<SharedPositions> positions;
+    if (positions_for && needs_virtual_lights(plan))
+        positions = positions_for(shot, progress);
+    const DrawInput input{shot, plan, medium, surroundings, camera, shutter.still() ? nullptr : &shutter, positions};
     if (shot.output.virtual_lights)
         if (const std::optional<std::string> reason = why_no_virtual_lights(shot, plan))
             progress.warning("virtual-lights", kNoLightPictures + *reason);
@@ -147,7 +168,7 @@ void render_into(RenderedFrame& out, const Shot& given, const Medium& medium, co
         draw_into(out, input, progress);
     add_errors(out, input, progress);
     out.metadata.camera_from_world = camera.camera_from_world();
-    out.metadata.vertical_fov_degrees = camera_settings.vertical_fov_degrees;
+    out.metadata.vertical_fov_degrees = frame.camera.vertical_fov_degrees;
     out.metadata.text["brisance/cells"] = joined(plan.cells());
     out.statistics.peak_resident_bytes = peak_resident_bytes();
 }
@@ -189,8 +210,11 @@ RenderedFrame render_frame(const Shot& given, const std::filesystem::path& volum
         read_next_frame(given, input.medium, *kept);
     const Shot shot =
         with_time(given, input.medium, input.surroundings.get(), input.camera, watch.seconds(), out, progress);
-    render_into(out, shot, input.medium, input.surroundings.get(), input.camera, input.animation,
-                {checkpoint, checkpoint_key(shot, volume, frame)}, progress);
+    const auto positions_for = [&](const Shot& chosen, Progress& said) {
+        return shared_positions(chosen, frame, input, kept, out.statistics, said);
+    };
+    render_into(out, shot, {input.medium, input.surroundings.get(), input.camera, input.animation},
+                {checkpoint, checkpoint_key(shot, volume, frame)}, positions_for, progress);
     out.metadata.frame = frame;
     finish(out, watch.seconds());
     return out;
@@ -202,7 +226,7 @@ RenderedFrame render_medium(const Shot& given, const Medium& medium, Progress& t
     Recorder progress(to, out.statistics);
     CameraSettings camera = given.camera_given ? given.camera : framed_camera(medium, given.camera);
     const Shot shot = with_time(given, medium, surroundings, camera, watch.seconds(), out, progress);
-    render_into(out, shot, medium, surroundings, camera, {}, {}, progress);
+    render_into(out, shot, {medium, surroundings, camera, {}}, {}, {}, progress);
     finish(out, watch.seconds());
     return out;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/error.h"
 #include "retiming/between_frames.h"
@@ -29,9 +30,13 @@ std::vector<std::size_t> spread(std::size_t count) {
     return places;
 }
 
+std::vector<std::size_t> first_of_triples(const std::vector<int>& on_disk) {
+    return spread(on_disk.size() < 3 ? 0 : on_disk.size() - 2);
+}
+
 std::vector<Triple> read_triples(const std::vector<int>& on_disk, const ReadFrame& read) {
     std::vector<Triple> triples;
-    for (const std::size_t i : spread(on_disk.size() < 3 ? 0 : on_disk.size() - 2)) {
+    for (const std::size_t i : first_of_triples(on_disk)) {
         Triple triple{{on_disk[i], on_disk[i + 1], on_disk[i + 2]}, {}};
         for (std::size_t f = 0; f < 3; ++f)
             triple.frame[f] = read(triple.number[f]);
@@ -138,6 +143,15 @@ double relative_error(const BlockGrid& field, const BlockGrid& truth) {
         norm += double(b[i]) * b[i];
     }
     return norm > 0.0 ? std::sqrt(squares / norm) : (squares > 0.0 ? 1.0 : 0.0);
+}
+
+std::vector<int> frames_looked_at(const std::vector<int>& on_disk) {
+    if (on_disk.size() == 2)
+        return on_disk;
+    std::set<int> frames;
+    for (const std::size_t i : first_of_triples(on_disk))
+        frames.insert(on_disk.begin() + std::ptrdiff_t(i), on_disk.begin() + std::ptrdiff_t(i) + 3);
+    return {frames.begin(), frames.end()};
 }
 
 RetimingChoice choose_retiming(const RetimingQuestion& question, const ReadFrame& read) {

@@ -43,6 +43,9 @@ struct UnitChoice {
 };
 UnitChoice choose_unit(const RetimingQuestion& question, const ReadFrame& read);
 
+// The frames that both of them read, of those on disk (sorted).
+std::vector<int> frames_looked_at(const std::vector<int>& on_disk);
+
 // Relative L2 error of a field, over the nodes of both.
 double relative_error(const BlockGrid& field, const BlockGrid& truth);
 

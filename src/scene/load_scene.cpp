@@ -107,6 +107,19 @@ Scene load_scene(const SceneSettings& settings, const std::filesystem::path& fol
     return scene;
 }
 
+std::optional<dmat4> load_node(const SceneFile& file, const std::filesystem::path& folder, double seconds,
+                               const std::string& name, std::vector<std::string>& known) {
+    MemoryBudget unlimited(std::numeric_limits<std::uint64_t>::max());
+    Progress silent;
+    const Opened opened = open(file, folder, seconds, unlimited, silent);
+    for (const PlacedNode& placed : opened.nodes) {
+        known.push_back(opened.gltf.model.nodes[static_cast<std::size_t>(placed.node)].name);
+        if (known.back() == name)
+            return placed.world_from_node;
+    }
+    return std::nullopt;
+}
+
 std::vector<SceneCamera> load_cameras(const SceneFile& file, const std::filesystem::path& folder, double seconds) {
     MemoryBudget unlimited(std::numeric_limits<std::uint64_t>::max());
     Progress silent;

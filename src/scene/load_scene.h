@@ -2,6 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "core/progress.h"
 #include "scene/scene.h"
@@ -26,6 +29,11 @@ namespace brisance {
 Scene load_scene(const SceneSettings& settings, const std::filesystem::path& folder, double seconds,
                  const dvec3& origin, std::uint64_t memory_limit, Progress& progress,
                  const Scene* same_pictures = nullptr);
+
+// Where the first node of that name is, in the world, at a moment; nothing where the file has none. Adds the names of
+// all its nodes to `known`.
+std::optional<dmat4> load_node(const SceneFile& file, const std::filesystem::path& folder, double seconds,
+                               const std::string& name, std::vector<std::string>& known);
 
 // The cameras of one glTF file at a moment. For choosing one before anything else is read.
 std::vector<SceneCamera> load_cameras(const SceneFile& file, const std::filesystem::path& folder, double seconds);

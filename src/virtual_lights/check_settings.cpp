@@ -23,6 +23,7 @@ void require_in(const SettingRange<T>& range, T value, const char* name) {
 void check(const VirtualLightSettings& s) {
     using R = VirtualLightRanges;
     require_in(R::count, s.count, "count");
+    require_in(R::window, s.window, "window");
     require_in(R::point_bound, s.point_bound, "point_bound");
     require_in(R::sphere_neighbours, s.sphere_neighbours, "sphere_neighbours");
     require_in(R::sphere_samples, s.sphere_samples, "sphere_samples");

@@ -45,10 +45,12 @@ double LightSet::termination_probability(const CoveredHit& hit, double pdf) cons
     if (hit.shares.count == 0)
         return 0.0;
     if (!settings_.path_extension)
-        return 1.0;  // kinds that no ray hits have been sampled for all that such surfaces reflect
-    double area = 0.0;
-    for (int i = 0; i < hit.shares.count; ++i)
-        area += hit.shares.weight[i] * lights[hit.shares.light[i]].area;
+        return 1.0;     // kinds that no ray hits have been sampled for all that such surfaces reflect
+    double area = 0.0;  // as of lights that do not fade: of two sets that overlap, each is as dense as one alone
+    for (int i = 0; i < hit.shares.count; ++i) {
+        const VirtualLight& light = lights[hit.shares.light[i]];
+        area += hit.shares.weight[i] * light.area / light.share;
+    }
     const RaySegment& segment = hit.segment;
     const double cosine = std::abs(glm::dot(segment.point->geometric_normal, segment.ray.direction));
     const double n = segment.end * segment.end / (pdf * cosine * area);

@@ -25,6 +25,7 @@ enum class BoundedTerm {
 // Placement, flux, kind and sampling are names; choices.h lists them and says which go together.
 struct VirtualLightSettings {
     int count = 12000;  // virtual lights; 0: none, all surface light is found by paths
+    int window = 16;    // of a sequence: frames from one set of positions to the next; 0: each frame has its own
     std::string placement = "blue_noise";
     std::string flux = "gathered";
     std::string kind = "patch";
@@ -67,6 +68,7 @@ struct SettingRange {
 struct VirtualLightRanges {
     static constexpr double kUnlimited = std::numeric_limits<double>::infinity();
     static constexpr SettingRange<int> count{0, 100000000};
+    static constexpr SettingRange<int> window{0, 100000};
     static constexpr SettingRange<double> point_bound{0.0, kUnlimited, true};
     static constexpr SettingRange<int> sphere_neighbours{1, 100000};
     static constexpr SettingRange<int> sphere_samples{1, 65536};

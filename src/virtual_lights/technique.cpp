@@ -355,4 +355,8 @@ Technique technique_of(const VirtualLightSettings& settings) {
     return {&kPlacements[c.placement], kBuild[c.flux], c.with_flux().fit, c.with_flux().gather[c.gatherer]};
 }
 
+bool has_positions(const VirtualLightSettings& settings) {
+    return !kFromDeposits[chosen(settings).flux];
+}
+
 }  // namespace brisance

@@ -11,7 +11,7 @@ namespace brisance {
 struct Technique {
     const Placement* placement;
     // Places the lights and gives them flux.
-    void (*build)(LightSet& set, const Placement& placement, const PixelCamera& camera);
+    void (*build)(LightSet& set, const Placement& placement, const LightSources& sources);
     // Makes them lights of a kind.
     void (*fit)(LightSet& set);
     // Of a set that outlives it.

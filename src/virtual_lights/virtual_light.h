@@ -8,12 +8,14 @@
 namespace brisance {
 
 struct VirtualLight {
-    dvec3 position{0.0};     // local [m]
-    ShadingFrame frame;      // around the surface's normal, on the side that is lit
-    double radius = 0.0;     // of the sphere within which it covers surfaces [m]
-    double clearance = 0.0;  // of its surface (SurfacePoint::clearance) [m]
-    double area = 0.0;       // covered: surface shared with other lights counts by its weight [m^2]
-    double spread = 0.0;     // largest angle of the surface's normals to its own [rad]
+    dvec3 position{0.0};       // local [m]
+    ShadingFrame frame;        // around the surface's normal, on the side that is lit
+    double radius = 0.0;       // of the sphere within which it covers surfaces [m]
+    double clearance = 0.0;    // of its surface (SurfacePoint::clearance) [m]
+    double share = 1.0;        // by which its weight is multiplied: below 1 while it fades in or out
+    std::uint64_t number = 0;  // of its random numbers
+    double area = 0.0;         // covered: surface shared with other lights counts by its weight [m^2]
+    double spread = 0.0;       // largest angle of the surface's normals to its own [rad]
     int scene_material = 0;
     SurfaceMaterial material;   // at its position
     Rgb irradiance{0.0f};       // mean over its area [W/m^2]

@@ -5,13 +5,14 @@
 
 namespace brisance {
 
-VirtualLights::VirtualLights(const DirectLight& scene, const PixelCamera& camera, const VirtualLightSettings& settings)
+VirtualLights::VirtualLights(const DirectLight& scene, const PixelCamera& camera, const VirtualLightSettings& settings,
+                             std::span<const SharedPositions> positions)
     : scene_(scene), set_(std::make_unique<LightSet>(scene, settings)) {
     const Technique technique = technique_of(settings);
     shines_ = scene.lights_surfaces();
     const bool built = shines_ && settings.count > 0 && settings.photons > 0;
     if (built)
-        technique.build(*set_, *technique.placement, camera);
+        technique.build(*set_, *technique.placement, {camera, positions});
     const Stopwatch watch;
     if (!set_->lights.empty())
         technique.fit(*set_);

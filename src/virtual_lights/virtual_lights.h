@@ -27,7 +27,9 @@ class VirtualLights {
 public:
     // Keeps a reference to the scene. Without surfaces, or where nothing shines, nothing is built and shade() is black.
     // Throws Error Usage for settings out of range and for choices that do not go together (choices.h).
-    VirtualLights(const DirectLight& scene, const PixelCamera& camera, const VirtualLightSettings& settings);
+    // `positions`: of other frames, shared (placed_lights.h); empty, or where the technique has none: placed here.
+    VirtualLights(const DirectLight& scene, const PixelCamera& camera, const VirtualLightSettings& settings,
+                  std::span<const SharedPositions> positions = {});
 
     // One sample of the radiance [W/(m^2 sr)] that a path vertex scatters of what surfaces reflect toward it: the
     // ledger's cell SS for a surface, MS for smoke (without its albedo). Light that emitters or the fire send straight

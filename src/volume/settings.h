@@ -35,6 +35,7 @@ struct VolumeSettings {
     bool half_voxel_shift = false;  // true: the sample of index i lies at i + 1/2 (what Blender means)
     char up = 'y';  // the world's axis that the file's y becomes: 'y' as it is, 'z': (x, y, z) -> (x, -z, y)
     dmat4 world_from_file{1.0};  // affine; applied after `up`
+    std::string node;  // of the shot's glTF files, which carries the volume: its place at a frame is applied last
 };
 
 // Returns `up` and `world_from_file` as one matrix. Throws Error Usage, beginning with `where`, when the matrix is not

@@ -236,6 +236,48 @@ class ProgressLines(FarmCase):
         self.assertRegex(said.splitlines()[-1], r"^3 frames written in \S+ s: \S+a\.0001\.exr to \S+a\.0003\.exr$")
 
 
+class Cache(FarmCase):
+    """What one process decides for all frames, another one takes over."""
+
+    def setUp(self):
+        super().setUp()
+        self.cache = self.folder / "kept" / "results"
+
+    def bits(self, *more, cached=True, says=()):
+        """Files of two frames, which hold no time of their own."""
+        cache = ["--cache", self.cache, "--explain"] if cached else []
+        environment = {**os.environ, "SOURCE_DATE_EPOCH": "1000000000"}
+        done = self.expect(0, "render", *self.asked, *EXR_ONLY, "-f", "1-2", *cache, *more, env=environment, says=says)
+        self.said = done.stderr
+        return [self.exr(frame).read_bytes() for frame in (1, 2)]
+
+    def test_the_second_process_finds_what_the_first_kept(self):
+        without = self.bits(cached=False)
+        self.assertEqual(self.bits(says="cache: 0 results found, 1 kept"), without)
+        self.assertEqual(self.bits(says="cache: 1 result found, 0 kept"), without)
+        self.assertIn("lattices of all frames", self.said, "what was said is said again")
+
+    def test_other_settings_and_contents_are_other_results(self):
+        self.bits()
+        self.bits("--set", "smoke.albedo=0.31", says="cache: 0 results found, 1 kept")
+        with (self.folder / "burst_0005.vdb").open("ab") as file:
+            file.write(b"more")
+        self.bits(says="cache: 0 results found, 1 kept")
+
+    def test_a_damaged_result_is_made_anew(self):
+        before = self.bits()
+        for result in self.cache.glob("*.result"):
+            result.write_bytes(result.read_bytes()[:-3])
+        self.assertEqual(self.bits(says=["is damaged", "cache: 0 results found, 1 kept"]), before)
+        self.bits(says="cache: 1 result found, 0 kept")
+
+    def test_no_folder_is_one_line(self):
+        file = self.write("file", "x")
+        done = self.render(*EXR_ONLY, "--cache", file, code=73, says="it is no folder")
+        self.assertEqual(done.stderr.count("error"), 1)
+        self.render("--cache-limit", 5, code=2, says="--cache")
+
+
 class Verify(FarmCase):
     def test_missing_and_damaged_frames(self):
         self.expect(1, "verify", *self.asked, "-f", "1-3", says="0 of 3 frames finished")

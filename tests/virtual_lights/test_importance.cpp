@@ -94,7 +94,7 @@ double spread_of(const Room& room, const std::function<PhotonArrivals(const Plac
     const VirtualLightSettings s = placed_by(placement);
     const PixelCamera camera = room.camera();
     PlacementReport report;
-    const PlacementInput input{room.direct, camera, s, report};
+    const PlacementInput input{room.direct, std::span(&camera, 1), s, report};
     const CameraReceivers receivers(input);
     double sum = 0.0, squares = 0.0;
     const std::vector<Deposit> lights = place(input).arrivals;
@@ -140,7 +140,7 @@ TEST(Bidirectional, LiesWhereLightIsAndIsSeen) {
     VirtualLightSettings s = few_lights();
     const PixelCamera camera = room.camera();
     PlacementReport report;
-    const std::vector<Deposit> deposits = bidirectional_deposits({room.direct, camera, s, report});
+    const std::vector<Deposit> deposits = bidirectional_deposits({room.direct, std::span(&camera, 1), s, report});
     EXPECT_NEAR(double(deposits.size()), double(s.count), 2.0);
     const auto unseen =
         std::count_if(deposits.begin(), deposits.end(), [](const Deposit& d) { return d.position.x > 2.0f; });

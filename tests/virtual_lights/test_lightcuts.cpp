@@ -40,7 +40,8 @@ struct Points {
     std::unique_ptr<LightSet> lights_of(const VirtualLightSettings& s) const {
         auto out = std::make_unique<LightSet>(room.direct, s);
         const Technique technique = technique_of(s);
-        technique.build(*out, *technique.placement, room.camera());
+        const PixelCamera camera = room.camera();
+        technique.build(*out, *technique.placement, {camera, {}});
         technique.fit(*out);
         return out;
     }

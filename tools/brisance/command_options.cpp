@@ -60,6 +60,18 @@ void add_task_options(CLI::App& command, RenderOptions& options) {
     count->needs(index);
 }
 
+void add_cache_options(CLI::App& command, CacheOptions& options) {
+    CLI::Option* const folder =
+        command
+            .add_option("--cache", options.folder,
+                        "Keeps results in this folder for other processes: what is decided for all frames, and "
+                        "positions of virtual lights. Several may use it at once. Never changes the picture")
+            ->type_name("FOLDER");
+    command.add_option("--cache-limit", options.most_mebibytes, "Of all results in it [MiB]; default 1024")
+        ->check(CLI::Range(1, 1 << 30))
+        ->needs(folder);
+}
+
 }  // namespace
 
 CLI::Validator one_of(const std::vector<std::string>& words) {
@@ -75,6 +87,7 @@ CLI::Validator one_of(const std::vector<std::string>& words) {
 
 void add_render_options(CLI::App& command, RenderOptions& options) {
     add_shot_options(command, options);
+    add_cache_options(command, options.cache);
     add_folder_and_failure_options(command, options);
     add_task_options(command, options);
     command.add_flag("--skip-existing", options.skip_existing,
@@ -118,6 +131,7 @@ void add_verify_options(CLI::App& command, VerifyOptions& options) {
 
 void add_submit_options(CLI::App& command, SubmitOptions& options) {
     add_shot_options(command, options.render);
+    add_cache_options(command, options.render.cache);
     command.add_flag("--make-folders", options.render.make_folders,
                      "Makes the folders of the outputs where they are missing");
     command.add_option("--engine", options.engine, fmt::format("{}", fmt::join(farm_engines(), ", ")))

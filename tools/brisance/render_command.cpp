@@ -20,6 +20,7 @@
 #include "sequence/finished_frame.h"
 #include "sequence/frame_job.h"
 #include "sequence/plan_command.h"
+#include "sequence/result_cache.h"
 #include "sequence/shared_choice.h"
 #include "shot/write_shot.h"
 
@@ -206,18 +207,18 @@ void say_what_was_written(const std::vector<std::string>& images, std::size_t sk
                      {{"written", images.size()}, {"skipped", skipped}, {"failed", failed}, {"images", images}});
 }
 
-ExitCode render_all(Shot& shot, Todo& todo, const RenderOptions& options, FrameStamps& stamps, TextProgress& progress,
-                    Failures& failures) {
+ExitCode render_all(Shot& shot, Todo& todo, const RenderOptions& options, FrameStamps& stamps, ResultCache* cache,
+                    TextProgress& progress, Failures& failures) {
     const std::vector<FrameFile>& frames = todo.job.frames;
     progress.begin_sequence(frames.size());
     SharedChoice choice;
     if (!frames.empty()) {
-        choice = choose_for_all(shot, progress);
-        choice.exposure_stops = exposure_for_all(shot, progress);
+        choice = choose_all(shot, cache, progress);
     }
     PngExposure exposure(shot, choice);
     std::vector<std::string> images;
     KeptInputs kept;
+    kept.results = cache;
     for (std::size_t i = 0; i < frames.size(); ++i) {
         const FrameFile& frame = frames[i];
         progress.begin_frame(frame.frame, frame.file.string(), i, frames.size());
@@ -246,6 +247,8 @@ ExitCode render_all(Shot& shot, Todo& todo, const RenderOptions& options, FrameS
             images.push_back(todo.outputs[i].exr.string());
     }
     progress.finish();
+    if (cache && options.explain)
+        progress.say(cache->summary());
     if (failures.count > 0 && options.keep_going)
         progress.say(fmt::format("{} frame{} failed", failures.count, failures.count == 1 ? "" : "s"));
     say_what_was_written(images, todo.skipped, failures.count, progress);
@@ -268,12 +271,15 @@ int run_render(const RenderOptions& options) {
         return list_inputs(loaded, options, progress);
     Failures failures;
     FrameStamps stamps(shot, BRISANCE_VERSION, deciding_files(shot));
+    std::optional<ResultCache> cache;
+    if (!options.cache.folder.empty())
+        cache.emplace(options.cache, stamps, progress);
     Todo todo = what_to_do(shot, options, stamps, progress, failures);
     if (loaded.look && shot.output.statistics && !todo.job.frames.empty()) {
         todo.look = loaded.look;
         todo.look_file = plan_look(shot, options.output, todo.job.several, options.input);
     }
-    return static_cast<int>(render_all(shot, todo, options, stamps, progress, failures));
+    return static_cast<int>(render_all(shot, todo, options, stamps, cache ? &*cache : nullptr, progress, failures));
 }
 
 }  // namespace brisance

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "progress.h"
+#include "sequence/result_cache.h"
 
 namespace brisance {
 
@@ -21,10 +22,11 @@ struct RenderOptions {
     std::vector<std::string> overrides;
     std::string checkpoint;          // file that keeps the state of a long render, to resume it; empty: none
     std::vector<std::string> debug;  // pictures of how a method works: kDebugVirtualLights
-    bool certify = false;            // also where the shot does not enable it
-    int threads = 0;                 // 0: all processors
-    int task_index = 0;              // from 0
-    int task_count = 0;              // of the farm; 0: this process renders all frames
+    CacheOptions cache;
+    bool certify = false;  // also where the shot does not enable it
+    int threads = 0;       // 0: all processors
+    int task_index = 0;    // from 0
+    int task_count = 0;    // of the farm; 0: this process renders all frames
     bool explain = false;
     bool print_config = false;
     bool list_inputs = false;

@@ -176,4 +176,12 @@ FrameInput load_frame(const Shot& shot, const std::filesystem::path& volume, int
     return input;
 }
 
+CameraSettings camera_at(const Shot& shot, double frame, const FrameInput& like) {
+    if (shot.camera_given || !like.surroundings || !like.surroundings->scene().animated)
+        return like.camera;
+    Progress silent;
+    const std::optional<SceneCamera> of_file = camera_of_files(shot, frame / shot.scene.frames_per_second);
+    return of_file ? with_file_camera(shot.camera, *of_file, silent) : like.camera;
+}
+
 }  // namespace brisance

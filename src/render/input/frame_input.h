@@ -28,4 +28,7 @@ struct FrameInput {
 FrameInput load_frame(const Shot& shot, const std::filesystem::path& volume, int frame, Statistics& statistics,
                       Progress& progress, KeptInputs* kept = nullptr);
 
+// The camera at another time of the shot [frames]: that of `like`, unless an animation of the files moves it.
+CameraSettings camera_at(const Shot& shot, double frame, const FrameInput& like);
+
 }  // namespace brisance

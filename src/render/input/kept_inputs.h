@@ -2,6 +2,7 @@
 // the volumes of the next frame are read while this one is rendered. Neither changes a bit of any frame.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include "medium/medium.h"
 #include "scene/scene.h"
 #include "shot/shot.h"
+#include "virtual_lights/placed_lights.h"
 #include "volume/frame_path.h"
 #include "volume/read_ahead.h"
 
@@ -31,6 +33,15 @@ struct KeptSet {
     }
 };
 
+// Results of other processes, each by its name and by the frame whose input files it is made of. What is found is what
+// was kept under the same name, of files with the same contents.
+class ResultStore {
+public:
+    virtual ~ResultStore() = default;
+    virtual std::optional<std::string> find(const std::string& name, const FrameFile& of) = 0;
+    virtual void keep(const std::string& name, const FrameFile& of, const std::string& result) = 0;
+};
+
 // Of one shot. The frames are given to render_frame one after the other.
 struct KeptInputs {
     std::optional<FrameFile> next;  // the frame after this one, to be set before each; none: there is none
@@ -38,6 +49,9 @@ struct KeptInputs {
     ReadAhead volumes;
     // What the last frame read of each of its volumes; the next one will need the same.
     std::vector<std::vector<GridName>> grids;
+    // By the number of their window (light_windows.h): those of the last frame.
+    std::map<int, std::shared_ptr<const PlacedLights>> light_windows;
+    ResultStore* results = nullptr;    // null: none
     std::uint64_t bytes_read = 0;      // of those grids
     std::uint64_t bytes_of_files = 0;  // that they came from
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/stopwatch.h"
+#include "render/input/carried_volume.h"
 #include "render/input/kept_inputs.h"
 #include "render/input/read_volume.h"
 #include "volume/fog_box.h"
@@ -36,6 +37,18 @@ std::vector<VolumePart> parts_of(const Shot& shot, const std::filesystem::path& 
             parts.push_back(std::move(part));
     }
     return parts;
+}
+
+// Where the nodes that carry volumes are at the frame, and how they move while the shutter is open.
+void carry(const Shot& shot, int frame, std::vector<VolumePart>& parts) {
+    for (VolumePart& part : parts) {
+        if (part.settings.node.empty())
+            continue;
+        const Carrier carrier(shot, part.settings.node);
+        part.settings.world_from_file = carrier.at(frame) * part.settings.world_from_file;
+        if (part.blurred)
+            part.carried = carried_velocity(carrier, frame, shot.shutter);
+    }
 }
 
 bool is_settled_part(const VolumePart& part) {
@@ -106,9 +119,11 @@ Medium load_medium(const Shot& shot, const std::filesystem::path& volume, int fr
         progress.notice("no volume at this time: an empty frame");
         return {};
     }
+    carry(shot, frame, parts);
     std::vector<MediumPart> media;
     for (VolumePart& part : parts) {
         read_part(part, statistics, progress, kept);
+        add_carried_velocity(part.carried, part.grids);
         media.push_back({part.grids, part.look, part.settings.half_voxel_shift});
     }
     progress.stage("medium");

@@ -20,6 +20,7 @@ struct VolumePart {
     TimeSettings time;
     VelocitySettings velocity;
     bool blurred = false;  // the shutter is open: velocity is read where there is one
+    dmat4 carried{0.0};    // velocity by what carries it (carried_volume.h)
     MediumGrids grids;
 };
 

@@ -129,6 +129,32 @@ std::vector<int> covering_frames(const Shot& shot) {
     return covering_frames(shot.time, frames_of(pattern), pattern);
 }
 
+std::vector<std::filesystem::path> files_to_settle_time(const Shot& shot) {
+    std::vector<std::filesystem::path> files;
+    const auto add = [&](const Settling& s) {
+        const std::vector<int> on_disk = has_frame_token(s.pattern) ? frames_on_disk(s.pattern) : std::vector<int>{};
+        const bool settles = !(s.time.identity() || is_settled(s.time, s.velocity));
+        const bool blurs = shot.shutter.length > 0.0 && s.velocity.unit == VelocityUnit::Automatic;
+        if (on_disk.size() < 2 || !(settles || blurs))
+            return;
+        if (settles || deciding_field(s.pattern, on_disk, s.volume, s.look).has_velocity)
+            for (const int frame : frames_looked_at(on_disk))
+                files.push_back(resolve_frame(s.pattern, frame));
+    };
+    try {
+        const std::string own = pattern_of_own(shot);
+        add({own, shot.volume, shot.medium, shot.time, shot.velocity});
+        for (const FurtherVolume& volume : shot.volumes) {
+            const std::string pattern = pattern_of_further(shot, volume);
+            const MediumSettings look = changed(shot.medium, volume.changes);
+            add({pattern, volume.volume, look, time_of(shot, volume), velocity_of(shot, volume)});
+        }
+    } catch (const Error&) {
+        return {};  // settling will say so
+    }
+    return files;
+}
+
 bool is_settled(const TimeSettings& time, const VelocitySettings& velocity) {
     return time.retime == Retime::Nearest || time.retime == Retime::Linear ||
            (time.retime == Retime::Advect && velocity.unit != VelocityUnit::Automatic);

@@ -37,6 +37,9 @@ std::vector<int> covering_frames(const Shot& shot);
 // they are, and nothing is read. Throws Error as choose_retiming.
 Shot settle_time(const Shot& shot, Progress& progress);
 
+// The files whose grids it reads: none of sequences that are settled, or that cannot be read.
+std::vector<std::filesystem::path> files_to_settle_time(const Shot& shot);
+
 // Whether `time` and `velocity` leave nothing to settle.
 bool is_settled(const TimeSettings& time, const VelocitySettings& velocity);
 

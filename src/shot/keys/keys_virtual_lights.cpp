@@ -146,6 +146,11 @@ void add_virtual_light_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "virtual_lights.count", "about how many; 0: none, all light from surfaces is found by paths",
         whole_in(Ranges::count), [](Shot & s) -> auto& { return s.virtual_lights.count; }));
+    keys.push_back(make_key(
+        "virtual_lights.window",
+        "in sequences: frames from one set of positions to the next, between which lights fade; 0: each frame has its "
+        "own [frames]",
+        whole_in(Ranges::window), [](Shot & s) -> auto& { return s.virtual_lights.window; }));
     add_choice_keys(keys);
     add_kind_keys(keys);
     add_placement_keys(keys);

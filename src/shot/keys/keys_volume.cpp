@@ -58,6 +58,8 @@ Codec<FurtherVolume> further_volume() {
          member<T>(
              "world_from_file", matrix(), [](T & t) -> auto& { return t.volume.world_from_file; }),
          member<T>(
+             "node", text(true), [](T & t) -> auto& { return t.volume.node; }),
+         member<T>(
              "time", if_given(time_object()), [](T & t) -> auto& { return t.time; }),
          member<T>(
              "velocity", if_given(velocity_object()), [](T & t) -> auto& { return t.velocity; }),
@@ -114,6 +116,9 @@ void add_volume_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "volume.world_from_file", "moves the volume, after volume.up; affine, lengths in metres", matrix(),
         [](Shot & s) -> auto& { return s.volume.world_from_file; }));
+    keys.push_back(make_key(
+        "volume.node", "a node of the shot's glTF files that carries the volume, with its animation; empty: none",
+        text(true), [](Shot & s) -> auto& { return s.volume.node; }));
     keys.push_back(make_key(
         "volumes", "further volumes, whose coefficients add; what they do not say of smoke and fire is the shot's",
         list_of("a list of volumes [{\"file\" or \"box\": ...}]", further_volume()),

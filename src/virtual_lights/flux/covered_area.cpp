@@ -64,14 +64,14 @@ double round_of_rays(const Intersector& surfaces, const PartitionOfUnity& partit
 // False: the rays found hardly any covered surface.
 bool measure(const Intersector& surfaces, const PartitionOfUnity& partition, std::uint32_t index, std::uint32_t seed,
              VirtualLight& light) {
-    Rng rng(Stream::LightArea, index, seed);
+    Rng rng(Stream::LightArea, light.number, seed);
     double sum = 0.0;
     int found = 0, rays = 0;
     light.spread = 0.0;
     for (int round = 0; round < kRounds && found < kEnough; ++round, rays += kRays)
         sum += round_of_rays(surfaces, partition, index, rng, light, found);
     const double disc = std::numbers::pi * light.radius * light.radius;
-    light.area = disc * std::max(sum, 1.0) / rays;
+    light.area = disc * std::max(sum, light.share) / rays;
     return found >= kTooFew;
 }
 

@@ -49,10 +49,11 @@ VirtualLight light_of(const Scene& scene, const Deposit& deposit, std::uint64_t 
 
 }  // namespace
 
-void DepositFlux::build(LightSet& set, const Placement& placement, const PixelCamera& camera) {
+void DepositFlux::build(LightSet& set, const Placement& placement, const LightSources& sources) {
     const Stopwatch watch;
     PlacementReport placed;
-    const PhotonArrivals photons = placement.flux_deposits({set.scene(), camera, set.settings(), placed});
+    const PhotonArrivals photons =
+        placement.flux_deposits({set.scene(), std::span(&sources.camera, 1), set.settings(), placed});
     set.report.acceptance = placed.acceptance;
     set.report.photons = photons.report;
     set.lights.resize(photons.arrivals.size());

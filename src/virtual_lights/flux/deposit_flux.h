@@ -24,7 +24,7 @@ public:
     explicit DepositFlux(const LightSet&) {}
 
     // One light for every deposit; the placement's deposits must carry flux. Radius 0, area 1 m^2.
-    static void build(LightSet& set, const Placement& placement, const PixelCamera& camera);
+    static void build(LightSet& set, const Placement& placement, const LightSources& sources);
 
     // Along unit `toward` [W/sr].
     Rgb intensity(const VirtualLight& light, const dvec3& toward) const { return deposit_intensity(light, toward); }

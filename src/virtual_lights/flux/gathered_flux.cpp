@@ -23,16 +23,23 @@ private:
     double before_ = 0.0;
 };
 
-std::vector<VirtualLight> place_lights(const LightSet& set, const Placement& placement,
-                                       const std::vector<Deposit>& deposits) {
-    if (deposits.empty())
-        return {};
-    std::vector<vec3> positions;
-    positions.reserve(deposits.size());
-    for (const Deposit& deposit : deposits)
-        positions.push_back(deposit.position);
-    return lights_of_deposits(set.scene().surroundings()->scene(), deposits, placement.thin(positions, set.settings()),
-                              set.settings().radius_factor);
+// Whether the scene still has the triangle.
+bool is_there(const Scene& scene, const SurfaceHit& hit) {
+    return hit.mesh < scene.meshes.size() && hit.triangle < scene.meshes[hit.mesh].triangles.size();
+}
+
+// Lights with a radius that hold no light yet.
+void add_lights(const SharedPositions& from, LightSet& set) {
+    const Scene& scene = set.scene().surroundings()->scene();
+    const PlacedLights& placed = *from.lights;
+    for (std::size_t i = 0; i < placed.deposits.size(); ++i) {
+        if (!is_there(scene, placed.deposits[i].hit))
+            continue;
+        VirtualLight& light = set.lights.emplace_back(light_at(scene, placed.deposits[i]));
+        light.radius = set.settings().radius_factor * placed.distance[i];
+        light.share = from.share;
+        light.number = from.group << 32 | i;
+    }
 }
 
 // Lights whose area cannot be measured leave their surface to others, or to extended paths.
@@ -72,17 +79,21 @@ void finish_lights(LightSet& set, const LightAccounts& accounts) {
 
 }  // namespace
 
-void GatheredFlux::build(LightSet& set, const Placement& placement, const PixelCamera& camera) {
+void GatheredFlux::build(LightSet& set, const Placement&, const LightSources& sources) {
     VirtualLightReport& report = set.report;
-    Lap lap;
-    PlacementReport placed;
-    const std::vector<Deposit> deposits = placement.deposits({set.scene(), camera, set.settings(), placed});
-    report.acceptance = placed.acceptance;
-    report.candidates = deposits.size();
-    report.candidate_seconds = lap.take();
-    set.lights = place_lights(set, placement, deposits);
-    report.elimination_seconds = lap.take();
+    std::vector<SharedPositions> positions(sources.positions.begin(), sources.positions.end());
+    if (positions.empty())
+        positions.push_back(
+            {std::make_shared<PlacedLights>(place_lights(set.scene(), std::span(&sources.camera, 1), set.settings()))});
+    for (const SharedPositions& shared : positions) {
+        report.candidates += shared.lights->candidates;
+        report.candidate_seconds += shared.lights->candidate_seconds;
+        report.elimination_seconds += shared.lights->elimination_seconds;
+        report.acceptance = shared.lights->acceptance;
+        add_lights(shared, set);
+    }
 
+    Lap lap;
     measure_lights(set);
     for (VirtualLight& light : set.lights)
         if (needs_energy_tables(light.material))

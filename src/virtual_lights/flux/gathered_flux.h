@@ -16,8 +16,9 @@ public:
     // Keeps a reference.
     explicit GatheredFlux(const LightSet& set) : set_(set) {}
 
-    // Places settings.count lights, measures the area that they cover, and divides photons among them.
-    static void build(LightSet& set, const Placement& placement, const PixelCamera& camera);
+    // Takes the positions that are shared, or places settings.count lights, measures the area that they cover, and
+    // divides photons among them.
+    static void build(LightSet& set, const Placement& placement, const LightSources& sources);
 
     // Along unit `toward` [W/sr].
     Rgb intensity(const VirtualLight& light, const dvec3& toward) const;

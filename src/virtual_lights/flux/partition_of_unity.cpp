@@ -40,7 +40,8 @@ PartitionOfUnity::PartitionOfUnity(const Intersector& surfaces, std::span<const 
     : surfaces_(&surfaces) {
     for (std::uint32_t i = 0; i < lights.size(); ++i) {
         const VirtualLight& l = lights[i];
-        spheres_.push_back({vec3(l.position), float(l.radius), vec3(l.frame.normal), l.scene_material, i});
+        spheres_.push_back(
+            {vec3(l.position), float(l.radius), float(l.share), vec3(l.frame.normal), l.scene_material, i});
     }
     if (!spheres_.empty())
         build(lights, spheres_, 0);
@@ -101,7 +102,7 @@ LightShares PartitionOfUnity::shares(const dvec3& position, const dvec3& normal,
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
             const Sphere& s = spheres_[i];
             const vec3 away = p - s.centre;
-            const float weight = 1.0f - glm::dot(away, away) / (s.radius * s.radius);
+            const float weight = s.share * (1.0f - glm::dot(away, away) / (s.radius * s.radius));
             if (weight > 0.0f && s.scene_material == scene_material && glm::dot(n, s.normal) > kSameWay &&
                 !hidden(s, p, n))
                 insert(out, s.light, weight);

@@ -2,7 +2,8 @@
 //
 // Weights fall off from a light to the edge of its sphere and sum up to 1 wherever there is any light. The same weights
 // divide a photon among lights and interpolate between lights what they received. A constant irradiance is therefore
-// reproduced as a constant, at the edges of surfaces too, where kernels of fixed area would darken.
+// reproduced as a constant, at the edges of surfaces too, where kernels of fixed area would darken. The weight of a
+// light that fades is multiplied by its share, so that the others take over continuously.
 #pragma once
 
 #include <array>
@@ -38,6 +39,7 @@ private:
     struct Sphere {
         vec3 centre;
         float radius;
+        float share;
         vec3 normal;
         std::int32_t scene_material;
         std::uint32_t light;

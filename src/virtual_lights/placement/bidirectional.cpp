@@ -82,7 +82,7 @@ std::vector<Deposit> bidirectional_deposits(const PlacementInput& input) {
     const VirtualLightSettings& s = input.settings;
     const std::size_t candidates = kCandidatesPerLight * static_cast<std::size_t>(s.count);
     const std::vector<Deposit> forward = photon_arrivals(input.scene, candidates, kBidirectionalPaths, s.seed).arrivals;
-    const std::vector<Deposit> backward = light_candidates(input.scene, input.camera, candidates, s.seed);
+    const std::vector<Deposit> backward = light_candidates(input.scene, input.cameras, candidates, s.seed);
     const std::vector<double> seen = CameraReceivers(input).contributions(forward, kForward);
     std::vector<double> radiance(backward.size());
     parallel_for(

@@ -32,23 +32,35 @@ bool keep_candidate(const DirectLight& scene, const ParticleFlight& flight, Foun
     return found.count < kPerPath && needs_energy_tables(point->material);
 }
 
+// The camera's ray of path number `index` of `paths`, which follow the picture row by row.
+Ray camera_ray(const PixelCamera& camera, std::size_t index, std::size_t paths, Rng& rng) {
+    const double pixels = double(camera.width) * camera.height;
+    const double position = std::min((double(index) + rng.next_double()) / double(paths) * pixels, pixels - 1.0);
+    const auto pixel = static_cast<std::uint64_t>(position);
+    const std::uint64_t column = pixel % camera.width, row = pixel / camera.width;
+    const double x = double(column) + rng.next_double(), y = double(row) + rng.next_double();
+    return camera.ray(x, y);
+}
+
 }  // namespace
 
-std::vector<Deposit> light_candidates(const DirectLight& scene, const PixelCamera& camera, std::size_t paths,
+bool without_pixels(const PixelCamera& camera) {
+    return !(double(camera.width) * camera.height > 0.0);
+}
+
+std::vector<Deposit> light_candidates(const DirectLight& scene, std::span<const PixelCamera> cameras, std::size_t paths,
                                       std::uint32_t seed) {
-    const double pixels = double(camera.width) * camera.height;
-    if (!(pixels > 0.0) || !scene.surroundings())
+    const std::size_t count = cameras.size();
+    if (count == 0 || std::any_of(cameras.begin(), cameras.end(), without_pixels) || !scene.surroundings())
         return {};
     std::vector<Found> found(paths);
     parallel_blocks(paths, 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             Rng rng(Stream::LightCandidate, i, seed);
-            const double position = std::min((double(i) + rng.next_double()) / double(paths) * pixels, pixels - 1.0);
-            const auto pixel = static_cast<std::uint64_t>(position);
-            const std::uint64_t column = pixel % camera.width, row = pixel / camera.width;
-            const double x = double(column) + rng.next_double(), y = double(row) + rng.next_double();
+            const std::size_t of_camera = (paths - i % count + count - 1) / count;
+            const Ray ray = camera_ray(cameras[i % count], i / count, of_camera, rng);
             const auto visit = [&](const ParticleFlight& flight) { return keep_candidate(scene, flight, found[i]); };
-            walk_particle(scene, {camera.ray(x, y), Rgb(1.0f)}, i, kCameraWalk, rng, visit);
+            walk_particle(scene, {ray, Rgb(1.0f)}, i, kCameraWalk, rng, visit);
         }
     });
     std::vector<Deposit> out;

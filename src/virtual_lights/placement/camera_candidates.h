@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "transport/direct_light.h"
@@ -15,10 +16,14 @@ struct PixelCamera {
     std::function<Ray(double x, double y)> ray;  // local; x, y in pixels from the upper left corner
 };
 
+// No path can be sent through its picture.
+bool without_pixels(const PixelCamera& camera);
+
 // The first surface that camera paths meet after they were scattered, by a surface that is no mirror or by smoke; and,
 // where that is glossy, the next. Their density follows how much of the light from there the camera may see. Paths are
-// numbered and draw their random numbers by that number; `paths` of them are spread over the picture.
-std::vector<Deposit> light_candidates(const DirectLight& scene, const PixelCamera& camera, std::size_t paths,
+// numbered and draw their random numbers by that number; `paths` of them are divided among the cameras, one by one, and
+// those of each are spread over its picture.
+std::vector<Deposit> light_candidates(const DirectLight& scene, std::span<const PixelCamera> cameras, std::size_t paths,
                                       std::uint32_t seed);
 
 }  // namespace brisance

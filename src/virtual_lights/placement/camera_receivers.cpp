@@ -38,11 +38,12 @@ Rgb from_deposit(const DirectLight& scene, const VirtualLightSettings& settings,
 }
 
 CameraReceivers::CameraReceivers(const PlacementInput& input) : scene_(input.scene), settings_(input.settings) {
-    const PixelCamera& camera = input.camera;
-    if (camera.width <= 0 || camera.height <= 0)
+    const std::span<const PixelCamera> cameras = input.cameras;
+    if (cameras.empty() || std::ranges::any_of(cameras, without_pixels))
         return;
     for (std::size_t i = 0; i < kReceiverPaths; ++i) {
         Rng rng(kReceivers, i, settings_.seed);
+        const PixelCamera& camera = cameras[i % cameras.size()];
         const double x = rng.next_double() * camera.width, y = rng.next_double() * camera.height;
         walk_particle(scene_, {camera.ray(x, y), Rgb(1.0f)}, i, kReceiverWalk, rng, [&](const ParticleFlight& flight) {
             if (flight.collision) {

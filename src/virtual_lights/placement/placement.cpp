@@ -34,9 +34,11 @@ std::size_t paths_for(const DirectLight& scene, int count, std::uint32_t seed) {
 
 std::vector<Deposit> camera_deposits(const PlacementInput& input) {
     const VirtualLightSettings& s = input.settings;
-    const double paths =
-        std::max(s.candidates_per_pixel * input.camera.width * input.camera.height, kLeastDeposits * s.count);
-    return light_candidates(input.scene, input.camera, static_cast<std::size_t>(paths), s.seed);
+    if (input.cameras.empty())
+        return {};
+    const PixelCamera& camera = input.cameras.front();
+    const double paths = std::max(s.candidates_per_pixel * camera.width * camera.height, kLeastDeposits * s.count);
+    return light_candidates(input.scene, input.cameras, static_cast<std::size_t>(paths), s.seed);
 }
 
 std::vector<Deposit> light_path_deposits(const PlacementInput& input) {
@@ -55,7 +57,7 @@ PhotonArrivals light_path_flux(const PlacementInput& input) {
 }
 
 double power_per_area(const VirtualLight& light) {
-    return light.power / light.area;
+    return light.share * light.power / light.area;
 }
 
 double power_alone(const VirtualLight& light) {
@@ -63,7 +65,7 @@ double power_alone(const VirtualLight& light) {
 }
 
 double equal_importance(const VirtualLight& light) {
-    return light.power > 0.0 ? 1.0 : 0.0;
+    return light.power > 0.0 ? light.share : 0.0;
 }
 
 }  // namespace brisance

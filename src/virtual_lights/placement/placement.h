@@ -2,6 +2,7 @@
 #pragma once
 
 #include "virtual_lights/flux/photon_splitting.h"
+#include "virtual_lights/placed_lights.h"
 #include "virtual_lights/placement/camera_candidates.h"
 #include "virtual_lights/placement/thinning.h"
 
@@ -14,9 +15,15 @@ struct PlacementReport {
 
 struct PlacementInput {
     const DirectLight& scene;
-    const PixelCamera& camera;
+    std::span<const PixelCamera> cameras;  // of pictures of equal size
     const VirtualLightSettings& settings;
     PlacementReport& report;
+};
+
+// Where the lights of a frame come from.
+struct LightSources {
+    const PixelCamera& camera;                   // of the frame
+    std::span<const SharedPositions> positions;  // instead of those that it would place; empty: it places its own
 };
 
 // What a light contributes to the picture, up to a factor: the weight by which lights are sampled by power.

@@ -56,18 +56,6 @@ Survivors thin_at_random(const std::vector<vec3>& positions, const VirtualLightS
     return out;
 }
 
-std::vector<VirtualLight> lights_of_deposits(const Scene& scene, const std::vector<Deposit>& deposits,
-                                             const Survivors& chosen, double radius_factor) {
-    std::vector<VirtualLight> lights;
-    for (std::size_t i = 0; i < chosen.index.size(); ++i) {
-        if (!(chosen.distance[i] > 0.0f))
-            continue;
-        lights.push_back(light_at(scene, deposits[chosen.index[i]]));
-        lights.back().radius = radius_factor * chosen.distance[i];
-    }
-    return lights;
-}
-
 VirtualLight light_at(const Scene& scene, const Deposit& deposit) {
     const SurfacePoint point = surface_point(scene, deposit.hit, dvec3(deposit.direction));
     VirtualLight light;

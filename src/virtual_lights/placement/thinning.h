@@ -13,10 +13,6 @@ Survivors thin_to_blue_noise(const std::vector<vec3>& positions, const VirtualLi
 // ... and by chance alone:
 Survivors thin_at_random(const std::vector<vec3>& positions, const VirtualLightSettings& settings);
 
-// Lights with a radius that hold no light yet. Deposits without another one elsewhere become no light.
-std::vector<VirtualLight> lights_of_deposits(const Scene& scene, const std::vector<Deposit>& deposits,
-                                             const Survivors& chosen, double radius_factor);
-
 // A light that has a position but no radius.
 VirtualLight light_at(const Scene& scene, const Deposit& deposit);
 

@@ -7,11 +7,16 @@
 #include <filesystem>
 #include <functional>
 
+#include "core/content_hash.h"
 #include "core/error.h"
+#include "farm/input_files.h"
 #include "film/write_image.h"
 #include "load_shot.h"
 #include "render/choice/sequence_levels.h"
+#include "render/input/kept_inputs.h"
 #include "render/input/volume_in_time.h"
+#include "sequence/kept_choice.h"
+#include "shot/write_shot.h"
 
 namespace brisance {
 namespace {
@@ -102,6 +107,7 @@ Shot trial_of(const Shot& given) {
     shot.tracing.samples = kTrialSamples;
     shot.tracing.seconds = shot.tracing.error = shot.seconds = 0.0;
     shot.certify.enabled = false;
+    shot.virtual_lights.window = 0;  // one frame alone
     if (shot.method == RenderMethod::Automatic)
         shot.method = RenderMethod::LightingGrid;
     shot.output.virtual_lights = shot.output.bounce_layers = false;
@@ -110,6 +116,24 @@ Shot trial_of(const Shot& given) {
 
 bool wants_png_exposure(const Shot& shot) {
     return !shot.exposure_given && (shot.output.png || shot.output.virtual_lights);
+}
+
+constexpr const char* kChoiceName = "choices for all frames";
+
+// The settings, the frames on disk with the sizes of their files, and the contents of those that are read: of the
+// deciding files, of the files of the frame that the largest of them shows, and of the set.
+std::string what_decides(const Shot& shot) {
+    std::string text = settings_hash(shot) + "\n";
+    const std::vector<FrameFile> all = largest_first(shot);
+    for (const FrameFile& frame : all)
+        text += fmt::format("{} {}\n", frame.frame, fs::file_size(frame.file));
+    std::vector<fs::path> files = deciding_files(shot);
+    if (!all.empty())
+        for (const fs::path& file : input_files(shot, all.front()))
+            files.push_back(file);
+    for (const fs::path& file : files)
+        text += fmt::format("{} {}\n", file.filename().string(), content_hash_of_file(file));
+    return text;
 }
 
 }  // namespace
@@ -166,12 +190,40 @@ SharedChoice choose_for_all(Shot& shot, Progress& progress) {
     return out;
 }
 
+SharedChoice choose_all(Shot& shot, ResultCache* cache, Progress& to) {
+    if (!cache || shot.method == RenderMethod::Automatic || shot.seconds > 0.0) {
+        SharedChoice choice = choose_for_all(shot, to);
+        choice.exposure_stops = exposure_for_all(shot, to);
+        return choice;
+    }
+    const std::string made_of = what_decides(shot);
+    if (const std::optional<std::string> text = cache->find(kChoiceName, made_of))
+        if (std::optional<KeptChoice> known = kept_choice(*text, shot)) {
+            say_again(known->said, to);
+            shot = std::move(known->shot);
+            SharedChoice choice;
+            choice.exposure_stops = known->exposure_stops;
+            return choice;
+        }
+    SaidLines progress(to);
+    SharedChoice choice = choose_for_all(shot, progress);
+    choice.exposure_stops = exposure_for_all(shot, progress);
+    const auto is_warning = [](const auto& line) { return !line.first.empty(); };
+    if (std::ranges::none_of(progress.lines, is_warning))
+        cache->keep(kChoiceName, made_of, to_text({shot, choice.exposure_stops, progress.lines}));
+    return choice;
+}
+
 std::vector<fs::path> deciding_files(const Shot& shot) {
-    if (shot.method != RenderMethod::Automatic && !(shot.seconds > 0.0) && !wants_png_exposure(shot) &&
-        !leaves_levels_open(shot))
-        return {};
-    const std::vector<FrameFile> all = largest_first(shot);
-    return all.empty() ? std::vector<fs::path>{} : std::vector<fs::path>{all.front().file.lexically_normal()};
+    std::vector<fs::path> files;
+    if (shot.method == RenderMethod::Automatic || shot.seconds > 0.0 || wants_png_exposure(shot) ||
+        leaves_levels_open(shot))
+        if (const std::vector<FrameFile> all = largest_first(shot); !all.empty())
+            files.push_back(all.front().file.lexically_normal());
+    for (const fs::path& file : files_to_settle_time(shot))
+        if (const fs::path plain = file.lexically_normal(); std::ranges::find(files, plain) == files.end())
+            files.push_back(plain);
+    return files;
 }
 
 }  // namespace brisance

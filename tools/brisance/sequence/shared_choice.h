@@ -10,6 +10,7 @@
 #include "render/choice/choose_method.h"
 #include "render/choice/time_budget.h"
 #include "render/render_frame.h"
+#include "sequence/result_cache.h"
 #include "shot/shot.h"
 
 namespace brisance {
@@ -26,6 +27,10 @@ struct SharedChoice {
 
 // Replaces `shot` by one with the chosen settings.
 SharedChoice choose_for_all(Shot& shot, Progress& progress);
+
+// The same with the exposure of PNGs. `cache`: takes the choice over from another process, or leaves it there; null:
+// none. Where a clock or a forecast decides, or something had to be warned of, nothing is kept.
+SharedChoice choose_all(Shot& shot, ResultCache* cache, Progress& progress);
 
 // Of sequences with output.exposure_stops "auto" and more than one frame on disk: the exposure of a small picture of
 // the largest file that is not black. Nothing else, and nothing where no frame can be read.

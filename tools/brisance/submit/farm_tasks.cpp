@@ -94,6 +94,9 @@ Words FarmTasks::task(const std::string& index) const {
 Words FarmTasks::rest() const {
     Words words = command("render");
     words.insert(words.end(), {"--skip-existing", "--keep-going"});
+    if (!render.cache.folder.empty())
+        words.insert(words.end(),
+                     {"--cache", render.cache.folder, "--cache-limit", fmt::format("{}", render.cache.most_mebibytes)});
     if (render.make_folders)
         words.emplace_back("--make-folders");
     return words;
