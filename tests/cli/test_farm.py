@@ -298,6 +298,15 @@ class Verify(FarmCase):
         self.expect(0, "verify", *asked)
         self.expect(1, "verify", *self.asked, "-f", "1")
 
+    def test_frames_that_stand_out(self):
+        self.render()
+        steady = self.expect(0, "verify", *self.asked, says="change against both neighbours: median")
+        self.assertEqual(steady.stdout, "")
+        done = self.expect(1, "verify", *self.asked, "--fail-above", 0)
+        self.assertEqual([line.split(":")[0] for line in done.stdout.splitlines()], ["frame 2", "frame 3", "frame 4"])
+        self.expect(2, "verify", *self.asked, "--fail-above", -1)
+        self.assertNotIn("neighbours", self.expect(0, "verify", *self.asked, "-f", "1-2").stderr)
+
     def test_it_writes_nothing(self):
         self.expect(1, "verify", self.pattern, *SMALL, "-o", "absent/a.####.exr")
         self.assertFalse((self.folder / "absent").exists())
