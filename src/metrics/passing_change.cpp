@@ -1,7 +1,6 @@
 #include "metrics/passing_change.h"
 
 #include <cmath>
-#include <limits>
 
 #include "core/error.h"
 
@@ -31,23 +30,23 @@ PassingChange passing_change(const Picture& frame, const Neighbour& before, cons
     double change = 0.0, norm = 0.0;
     std::size_t count = 0;
     for (std::size_t i = 0; i < frame.pixels.size(); ++i) {
-        Rgb then, next;
-        if (!sample_before(before.picture, {}, before.motion.before[i], then) ||
-            !sample_before(after.picture, {}, after.motion.before[i], next))
-            continue;
+        Rgb then = before.picture.pixels[i], next = after.picture.pixels[i], moved;
+        const bool seen_before = sample_before(before.picture, {}, before.motion.before[i], moved);
+        if (seen_before)
+            then = moved;
+        const bool seen_after = sample_before(after.picture, {}, after.motion.before[i], moved);
+        if (seen_after)
+            next = moved;
         const Rgb difference = frame.pixels[i] - 0.5f * (then + next);
         if (!is_finite(difference))
             continue;
         change += square(difference);
-        norm += square(frame.pixels[i]);
-        ++count;
+        norm += (square(then) + square(frame.pixels[i]) + square(next)) / 3.0;
+        count += seen_before && seen_after;
     }
     PassingChange out;
     out.seen = frame.pixels.empty() ? 0.0 : double(count) / double(frame.pixels.size());
-    if (norm > 0.0)
-        out.change = std::sqrt(change / norm);
-    else if (change > 0.0)
-        out.change = std::numeric_limits<double>::infinity();
+    out.change = norm > 0.0 ? std::sqrt(change / norm) : 0.0;
     return out;
 }
 

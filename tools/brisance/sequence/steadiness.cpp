@@ -22,9 +22,8 @@ void Steadiness::add(int frame, const std::filesystem::path& exr) {
     const std::optional<Motion> forth = motion_between(after.source, middle.source);
     if (!back || !forth)
         return;
-    const PassingChange change = passing_change(middle.picture, {before.picture, *back}, {after.picture, *forth});
-    if (change.seen > 0.0)
-        frames_.push_back({middle.frame, change.change});
+    frames_.push_back(
+        {middle.frame, passing_change(middle.picture, {before.picture, *back}, {after.picture, *forth}).change});
 }
 
 std::string Steadiness::summary() const {
