@@ -6,13 +6,14 @@ usage: test_farm.py BINARY SOURCE_FOLDER [CLASS]
 import json
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import sys
 import unittest
 
 import test_cli
-from test_cli import BINARY, SMALL, VolumeCase
+from test_cli import BINARY, SMALL, SOURCE, VolumeCase
 
 CAMERA = {"eye": [0, -9, 2], "target": [0, 0, 2]}
 EXR_ONLY = ["--set", "output.png=false", "--set", "output.statistics=false"]
@@ -297,6 +298,16 @@ class Verify(FarmCase):
         self.expect(0, "render", *asked)
         self.expect(0, "verify", *asked)
         self.expect(1, "verify", *self.asked, "-f", "1")
+
+    def test_frames_that_stand_out(self):
+        shutil.copyfile(SOURCE / "volumes" / "explosion.vdb", self.folder / "burst_0003.vdb")
+        self.render()
+        steady = self.expect(0, "verify", *self.asked, says=["change against both neighbours: median", "at frame 3"])
+        self.assertEqual(steady.stdout, "")
+        done = self.expect(1, "verify", *self.asked, "--fail-above", 0)
+        self.assertEqual([line.split(":")[0] for line in done.stdout.splitlines()], ["frame 2", "frame 3", "frame 4"])
+        self.expect(2, "verify", *self.asked, "--fail-above", -1)
+        self.assertNotIn("neighbours", self.expect(0, "verify", *self.asked, "-f", "1-2").stderr)
 
     def test_it_writes_nothing(self):
         self.expect(1, "verify", self.pattern, *SMALL, "-o", "absent/a.####.exr")

@@ -28,8 +28,8 @@ public:
         const int times = add("SCALAR", {0, 100});
         const float z = moving_node == 0 ? 0.0f : d;
         const float half = 50.0f * float(kTurn);
-        const int places = turns ? add("VEC4", {0, 0, 0, 1, 0, 0, std::sin(half), std::cos(half)})
-                                 : add("VEC3", {0, 0, z, way, 0, z});
+        const int places =
+            turns ? add("VEC4", {0, 0, 0, 1, 0, 0, std::sin(half), std::cos(half)}) : add("VEC3", {0, 0, z, way, 0, z});
         file_["asset"]["version"] = "2.0";
         file_["scene"] = 0;
         file_["scenes"] = json::array({{{"nodes", {0, 1}}}});
@@ -42,7 +42,8 @@ public:
         file_["animations"] = json::array(
             {{{"samplers", json::array({{{"input", times}, {"output", places}}})},
               {"channels",
-               json::array({{{"sampler", 0}, {"target", {{"node", moving_node}, {"path", turns ? "rotation" : "translation"}}}}})}}});
+               json::array({{{"sampler", 0},
+                             {"target", {{"node", moving_node}, {"path", turns ? "rotation" : "translation"}}}}})}}});
         file_["buffers"] = json::array({{{"byteLength", bytes_.size()}, {"uri", "square.bin"}}});
         write_bytes(folder_ / "square.bin", bytes_);
         write_bytes(folder_ / "square.gltf", file_.dump());

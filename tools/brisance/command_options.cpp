@@ -127,6 +127,11 @@ void add_plan_options(CLI::App& command, PlanOptions& options) {
 void add_verify_options(CLI::App& command, VerifyOptions& options) {
     add_shot_options(command, options.render);
     add_task_options(command, options.render);
+    command
+        .add_option("--fail-above", options.fail_above,
+                    "Exit code 1 where a frame changes by more than this against both neighbours, e.g. 0.1")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("CHANGE");
 }
 
 void add_submit_options(CLI::App& command, SubmitOptions& options) {

@@ -37,8 +37,8 @@ using namespace brisance;
 
 constexpr const char* kExitCodes = R"(Exit codes:
   0    all frames written
-  1    rendering failed; a measure of compare or flicker is above its --fail-above; verify found frames that are not
-       finished
+  1    rendering failed; a measure of compare, flicker or verify is above its --fail-above; verify found frames that
+       are not finished
   2    command line or shot file: unknown key, wrong type, value out of range
   65   a file exists but cannot be used: not a VDB, truncated, no usable grid; images that do not compare;
        a checkpoint of another render

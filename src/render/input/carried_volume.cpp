@@ -71,9 +71,9 @@ dmat4 Carrier::at(double frame) const {
                 load_node(file, shot_.folder, frame / shot_.scene.frames_per_second, node_, known))
             return *place;
     std::erase(known, "");
-    throw Error(ExitCode::Usage,
-                fmt::format("a volume's node: no glTF file of the shot has a node \"{}\"; {}", node_,
-                            known.empty() ? "there is none with a name" : "there are " + fmt::format("{}", fmt::join(known, ", "))));
+    throw Error(ExitCode::Usage, fmt::format("a volume's node: no glTF file of the shot has a node \"{}\"; {}", node_,
+                                             known.empty() ? "there is none with a name"
+                                                           : "there are " + fmt::format("{}", fmt::join(known, ", "))));
 }
 
 dmat4 carried_velocity(const Carrier& carrier, double frame, const ShutterSettings& shutter) {
