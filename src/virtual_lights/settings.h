@@ -25,7 +25,7 @@ enum class BoundedTerm {
 // Placement, flux, kind and sampling are names; choices.h lists them and says which go together.
 struct VirtualLightSettings {
     int count = 12000;  // virtual lights; 0: none, all surface light is found by paths
-    int window = 16;    // of a sequence: frames from one set of positions to the next; 0: each frame has its own
+    int window = 0;     // of a sequence: frames from one set of positions to the next; 0: each frame has its own
     std::string placement = "blue_noise";
     std::string flux = "gathered";
     std::string kind = "patch";
