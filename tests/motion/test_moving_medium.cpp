@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "lighting_grid/voxel_lights.h"
+#include "motion/mean_fire.h"
 #include "motion/moving_medium.h"
 #include "moving_media.h"
 
@@ -90,6 +92,26 @@ TEST(MovingMedium, LightMovesWithTheSmoke) {
         EXPECT_NEAR(moved.single[i].x, 1.0f + p.x, 1e-4f);
         EXPECT_NEAR(moved.single[i].y, 2.0f - p.z, 1e-4f);
     }
+}
+
+// exp(k t) larger along each axis, and as dense: the whole fire grows as exp(3 k t).
+TEST(MeanFire, IsAsStrongAsInTheMeanOfTheMoments) {
+    constexpr double k = 0.3, length = 1.0;
+    constexpr int count = 9;
+    const Medium medium = with_velocity(gaussian(dvec3(0.0), 1.0f, 0.6f), [](const vec3& p) { return float(k) * p; });
+    const MovingMedium moving(medium, 0.5 * length);
+    std::vector<Medium> media;
+    for (int i = 0; i < count; ++i)
+        media.push_back(moving.at(length * ((i + 0.5) / count - 0.5)));
+    std::vector<const Medium*> moments;
+    for (const Medium& m : media)
+        moments.push_back(&m);
+    const dvec3 before = total(voxel_lights(medium)), after = total(voxel_lights(with_mean_fire(medium, moments)));
+    const double x = 1.5 * k * length;
+    EXPECT_NEAR(after.y / before.y, std::sinh(x) / x, 0.01 * std::sinh(x) / x);
+    EXPECT_GT(std::sinh(x) / x, 1.03);
+    const Medium* const itself = &medium;
+    EXPECT_NEAR(total(voxel_lights(with_mean_fire(medium, {&itself, 1}))).x, before.x, 1e-5 * before.x);
 }
 
 }  // namespace

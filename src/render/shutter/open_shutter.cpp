@@ -8,6 +8,7 @@
 
 #include "camera/shutter.h"
 #include "core/available_memory.h"
+#include "motion/mean_fire.h"
 #include "render/shutter/screen_movement.h"
 
 namespace brisance {
@@ -103,11 +104,20 @@ Instant OpenShutter::at(double frames, bool with_medium) const {
 }
 
 Instant OpenShutter::lit(std::size_t lighting) const {
-    const std::size_t each = instants_.size() / lightings_, first = lighting * each;
+    const std::size_t each = instants_.size() / lightings_;
+    const std::span<const Instant> stretch(&instants_[lighting * each], each);
     double middle = 0.0;
-    for (std::size_t k = first; k < first + each; ++k)
-        middle += instants_[k].frames / double(each);
-    return at(std::abs(middle) < 1e-9 ? 0.0 : middle, true);
+    for (const Instant& i : stretch)
+        middle += i.frames / double(each);
+    Instant out = at(std::abs(middle) < 1e-9 ? 0.0 : middle, true);
+    if (moving_ && out.medium->emits()) {
+        std::vector<const Medium*> media;
+        for (const Instant& i : stretch)
+            media.push_back(i.medium);
+        out.own_medium = std::make_unique<Medium>(with_mean_fire(*out.medium, media));
+        out.medium = out.own_medium.get();
+    }
+    return out;
 }
 
 Origins OpenShutter::origins(const Instant& lit, const Instant& moment) const {

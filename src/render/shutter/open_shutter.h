@@ -41,7 +41,7 @@ public:
 
     // Stretches of moments that are lit together, of equal length.
     std::size_t lighting_count() const { return lightings_; }
-    // The middle of one of them.
+    // The middle of one of them, with the fire's mean strength (motion/mean_fire.h).
     Instant lit(std::size_t lighting) const;
 
     // Where the nodes of a moment's medium were in that of `lit`. The medium moves.
