@@ -7,9 +7,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "core/cell.h"
+#include "reference/light_guide.h"
 #include "transport/direct_light.h"
 
 namespace brisance {
@@ -65,7 +67,9 @@ public:
     const DirectLight& direct() const { return direct_; }
     const TrackingField& field() const { return direct_.field(); }
     const TracingSettings& settings() const { return direct_.settings(); }
-    std::uint64_t bytes() const { return direct_.bytes(); }
+    std::uint64_t bytes() const { return direct_.bytes() + (guide_ ? guide_->bytes() : 0); }
+    // How paths choose directions at surfaces; null: by their BSDFs.
+    const LightGuide* guide() const { return guide_ ? &*guide_ : nullptr; }
 
 private:
     class Filing;
@@ -77,6 +81,7 @@ private:
 
     int bounces_;
     DirectLight direct_;
+    std::optional<LightGuide> guide_;  // where there are surfaces and fire, and light is sampled
 };
 
 }  // namespace brisance
