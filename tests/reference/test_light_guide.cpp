@@ -180,6 +180,34 @@ TEST(LightGuide, SmokeThatHidesTheFireGlowsInItsPlace) {
     EXPECT_EQ(yard.tracer->direct().fire().pdf(past), 0.0);
 }
 
+// Fire in black smoke, so that light between surfaces can be compared sharply: one reflection (SV) and more (SS), from
+// a point of the floor.
+TEST(GuidedPaths, AgreeSharplyBetweenSurfaces) {
+    for (const SceneMaterial& floor : {lambert(0.8f), glossy(1.0f, 0.5f)}) {
+        Estimate by[2];
+        for (const bool guided : {false, true}) {
+            const Yard yard(make_medium(glowing_ball(8, 4.0f)), floor, guided ? TracingSettings{} : unguided(), 3);
+            ASSERT_EQ(yard.tracer->guide() != nullptr, guided);
+            const dvec3 arriving = glm::normalize(dvec3(0.1, 0.6, -0.8));
+            const RaySegment segment =
+                yard.tracer->direct().segment_along({dvec3(1.2, 0.4, kFloor) - arriving * 0.1, arriving});
+            ASSERT_TRUE(segment.point);
+            by[guided] = estimate_to(0.01, 2, [&](const dvec3&, Rng& rng, double* out) {
+                PathSum sum{};
+                yard.tracer->trace_from_surface(*segment.point, arriving, rng, sum);
+                out[0] = sum.cells.at(Cell::SV).x;
+                out[1] = sum.cells.at(Cell::SS).x;
+            });
+        }
+        for (int k = 0; k < 2; ++k) {
+            const double error = std::hypot(by[0].error[k], by[1].error[k]);
+            EXPECT_NEAR(by[0].mean[k], by[1].mean[k], kSigmas * error) << floor.surface.metallic << ", " << k;
+            std::printf("%s %g: %.5f, guided %+.2f %% +- %.2f %%\n", k ? "SS" : "SV", floor.surface.metallic,
+                        by[0].mean[k], 100.0 * (by[1].mean[k] / by[0].mean[k] - 1.0), 100.0 * error / by[0].mean[k]);
+        }
+    }
+}
+
 TEST(LightGuide, IsMadeOnlyForSurfacesFireAndLightSampling) {
     EXPECT_TRUE(Yard(hidden_fire(2.0), lambert(0.6f)).tracer->guide());
     EXPECT_FALSE(Yard(hidden_fire(2.0), lambert(0.6f), unguided()).tracer->guide());
