@@ -100,13 +100,13 @@ private:
 };
 
 PathTracer::PathTracer(const Medium& medium, const TracingSettings& settings, int bounces,
-                       const Surroundings* surroundings)
+                       const Surroundings* surroundings, Guiding guiding)
     : bounces_(bounces), direct_(medium, settings, surroundings) {
     if (surroundings && settings.emission == EmissionEstimator::Collision)
         throw Error(ExitCode::Usage,
                     "tracing.emission: \"collision\", the plain tracker, knows neither surfaces nor lights; "
                     "use \"line\", or a shot without a scene");
-    if (wants_guide(direct_, bounces)) {
+    if (guiding == Guiding::Allowed && wants_guide(direct_, bounces)) {
         guide_.emplace(direct_);
         if (guide_->empty())
             guide_.reset();

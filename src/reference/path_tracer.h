@@ -48,13 +48,16 @@ struct PathStatistics {
 
 struct PathState;
 
+// Whether paths may learn where the light is (light_guide.h); a tracer that traces little need not pay for it.
+enum class Guiding { Allowed, Off };
+
 class PathTracer {
 public:
     // Keeps references to the medium and, where there are any, the surroundings, which share their local space.
     // `bounces`: the most scatterings of a path; -1: all.
     // Throws Error Usage for the plain tracker with surroundings: it would never find a point light.
     PathTracer(const Medium& medium, const TracingSettings& settings, int bounces,
-               const Surroundings* surroundings = nullptr);
+               const Surroundings* surroundings = nullptr, Guiding guiding = Guiding::Allowed);
 
     // Adds one path along `ray` to `sum`. `position` in [0, 1) chooses where the first scattering lies; it may come
     // from a stratified sequence.
