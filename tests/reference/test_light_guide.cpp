@@ -192,7 +192,7 @@ TEST(GuidedPaths, AgreeSharplyBetweenSurfaces) {
             const RaySegment segment =
                 yard.tracer->direct().segment_along({dvec3(1.2, 0.4, kFloor) - arriving * 0.1, arriving});
             ASSERT_TRUE(segment.point);
-            by[guided] = estimate_to(0.01, 2, [&](const dvec3&, Rng& rng, double* out) {
+            by[guided] = estimate_to(0.005, 2, [&](const dvec3&, Rng& rng, double* out) {
                 PathSum sum{};
                 yard.tracer->trace_from_surface(*segment.point, arriving, rng, sum);
                 out[0] = sum.cells.at(Cell::SV).x;
