@@ -18,6 +18,15 @@ constexpr int kFirstCollisions = 16;
 // Surface paths that begin at the end of one camera ray through smoke. They share the cost of the ray itself; without
 // smoke a ray costs little.
 constexpr int kFirstReflections = 4;
+// The same where paths know where the light is. Then they cost less than the ray, and a ray without smoke starts as
+// many, because surfaces are noisier than smoke.
+constexpr int kGuidedReflections = 8;
+
+// Whether paths from surfaces find more by a guide: it aims at fire and lit smoke.
+bool wants_guide(const DirectLight& scene, int bounces) {
+    return bounces != 0 && scene.settings().light_sampling && !scene.fire().empty() && scene.surroundings() &&
+           scene.surroundings()->has_surfaces();
+}
 
 }  // namespace
 
@@ -27,6 +36,7 @@ public:
     Filing(const PathTracer& tracer, bool row_surface, PathSum& sum, PathStatistics& statistics)
         : PlainPath(tracer.direct_),
           bounces_(tracer.bounces_),
+          guide_(tracer.guide()),
           row_surface_(row_surface),
           sum_(sum),
           statistics_(statistics) {}
@@ -54,13 +64,26 @@ public:
                           from_emitters, state.vertex.on_surface()});
     }
 
-    bool arrive(const PathState&, const PathStep&, const PathState& next) {
+    // A guided direction finds the fire too: no line toward it besides.
+    void begin(PathState& state) const {
+        if (guides(state.vertex))
+            state.fire_lines = 0.0f;
+    }
+
+    std::optional<PathVertex::Sample> direction(const PathState& state, Rng& rng) const {
+        return guides(state.vertex) ? guide_->sample(state.vertex, rng) : PlainPath::direction(state, rng);
+    }
+
+    bool arrive(const PathState&, const PathStep&, PathState& next) {
+        begin(next);
         if (next.order == 2)
             column_ = next.vertex.on_surface() ? Sender::S : Sender::M;
         return true;
     }
 
 private:
+    bool guides(const PathVertex& vertex) const { return guide_ && vertex.on_surface() && !vertex.only_delta(); }
+
     // `source`: of the light, which names the column of what has scattered once.
     void add(int order, Sender source, const Rgb& radiance) {
         sum_[std::min(order, kPathOrders - 1)] += radiance;
@@ -69,6 +92,7 @@ private:
     }
 
     int bounces_;
+    const LightGuide* guide_;
     bool row_surface_;           // the path's first vertex lies on a surface
     Sender column_ = Sender::M;  // and its second vertex there or in the medium
     PathSum& sum_;
@@ -76,12 +100,17 @@ private:
 };
 
 PathTracer::PathTracer(const Medium& medium, const TracingSettings& settings, int bounces,
-                       const Surroundings* surroundings)
+                       const Surroundings* surroundings, Guiding guiding)
     : bounces_(bounces), direct_(medium, settings, surroundings) {
     if (surroundings && settings.emission == EmissionEstimator::Collision)
         throw Error(ExitCode::Usage,
                     "tracing.emission: \"collision\", the plain tracker, knows neither surfaces nor lights; "
                     "use \"line\", or a shot without a scene");
+    if (guiding == Guiding::Allowed && wants_guide(direct_, bounces)) {
+        guide_.emplace(direct_);
+        if (guide_->empty())
+            guide_.reset();
+    }
 }
 
 void PathTracer::trace(const Ray& ray, double position, Rng& rng, PathSum& sum, PathStatistics& statistics) const {
@@ -122,7 +151,9 @@ void PathTracer::trace_lines(const Ray& camera_ray, double position, Rng& rng, P
     }
     if (!segment.point || !(through > 0.0f))
         return;
-    const int reflections = opacity > 0.0 ? static_cast<int>(std::ceil(through * kFirstReflections)) : 1;
+    const int reflections = guide_          ? static_cast<int>(std::ceil(through * kGuidedReflections))
+                            : opacity > 0.0 ? static_cast<int>(std::ceil(through * kFirstReflections))
+                                            : 1;
     for (int i = 0; i < reflections; ++i)
         trace_from(
             state_on_surface(direct_, *segment.point, camera_ray.direction, Rgb(through / float(reflections)), 1), rng,
@@ -138,6 +169,7 @@ void PathTracer::trace_from_surface(const SurfacePoint& point, const dvec3& arri
 void PathTracer::trace_from(PathState first, Rng& rng, PathSum& sum, PathStatistics& statistics) const {
     ++statistics.paths;
     Filing filing(*this, first.vertex.on_surface(), sum, statistics);
+    filing.begin(first);
     walk_path(direct_, first, filing, rng);
 }
 

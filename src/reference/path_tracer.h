@@ -7,9 +7,11 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "core/cell.h"
+#include "reference/light_guide.h"
 #include "transport/direct_light.h"
 
 namespace brisance {
@@ -46,13 +48,16 @@ struct PathStatistics {
 
 struct PathState;
 
+// Whether paths may learn where the light is (light_guide.h); a tracer that traces little need not pay for it.
+enum class Guiding { Allowed, Off };
+
 class PathTracer {
 public:
     // Keeps references to the medium and, where there are any, the surroundings, which share their local space.
     // `bounces`: the most scatterings of a path; -1: all.
     // Throws Error Usage for the plain tracker with surroundings: it would never find a point light.
     PathTracer(const Medium& medium, const TracingSettings& settings, int bounces,
-               const Surroundings* surroundings = nullptr);
+               const Surroundings* surroundings = nullptr, Guiding guiding = Guiding::Allowed);
 
     // Adds one path along `ray` to `sum`. `position` in [0, 1) chooses where the first scattering lies; it may come
     // from a stratified sequence.
@@ -65,7 +70,9 @@ public:
     const DirectLight& direct() const { return direct_; }
     const TrackingField& field() const { return direct_.field(); }
     const TracingSettings& settings() const { return direct_.settings(); }
-    std::uint64_t bytes() const { return direct_.bytes(); }
+    std::uint64_t bytes() const { return direct_.bytes() + (guide_ ? guide_->bytes() : 0); }
+    // How paths choose directions at surfaces; null: by their BSDFs.
+    const LightGuide* guide() const { return guide_ ? &*guide_ : nullptr; }
 
 private:
     class Filing;
@@ -77,6 +84,7 @@ private:
 
     int bounces_;
     DirectLight direct_;
+    std::optional<LightGuide> guide_;  // where there are surfaces and fire, and light is sampled
 };
 
 }  // namespace brisance

@@ -101,8 +101,11 @@ LitMedium::LitMedium(const DrawInput& input, const Plan& plan, int bounces, cons
 ManyLights::ManyLights(const DrawInput& input, Statistics& statistics, Progress& progress) {
     const Plan& plan = input.plan;
     const Shot& shot = input.shot;
-    if (plan.surfaces)
-        paths_.emplace(input.medium, shot.tracing, shot.scattering.bounces, input.surroundings);
+    if (plan.surfaces) {
+        const bool traces = plan.needs(Cell::SS) && shot.virtual_lights.count == 0;
+        paths_.emplace(input.medium, shot.tracing, shot.scattering.bounces, input.surroundings,
+                       traces ? Guiding::Allowed : Guiding::Off);
+    }
     if (shot.virtual_lights.count > 0 && (plan.needs(Cell::SS) || plan.needs(Cell::MS)))
         virtual_lights_ = place_virtual_lights(input, paths_->direct(), statistics, progress);
     if ((plan.scattering_method || plan.emitters_by_rays) && !paths_)

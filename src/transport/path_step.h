@@ -74,6 +74,8 @@ concept PathReader = requires(R& reader, const PathState& state, const PathStep&
     { reader.arrive(state, step, next) } -> std::same_as<bool>;
     // Whether roulette must be able to end the path here although it has lost no throughput.
     { reader.is_long(state) } -> std::same_as<bool>;
+    // The direction in which the path goes on; none: the vertex absorbs it.
+    { reader.direction(state, rng) } -> std::same_as<std::optional<PathVertex::Sample>>;
 };
 
 // The answers of a plain path; a reader derives from it and hides what it does otherwise.
@@ -86,6 +88,9 @@ public:
     SegmentMedium medium_along(const PathState&, const PathStep& step, Rng& rng) const;
     bool continues(const PathState&) const { return true; }
     bool arrive(const PathState&, const PathStep&, PathState&) const { return true; }
+    std::optional<PathVertex::Sample> direction(const PathState& state, Rng& rng) const {
+        return state.vertex.sample(rng);
+    }
     // Surfaces may reflect everything for ever; the medium lets paths out.
     bool is_long(const PathState& state) const { return state.vertex.on_surface() && state.order > kManyScatterings; }
 
@@ -123,7 +128,7 @@ template <PathReader Reader>
 PathStep step_from(const DirectLight& scene, const PathState& state, Reader& reader, Rng& rng) {
     PathStep step;
     detail::sample_lights(scene, state, reader, rng, step);
-    step.sample = state.vertex.sample(rng);
+    step.sample = reader.direction(state, rng);
     if (step.sample)
         detail::follow_segment(scene, state, reader, rng, step);
     reader.gather(state, step);

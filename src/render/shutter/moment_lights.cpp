@@ -41,7 +41,8 @@ MomentLights::MomentLights(const DrawInput& input, const ManyLights& lights, con
 
 void MomentLights::follow_paths(const DrawInput& input, const ManyLights& lights, const Instant& moment) {
     if (lights.paths()) {
-        own_paths_.emplace(*moment.medium, input.shot.tracing, input.shot.scattering.bounces, moment.surroundings);
+        own_paths_.emplace(*moment.medium, input.shot.tracing, input.shot.scattering.bounces, moment.surroundings,
+                           lights.paths()->guide() ? Guiding::Allowed : Guiding::Off);
         paths_ = &*own_paths_;
         direct_ = &paths_->direct();
     } else if (lights.direct()) {
