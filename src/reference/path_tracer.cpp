@@ -151,13 +151,21 @@ void PathTracer::trace_lines(const Ray& camera_ray, double position, Rng& rng, P
     }
     if (!segment.point || !(through > 0.0f))
         return;
-    const int reflections = guide_          ? static_cast<int>(std::ceil(through * kGuidedReflections))
-                            : opacity > 0.0 ? static_cast<int>(std::ceil(through * kFirstReflections))
-                                            : 1;
+    const int reflections = first_reflections(*segment.point, camera_ray.direction, opacity > 0.0, through);
     for (int i = 0; i < reflections; ++i)
         trace_from(
             state_on_surface(direct_, *segment.point, camera_ray.direction, Rgb(through / float(reflections)), 1), rng,
             sum, statistics);
+}
+
+// Paths that begin at a surface seen through a transmittance. All that go on from a mirror or clear glass go the same
+// ways, and aim at nothing.
+int PathTracer::first_reflections(const SurfacePoint& point, const dvec3& arriving, bool through_smoke,
+                                  float transmittance) const {
+    const bool guided = guide_ && !PathVertex(point, arriving).only_delta();
+    if (!guided && !through_smoke)
+        return 1;
+    return static_cast<int>(std::ceil(transmittance * float(guided ? kGuidedReflections : kFirstReflections)));
 }
 
 void PathTracer::trace_from_surface(const SurfacePoint& point, const dvec3& arriving, Rng& rng, PathSum& sum) const {

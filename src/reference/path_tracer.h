@@ -77,6 +77,8 @@ public:
 private:
     class Filing;
     void trace_lines(const Ray& ray, double position, Rng& rng, PathSum& sum, PathStatistics& statistics) const;
+    int first_reflections(const SurfacePoint& point, const dvec3& arriving, bool through_smoke,
+                          float transmittance) const;
     void trace_from(PathState first, Rng& rng, PathSum& sum, PathStatistics& statistics) const;
     // plain_tracking.cpp
     void trace_plain(Ray ray, Rng& rng, PathSum& sum, PathStatistics& statistics) const;
