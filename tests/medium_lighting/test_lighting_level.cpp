@@ -30,7 +30,7 @@ Medium smooth_fire(float extinction) {
     return make_medium(r);
 }
 
-RenderedFrame picture(const Medium& medium, int level) {
+RenderedFrame picture_on(const Medium& medium, int level) {
     Shot shot;
     shot.lighting.lattice_level = level;
     shot.camera_given = true;
@@ -43,7 +43,7 @@ RenderedFrame picture(const Medium& medium, int level) {
     return render_medium(shot, medium, silent);
 }
 
-double difference(const RenderedFrame& a, const RenderedFrame& b, const char* layer) {
+double off_by(const RenderedFrame& a, const RenderedFrame& b, const char* layer) {
     const std::vector<float>&x = a.image.layer(layer).pixels, &y = b.image.layer(layer).pixels;
     double square = 0.0, norm = 0.0;
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -83,15 +83,15 @@ TEST(LightingLevel, TheMeanMediumEmitsAndExtinguishesAsMuch) {
     EXPECT_NEAR(total_luminance(voxel_lights(coarse)) / total_luminance(voxel_lights(fine)), 1.0, 1e-4);
 }
 
-// Voxels of optical depth 0.15 and 0.3: 0.1 and 0.4 % by the formula, and the emission about as much again.
+// Voxels of optical depth 0.15 and 0.3 add less than shadow maps may. Both pictures are of lighting.error=0.02.
 TEST(LightingLevel, SmoothFireInThinSmokeNeedsNoFineLattice) {
     const Medium medium = smooth_fire(1.0f);
-    const RenderedFrame fine = picture(medium, 0);
+    const RenderedFrame fine = picture_on(medium, 0);
     for (const int level : {1, 2})
         for (const char* layer : {"MV", "MM"}) {
-            const double off = difference(picture(medium, level), fine, layer);
+            const double off = off_by(picture_on(medium, level), fine, layer);
             std::printf("level %d, %s: %.4f\n", level, layer, off);
-            EXPECT_LT(off, 0.02 * level) << "level " << level << ", " << layer;
+            EXPECT_LT(off, 2.0 * 0.02) << "level " << level << ", " << layer;
         }
 }
 
@@ -114,7 +114,7 @@ TEST(LightingLevel, FollowsTheOpticalDepthOfVoxelsWithoutJumps) {
     r.settings.smoke.extinction_per_metre = 1.0f;
     Medium medium = make_medium(r);
     float before = 1e9f;
-    for (float extinction = 1.0f; extinction < 60.0f; extinction *= 1.05f) {
+    for (float extinction = 1.0f; extinction < 60.0f; extinction *= 1.03f) {
         for (float& e : medium.extinction)
             e = e > 0.0f ? extinction : 0.0f;
         const LightingLevel level = lighting_level(medium, settings);
