@@ -1,4 +1,4 @@
-// The lighting of a medium, on the coarsest lattice whose error is allowed (lighting_level.h). Where the next coarser
+// The lighting of a medium, on a lattice as coarse as its error allows (lighting_level.h). Where the next coarser
 // one is nearly good enough, its light replaces that of the finer one step by step, so that no lattice is left at once.
 #pragma once
 

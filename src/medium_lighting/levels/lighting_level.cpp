@@ -26,7 +26,9 @@ constexpr float kTimesInterpolation = 4.0f;
 // Beyond this many times what is allowed, the next coarser lattice does not count.
 constexpr float kNearlyAllowed = 1.5f;
 
-constexpr int kMostLevels = 4;
+// The errors above do not see how light changes around a small fire in thin smoke: voxels twice as wide changed MV by
+// 2 % where the fire had 18 voxels across, and four times as wide by 11 %. Wider ones are not chosen.
+constexpr int kWidest = 1;
 
 // Errors of light on ever coarser lattices.
 class LatticeErrors {
@@ -112,13 +114,13 @@ LightingLevel lighting_level(const Medium& medium, const LightingSettings& setti
     LightingLevel out;
     for (float next = errors.of(1);; next = errors.of(out.level + 1)) {
         out.error_of_coarser = next;
-        if (next > allowed || out.level + 1 == kMostLevels) {
-            out.share_of_coarser =
-                out.level + 1 == kMostLevels ? 0.0f : 1.0f - glm::smoothstep(1.0f, kNearlyAllowed, next / allowed);
+        if (next > allowed) {
+            out.share_of_coarser = 1.0f - glm::smoothstep(1.0f, kNearlyAllowed, next / allowed);
             return out;
         }
-        ++out.level;
         out.error = next;
+        if (++out.level == kWidest)
+            return out;
     }
 }
 

@@ -1,4 +1,4 @@
-// The lattice on which the light of a medium lives: the coarsest whose error is allowed.
+// The lattice on which the light of a medium lives: coarser than the medium's own where its error is allowed.
 //
 // A picture errs with the square of the optical depth of the voxels on which light is gathered, as measured on pictures
 // of four volumes, and with the emission that a coarser lattice cannot represent. What is allowed is what interpolation
