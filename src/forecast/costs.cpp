@@ -7,6 +7,7 @@
 #include "camera_rays/picture.h"
 #include "core/parallel.h"
 #include "gathering/map_layouts.h"
+#include "medium_lighting/levels/lighting_level.h"
 #include "medium_lighting/lit_lattice.h"
 #include "reference/trace_picture.h"
 #include "scattering/lattice_level.h"
@@ -77,12 +78,13 @@ int forecast_lattice_level(const ScatteringSettings& settings, const CountedMedi
 }
 
 double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan, const CameraSettings& camera) {
-    const double nodes = counted.lit_nodes, gathers = plan.multiple ? 2.0 : 1.0;
+    const int level = lighting_level(counted.medium, shot.lighting).level;
+    const double nodes = counted.lit_nodes / std::pow(kNodesOfParent, level), gathers = plan.multiple ? 2.0 : 1.0;
     double evaluations = kEvaluationsOfNode * nodes * std::pow(double(shot.lighting.alpha), kPowerOfAlpha);
     double coarse = 0.0;
     if (plan.multiple) {
         evaluations += kEvaluationsOfNode * nodes * std::pow(double(shot.scattering.alpha), kPowerOfAlpha);
-        coarse = nodes / std::pow(kNodesOfParent, forecast_lattice_level(shot.scattering, counted));
+        coarse = counted.lit_nodes / std::pow(kNodesOfParent, forecast_lattice_level(shot.scattering, counted));
     }
     const double map =
         std::pow(double(shadow_resolution(shot.lighting)), 2.0) * shadow_distances(shot.lighting) / kKnownMap;

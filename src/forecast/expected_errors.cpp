@@ -4,6 +4,7 @@
 
 #include "gathering/map_layouts.h"
 #include "medium/extinction_met.h"
+#include "medium_lighting/levels/lighting_level.h"
 
 namespace brisance {
 
@@ -12,9 +13,8 @@ namespace {
 // Shadow maps of 12^2 texels add 1 % to a picture of dense smoke, and the error falls as the resolution's power 4/3
 // (gathering/map_layouts.cpp).
 constexpr double kErrorOfMaps = 0.01, kResolutionOfMaps = 12.0, kPowerOfMaps = 4.0 / 3.0;
-// Light from and to a voxel errs with the square of its optical depth, and the orders of scattering err with the
-// optical depth of a voxel of their lattice.
-constexpr double kErrorOfVoxels = 0.05, kErrorOfLattice = 0.045;
+// The orders of scattering err with the optical depth of a voxel of their lattice.
+constexpr double kErrorOfLattice = 0.045;
 // Fire seen directly: the camera's samples, and beyond them voxels that hide what burns in them.
 constexpr double kErrorOfRays = 0.001, kErrorOfBurningVoxels = 0.002;
 // Of light that surfaces send on or receive, and of scattering methods with random samples: not modelled.
@@ -47,8 +47,10 @@ double voxel_depth(const Medium& medium) {
 
 class ErrorModel {
 public:
-    ErrorModel(const ModelledFrame& frame, double lattice_level, double remainder)
+    // `coarse_light`: the error of light on a coarser lattice than the medium's.
+    ErrorModel(const ModelledFrame& frame, double coarse_light, double lattice_level, double remainder)
         : plan_(frame.plan),
+          coarse_light_(coarse_light),
           interpolation_(tolerated_interpolation(frame.shot.lighting, std::size_t(frame.counted.lit_nodes))),
           depth_(voxel_depth(frame.counted.medium)),
           lattice_(std::exp2(lattice_level)),
@@ -63,9 +65,12 @@ public:
         if (cell == "V" || cell == "A")
             return {cell, limited(kErrorOfRays + kErrorOfBurningVoxels * std::pow(depth_, 3.0)), kSpreadOfRest};
         if (cell == "MV")
-            return {cell, limited(std::hypot(std::sqrt(gathered), kErrorOfVoxels * square(depth_))), kSpread};
+            return {cell, limited(std::hypot(std::sqrt(gathered), error_of_voxels(float(depth_)) + coarse_light_)),
+                    kSpread};
         if (cell == "MM" && !plan_.scattering_method)
-            return {cell, limited(std::sqrt(gathered + square(kErrorOfLattice * lattice_ * depth_)) + remainder_),
+            return {cell,
+                    limited(std::sqrt(gathered + square(coarse_light_) + square(kErrorOfLattice * lattice_ * depth_)) +
+                            remainder_),
                     kSpread};
         if (cell == "MM" || cell == "SM")
             return {cell, plan_.scattering_method ? kErrorOfOtherMethods : kErrorOfSurfaces, kSpreadOfRest};
@@ -74,7 +79,7 @@ public:
 
 private:
     const Plan& plan_;
-    double interpolation_, depth_, lattice_, remainder_, maps_ = 0.0;
+    double coarse_light_, interpolation_, depth_, lattice_, remainder_, maps_ = 0.0;
 };
 
 // The cell that is taken for the picture where nothing is known of their shares.
@@ -97,7 +102,8 @@ double sum_of_squares(const Layer& layer) {
 std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFrame& frame,
                                            const Statistics& statistics) {
     const std::string series = "orders of scattering on the coarse lattice";
-    const ErrorModel model(frame, noted(statistics, series, "lattice_level"),
+    const ErrorModel model(frame, noted(statistics, "lattice of the light", "error"),
+                           noted(statistics, series, "lattice_level"),
                            noted(statistics, series, "estimated_remainder"));
     std::vector<ExpectedError> out(1);
     double errors = 0.0, spreads = 0.0, light = 0.0;
@@ -121,7 +127,8 @@ std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFra
 ExpectedError expected_error(const ModelledFrame& frame) {
     const ScatteringSettings& settings = frame.shot.scattering;
     const int level = forecast_lattice_level(settings, frame.counted);
-    ExpectedError out = ErrorModel(frame, level, settings.remainder).of(brightest(frame.plan));
+    const double coarse_light = lighting_level(frame.counted.medium, frame.shot.lighting).error;
+    ExpectedError out = ErrorModel(frame, coarse_light, level, settings.remainder).of(brightest(frame.plan));
     out.cell.clear();
     return out;
 }

@@ -19,8 +19,9 @@ struct LightingSettings {
     // Relative error of the light that the picture shows up to which nodes are interpolated from coarser ones. 0: none
     // are, every node is lit by itself. Below 0: up to an eighth of `error` in large media.
     float interpolation = -1.0f;
-    float alpha = 2.0f;  // blending radius of level l is alpha * spacing of level l; at least 1
-    int levels = 0;      // hierarchy levels above the voxels; 0: from the volume's extent
+    float alpha = 2.0f;      // blending radius of level l is alpha * spacing of level l; at least 1
+    int lattice_level = -1;  // light is gathered on voxels 2^level wide; -1: from `error`
+    int levels = 0;          // hierarchy levels above the voxels; 0: from the volume's extent
     ShadowMethod shadows = ShadowMethod::Maps;
     int shadow_resolution = 0;  // texels along one side of the finest lights' octahedral maps; 0: from the error
     int shadow_distances = 0;   // transmittance samples along a texel's ray, levels below the top; 0: from the error

@@ -2,15 +2,35 @@
 
 #include <algorithm>
 
+#include "core/parallel.h"
+
 namespace brisance {
 
-// The medium of a pyramid level: coarse nodes at every 2^level-th index, mean extinction, mean albedo by extinction.
-Medium coarse_medium(const ExtinctionPyramid& fine, int level) {
-    const Medium& f = fine.medium();
+namespace {
+
+// Means of the albedo, weighted by extinction, at the nodes of `to`, whose lattice and extinction are there.
+void average_albedo(const Medium& f, int level, Medium& to) {
+    std::vector<float> scattering(f.extinction.size() * 3);
+    parallel_for(
+        f.extinction.size(),
+        [&](std::size_t i) {
+            for (int c = 0; c < 3; ++c)
+                scattering[i * 3 + c] = f.extinction[i] * f.albedo_nodes[i][c];
+        },
+        4096);
+    const std::vector<float> mean = averaged_down(f.lattice, std::move(scattering), 3, level);
+    to.albedo_nodes.resize(to.extinction.size(), Rgb(0.0f));
+    for (std::size_t i = 0; i < to.extinction.size(); ++i)
+        if (to.extinction[i] > 0.0f)
+            to.albedo_nodes[i] =
+                glm::min(Rgb(mean[i * 3], mean[i * 3 + 1], mean[i * 3 + 2]) / to.extinction[i], Rgb(1.0f));
+}
+
+Medium coarse_medium(const Medium& f, BrickLattice lattice, std::vector<float> extinction, int level) {
     Medium m;
     const float scale = float(1 << level);
-    m.lattice = fine.lattice(level);
-    m.extinction = fine.nodes(level);
+    m.lattice = std::move(lattice);
+    m.extinction = std::move(extinction);
     m.world_from_index = f.world_from_index;
     for (int a = 0; a < 3; ++a)
         m.world_from_index[a] *= double(scale);
@@ -22,26 +42,39 @@ Medium coarse_medium(const ExtinctionPyramid& fine, int level) {
     m.albedo = f.albedo;
     m.mean_cosine = f.mean_cosine;
     m.max_extinction = m.extinction.empty() ? 0.0f : *std::max_element(m.extinction.begin(), m.extinction.end());
-    if (f.albedo_nodes.empty())
-        return m;
-    std::vector<float> scattering(f.extinction.size() * 3);
-    for (std::size_t i = 0; i < f.extinction.size(); ++i)
-        for (int c = 0; c < 3; ++c)
-            scattering[i * 3 + c] = f.extinction[i] * f.albedo_nodes[i][c];
-    BrickLattice lattice = f.lattice;
+    if (!f.albedo_nodes.empty())
+        average_albedo(f, level, m);
+    return m;
+}
+
+}  // namespace
+
+Medium coarse_medium(const ExtinctionPyramid& fine, int level) {
+    return coarse_medium(fine.medium(), fine.lattice(level), fine.nodes(level), level);
+}
+
+Medium coarse_medium(const Medium& fine, int level) {
+    BrickLattice lattice = fine.lattice;
+    std::vector<float> extinction = fine.extinction;
     for (int l = 0; l < level; ++l) {
         BrickLattice coarse;
         std::vector<float> values;
-        coarsen(lattice, scattering, 3, coarse, values);
+        coarsen(lattice, extinction, 1, coarse, values);
         lattice = std::move(coarse);
-        scattering = std::move(values);
+        extinction = std::move(values);
     }
-    m.albedo_nodes.resize(m.extinction.size(), Rgb(0.0f));
-    for (std::size_t i = 0; i < m.extinction.size(); ++i)
-        if (m.extinction[i] > 0.0f)
-            m.albedo_nodes[i] = glm::min(
-                Rgb(scattering[i * 3], scattering[i * 3 + 1], scattering[i * 3 + 2]) / m.extinction[i], Rgb(1.0f));
-    return m;
+    return coarse_medium(fine, std::move(lattice), std::move(extinction), level);
+}
+
+std::vector<float> averaged_down(BrickLattice lattice, std::vector<float> values, int channels, int levels) {
+    for (int l = 0; l < levels; ++l) {
+        BrickLattice coarse;
+        std::vector<float> means;
+        coarsen(lattice, values, channels, coarse, means);
+        lattice = std::move(coarse);
+        values = std::move(means);
+    }
+    return values;
 }
 
 // Splats node values to the lattice 2^levels coarser.

@@ -11,6 +11,10 @@ namespace brisance {
 // The medium of a pyramid level: coarse nodes at every 2^level-th index, mean extinction, mean albedo by extinction.
 // Without emission.
 Medium coarse_medium(const ExtinctionPyramid& fine, int level);
+Medium coarse_medium(const Medium& fine, int level);
+
+// Averages node values (`channels` interleaved) to the lattice 2^levels coarser, with a pyramid's weights.
+std::vector<float> averaged_down(BrickLattice lattice, std::vector<float> values, int channels, int levels);
 
 // Splats node values (`channels` interleaved) to the lattice 2^levels coarser; keeps their sum.
 std::vector<float> splat_down(BrickLattice lattice, std::vector<float> values, int channels, int levels);

@@ -1,15 +1,16 @@
 #include "medium_lighting/automatic_levels.h"
 
 #include "lighting_grid/lighting_grid.h"
+#include "medium_lighting/levels/lighting_level.h"
 #include "scattering/lattice_level.h"
 
 namespace brisance {
 
-AutomaticLevels automatic_levels_of(const Medium& medium) {
+AutomaticLevels automatic_levels_of(const Medium& medium, const LightingSettings& settings) {
     if (medium.lattice.brick_count() == 0)
         return {};
     const ExtinctionPyramid pyramid(medium, ExtinctionPyramid::kMaxLevels);
-    return {automatic_levels(medium), automatic_lattice(pyramid).level};
+    return {lighting_level(medium, settings).level, automatic_levels(medium), automatic_lattice(pyramid).level};
 }
 
 }  // namespace brisance

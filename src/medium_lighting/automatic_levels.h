@@ -1,15 +1,17 @@
 // What the lighting of a medium chooses from its voxels where the settings leave it open.
 #pragma once
 
+#include "gathering/settings.h"
 #include "medium/medium.h"
 
 namespace brisance {
 
 struct AutomaticLevels {
+    int light = 0;       // lighting.lattice_level
     int lighting = 1;    // lighting.levels
     int scattering = 0;  // scattering.lattice_level
 };
 
-AutomaticLevels automatic_levels_of(const Medium& medium);
+AutomaticLevels automatic_levels_of(const Medium& medium, const LightingSettings& settings);
 
 }  // namespace brisance

@@ -3,8 +3,11 @@
 #include <algorithm>
 
 #include "core/parallel.h"
+#include "lighting_grid/voxel_lights.h"
 #include "medium/phase.h"
+#include "medium_lighting/levels/coarse_lighting.h"
 #include "medium_lighting/surface_occluders.h"
+#include "scattering/coarse_operator.h"
 
 namespace brisance {
 
@@ -35,18 +38,20 @@ std::vector<std::uint8_t> nodes_beside_extinction(const Medium& medium) {
     return needed;
 }
 
-LitLattice::LitLattice(const MediumLightingInput& input)
+LitLattice::LitLattice(const MediumLightingInput& input, int level)
     : input_(input),
-      pyramid_(input.medium, ExtinctionPyramid::kMaxLevels),
-      needed_(nodes_beside_extinction(input.medium)),
+      level_(level),
+      coarse_(level > 0 ? std::make_unique<Medium>(medium_to_light(input.medium, level)) : nullptr),
+      pyramid_(medium(), ExtinctionPyramid::kMaxLevels),
+      needed_(nodes_beside_extinction(medium())),
       depths_(pyramid_, kExteriorRayLevel) {
     if (input.surroundings && input.surroundings->has_surfaces()) {
         surfaces_ = std::make_unique<SurfaceOccluders>(input.surroundings->intersector());
-        if (surfaces_reach_into(input.surroundings->scene(), input.medium))
+        if (surfaces_reach_into(input.surroundings->scene(), medium()))
             pyramid_.set_occluders(surfaces_.get());
     }
     if (input.single || input.multiple)
-        thin_medium_ = ThinMedium(input.medium, depths_, needed_, {input.eye, input.directional}, input.lighting.error);
+        thin_medium_ = ThinMedium(medium(), depths_, needed_, {input.eye, input.directional}, input.lighting.error);
     if (!thin_medium_.empty())
         pyramid_.set_homogeneous_bricks(&thin_medium_.homogeneous_bricks());
     const auto nodes = std::count_if(needed_.begin(), needed_.end(), [](std::uint8_t n) { return n != 0; });
@@ -73,20 +78,32 @@ Gathered LitLattice::dark() const {
     return none;
 }
 
+std::vector<Rgb> LitLattice::fire_lights() const {
+    std::vector<Rgb> lights = voxel_lights(input_.medium);
+    if (level_ == 0)
+        return lights;
+    ScatteredLight coarse = restricted({std::move(lights), {}}, input_.medium.lattice, level_);
+    coarse.sharpen(medium().lattice);
+    return std::move(coarse.intensity);
+}
+
 std::vector<Rgb> LitLattice::source_function(const Gathered& g) const {
     const std::size_t n = needed_.size();
-    std::vector<Rgb> source(n, Rgb(0.0f));
+    std::vector<Rgb> radiance(n, Rgb(0.0f));
     parallel_for(
         n,
         [&](std::size_t i) {
             if (!needed_[i])
                 return;
             for (int c = 0; c < 3; ++c)
-                source[i][c] = medium().albedo_at(i)[c] *
-                               (g.scattered.empty() ? g.fluence[c * n + i] / (4.0f * kPi) : g.scattered[c * n + i]);
+                radiance[i][c] = g.scattered.empty() ? g.fluence[c * n + i] / (4.0f * kPi) : g.scattered[c * n + i];
         },
         4096);
-    return source;
+    if (level_ > 0)
+        radiance = light_at_fine_nodes(medium().lattice, std::move(radiance), level_, input_.medium.lattice);
+    parallel_for(
+        radiance.size(), [&](std::size_t i) { radiance[i] *= input_.medium.albedo_at(i); }, 4096);
+    return radiance;
 }
 
 }  // namespace brisance

@@ -8,7 +8,7 @@
 #include "gathering/gather.h"
 #include "gathering/point_depths.h"
 #include "medium_lighting/input.h"
-#include "medium_lighting/lit_levels.h"
+#include "medium_lighting/levels/lit_levels.h"
 #include "thin_media/thin_medium.h"
 
 namespace brisance {
@@ -18,12 +18,14 @@ std::vector<std::uint8_t> nodes_beside_extinction(const Medium& medium);
 
 class LitLattice {
 public:
-    explicit LitLattice(const MediumLightingInput& input);
+    // `level`: light lives on the lattice 2^level coarser than the medium's, in a medium of mean extinction.
+    LitLattice(const MediumLightingInput& input, int level);
     LitLattice(const LitLattice&) = delete;
     LitLattice& operator=(const LitLattice&) = delete;
 
     const MediumLightingInput& input() const { return input_; }
-    const Medium& medium() const { return input_.medium; }
+    int level() const { return level_; }
+    const Medium& medium() const { return coarse_ ? *coarse_ : input_.medium; }  // on the lattice of the light
     const ExtinctionPyramid& pyramid() const { return pyramid_; }
     const PointDepths& depths() const { return depths_; }  // of coarse rays toward lights seen from outside
     const ThinMedium& thin_medium() const { return thin_medium_; }
@@ -44,11 +46,16 @@ public:
     // Whether lights are kept for receivers outside of dense smoke: surfaces, or nodes of thin media.
     bool lights_exterior() const { return input_.surfaces_lit || !thin_medium_.empty(); }
 
-    // Albedo times the radiance that scatters toward the camera, per node [W/(m^2 sr)].
+    // The fire's lights, per node [W/sr]; their sum is that of the input medium's.
+    std::vector<Rgb> fire_lights() const;
+
+    // Albedo times the radiance that scatters toward the camera, per node of the input medium [W/(m^2 sr)].
     std::vector<Rgb> source_function(const Gathered& gathered) const;
 
 private:
     const MediumLightingInput& input_;
+    int level_;
+    std::unique_ptr<Medium> coarse_;  // null: the input medium itself
     std::unique_ptr<Occluders> surfaces_;
     ExtinctionPyramid pyramid_;
     std::vector<std::uint8_t> needed_;

@@ -1,79 +1,77 @@
 #include "medium_lighting/medium_lighting.h"
 
+#include "core/parallel.h"
 #include "core/stopwatch.h"
-#include "medium_lighting/exterior/point_receivers.h"
-#include "medium_lighting/stages/emitter_light.h"
-#include "medium_lighting/stages/fire_light.h"
-#include "medium_lighting/stages/smoke_light.h"
-#include "medium_lighting/stages/surface_light.h"
+#include "medium_lighting/levels/lighting_level.h"
 
 namespace brisance {
 
 namespace {
 
-Gathered light_from_emitters(const LitLattice& lattice, Statistics& statistics, Progress& progress) {
-    progress.stage("light from emitters (MA)");
+void mix(std::vector<Rgb>& a, const std::vector<Rgb>& b, float share) {
+    parallel_for(
+        a.size(), [&](std::size_t i) { a[i] = glm::mix(a[i], b[i], share); }, 4096);
+}
+
+// An order that one of both has not counts as dark there: the last one holds the rest of the series.
+void mix_orders(std::vector<std::vector<Rgb>>& a, std::vector<std::vector<Rgb>>&& b, float share) {
+    for (std::size_t k = 0; k < std::max(a.size(), b.size()); ++k) {
+        if (k == a.size())
+            a.emplace_back(b[k].size(), Rgb(0.0f));
+        mix(a[k], k < b.size() ? b[k] : std::vector<Rgb>(a[k].size(), Rgb(0.0f)), share);
+    }
+}
+
+void mix(NodeLighting& a, NodeLighting&& b, float share) {
+    for (auto field :
+         {&NodeSources::single, &NodeSources::multiple, &NodeSources::from_surfaces, &NodeSources::from_emitters})
+        mix(a.*field, b.*field, share);
+    mix_orders(a.orders, std::move(b.orders), share);
+}
+
+LightingLevel level_of(const MediumLightingInput& input, Statistics& statistics) {
     const Stopwatch watch;
-    Gathered arriving = gather_from_emitters(*lattice.input().surroundings, lattice.pyramid(), lattice.request());
-    prepare_interpolation(lattice.medium().lattice, lattice.needed(), arriving);
-    statistics.stages.push_back({"light from emitters (MA)", watch.seconds(), 0, {}});
-    return arriving;
+    const LightingLevel level = lighting_level(input);
+    statistics.stages.push_back({"lattice of the light",
+                                 watch.seconds(),
+                                 0,
+                                 {{"lattice_level", level.level},
+                                  {"share_of_coarser_level", level.share_of_coarser},
+                                  {"error", level.error},
+                                  {"error_of_coarser_level", level.error_of_coarser}}});
+    return level;
 }
 
 }  // namespace
 
 MediumLighting::MediumLighting(const MediumLightingInput& input, Statistics& statistics, Progress& progress)
-    : input_(input), lattice_(input_) {
-    Gathered first;
-    if (input.fire) {
-        FireLight fire = light_from_fire(lattice_, statistics, progress);
-        first = std::move(fire.arriving);
-        nodes_.single = std::move(fire.single);
-        fire_ = std::move(fire.exterior);
-    } else {
-        first = lattice_.dark();
-    }
-    if ((input.reflected.lights || input.reflected.cast) && input.surfaces_on_medium) {
-        const Gathered arriving = light_from_surfaces(lattice_, statistics, progress);
-        nodes_.from_surfaces = lattice_.source_function(arriving);
-        first.add(arriving);
-    }
-    if (input.surroundings && input.emitters_on_medium) {
-        const Gathered arriving = light_from_emitters(lattice_, statistics, progress);
-        if (input.emitters_at_nodes)
-            nodes_.from_emitters = lattice_.source_function(arriving);
-        first.add(arriving);
-    }
-    if (input.multiple) {
-        SmokeLight smoke = light_from_smoke(lattice_, first, statistics, progress);
-        nodes_.multiple = std::move(smoke.multiple);
-        nodes_.orders = std::move(smoke.orders);
-        smoke_ = std::move(smoke.exterior);
+    : input_(input) {
+    const LightingLevel level = level_of(input_, statistics);
+    share_of_coarser_ = level.share_of_coarser;
+    lighting_ = std::make_unique<LatticeLighting>(input_, level.level, statistics, progress);
+    nodes_ = lighting_->take_nodes();
+    if (!(share_of_coarser_ > 0.0f))
+        return;
+    Statistics costs;
+    coarser_ = std::make_unique<LatticeLighting>(input_, level.level + 1, costs, progress);
+    mix(nodes_, coarser_->take_nodes(), share_of_coarser_);
+    for (StageCost& stage : costs.stages) {
+        stage.name += ", on the next coarser lattice";
+        statistics.stages.push_back(std::move(stage));
     }
 }
 
 void MediumLighting::at_surfaces(std::vector<SurfaceReceiver>& points) const {
-    if (points.empty())
+    std::vector<SurfaceReceiver> coarse = coarser_ ? points : std::vector<SurfaceReceiver>{};
+    lighting_->at_surfaces(points);
+    if (!coarser_)
         return;
-    std::vector<ReceiverPoint> at;
-    at.reserve(points.size());
-    for (const SurfaceReceiver& p : points)
-        at.push_back({p.local, p.normal});
-    std::vector<std::uint32_t> order;
-    const Receivers receivers = point_receivers(lattice_.medium(), at, order);
-    const std::size_t n = order.size();
-    const auto gather = [&](const std::unique_ptr<ExteriorLights>& lights, std::array<Rgb, 2> SurfaceReceiver::*slot) {
-        if (!lights)
-            return;
-        const std::array<Gathered, 2> arriving = lights->at_surfaces(receivers);
-        // Scaled by the balance of what escapes, not of what collides.
+    coarser_->at_surfaces(coarse);
+    for (std::size_t i = 0; i < points.size(); ++i)
         for (int part = 0; part < 2; ++part)
-            for (std::size_t i = 0; i < n && !arriving[part].scattered.empty(); ++i)
-                for (int c = 0; c < 3; ++c)
-                    (points[order[i]].*slot)[part][c] = lights->escape_scale()[c] * arriving[part].scattered[c * n + i];
-    };
-    gather(fire_, &SurfaceReceiver::fire);
-    gather(smoke_, &SurfaceReceiver::smoke);
+            for (auto light : {&SurfaceReceiver::fire, &SurfaceReceiver::smoke})
+                (points[i].*light)[part] =
+                    glm::mix((points[i].*light)[part], (coarse[i].*light)[part], share_of_coarser_);
 }
 
 }  // namespace brisance

@@ -1,12 +1,10 @@
-// From the medium to the light that scatters toward the camera, and to the lights that surfaces see.
-//
-// Stages, each with one job: the fire's light (fire_light.h, MV), light of surfaces (surface_light.h, MS), light of
-// emitters (emitter_light.h, MA), and light that scatters again (smoke_light.h, MM).
+// The lighting of a medium, on a lattice as coarse as its error allows (lighting_level.h). Where the next coarser
+// one is nearly good enough, its light replaces that of the finer one step by step, so that no lattice is left at once.
 #pragma once
 
-#include "medium_lighting/exterior/exterior_lights.h"
-#include "medium_lighting/exterior/surface_receiver.h"
-#include "medium_lighting/node_sources.h"
+#include <memory>
+
+#include "medium_lighting/lattice_lighting.h"
 
 namespace brisance {
 
@@ -19,14 +17,14 @@ public:
 
     // Fills `fire` and `smoke` of receivers, where the input said that surfaces are lit.
     void at_surfaces(std::vector<SurfaceReceiver>& points) const;
-    VisibilityRatios fire_visibility() const { return fire_ ? fire_->visibility_ratios() : VisibilityRatios{}; }
-    VisibilityRatios smoke_visibility() const { return smoke_ ? smoke_->visibility_ratios() : VisibilityRatios{}; }
+    VisibilityRatios fire_visibility() const { return lighting_->fire_visibility(); }
+    VisibilityRatios smoke_visibility() const { return lighting_->smoke_visibility(); }
 
 private:
     MediumLightingInput input_;
-    LitLattice lattice_;
+    float share_of_coarser_ = 0.0f;
+    std::unique_ptr<LatticeLighting> lighting_, coarser_;  // the second null: no share
     NodeLighting nodes_;
-    std::unique_ptr<ExteriorLights> fire_, smoke_;
 };
 
 }  // namespace brisance

@@ -14,7 +14,7 @@ HierarchyLights build_fire_lights(const LitLattice& lattice, Statistics& statist
     progress.stage("fire to lights");
     const Stopwatch watch;
     const Medium& medium = lattice.medium();
-    HierarchyLights lights = build_hierarchy(medium, {voxel_lights(medium), {}}, lattice.input().lighting.levels);
+    HierarchyLights lights = build_hierarchy(medium, {lattice.fire_lights(), {}}, lattice.input().lighting.levels);
     const double emitted = luminance(Rgb(total(lights.light.intensity)));
     statistics.stages.push_back(
         {"lights and hierarchy",

@@ -20,7 +20,7 @@ std::vector<ScatteredLight> orders_of_scattering(const LitLattice& lattice, cons
         {&lattice.pyramid(), &first, &lattice.needed(), input.lighting, input.scattering, input.orders_apart}, costs,
         progress);
     StageCost series{"orders of scattering on the coarse lattice", watch.seconds(), costs.bytes, {}};
-    series.detail = {{"lattice_level", costs.lattice_level},
+    series.detail = {{"lattice_level", lattice.level() + costs.lattice_level},
                      {"share_of_coarser_level", costs.share_of_coarser},
                      {"nodes", costs.coarse_nodes},
                      {"operator_seconds", costs.operator_seconds},

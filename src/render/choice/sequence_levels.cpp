@@ -22,7 +22,8 @@ private:
 }  // namespace
 
 bool leaves_levels_open(const Shot& shot) {
-    return shot.method != RenderMethod::Path && (shot.lighting.levels <= 0 || shot.scattering.lattice_level < 0);
+    return shot.method != RenderMethod::Path &&
+           (shot.lighting.lattice_level < 0 || shot.lighting.levels <= 0 || shot.scattering.lattice_level < 0);
 }
 
 Shot with_levels_of(Shot shot, const std::filesystem::path& volume, int frame, Progress& progress) {
@@ -30,15 +31,17 @@ Shot with_levels_of(Shot shot, const std::filesystem::path& volume, int frame, P
         return shot;
     WarningsAlone quiet(progress);
     Statistics unused;
-    const AutomaticLevels levels = automatic_levels_of(load_medium(shot, volume, frame, unused, quiet));
+    const AutomaticLevels levels = automatic_levels_of(load_medium(shot, volume, frame, unused, quiet), shot.lighting);
+    if (shot.lighting.lattice_level < 0)
+        shot.lighting.lattice_level = levels.light;
     if (shot.lighting.levels <= 0)
         shot.lighting.levels = levels.lighting;
     if (shot.scattering.lattice_level < 0)
         shot.scattering.lattice_level = levels.scattering;
-    progress.notice(
-        fmt::format("lattices of all frames, by the largest file, {}: lighting.levels={}, "
-                    "scattering.lattice_level={}",
-                    volume.filename().string(), shot.lighting.levels, shot.scattering.lattice_level));
+    progress.notice(fmt::format(
+        "lattices of all frames, by the largest file, {}: lighting.levels={}, lighting.lattice_level={}, "
+        "scattering.lattice_level={}",
+        volume.filename().string(), shot.lighting.levels, shot.lighting.lattice_level, shot.scattering.lattice_level));
     return shot;
 }
 

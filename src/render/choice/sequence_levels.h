@@ -9,10 +9,11 @@
 
 namespace brisance {
 
-// Whether the shot leaves lighting.levels or scattering.lattice_level open and its method looks at them.
+// Whether the shot leaves lighting.levels, lighting.lattice_level or scattering.lattice_level open and its method looks
+// at them.
 bool leaves_levels_open(const Shot& shot);
 
-// The shot with both as the medium of this frame has them; what the shot states stays. Reads the frame's files. Which
+// The shot with these as the medium of this frame has them; what the shot states stays. Reads the frame's files. Which
 // frame that is must not depend on those that are rendered: the largest file of the sequence. Throws Error.
 Shot with_levels_of(Shot shot, const std::filesystem::path& volume, int frame, Progress& progress);
 

@@ -13,6 +13,10 @@ void add_lighting_keys(std::vector<Key>& keys) {
         "auto: up to an eighth of lighting.error",
         or_word(real_float({0.0, 1.0}), "auto", -1.0f), [](Shot & s) -> auto& { return s.lighting.interpolation; }));
     keys.push_back(make_key(
+        "lighting.lattice_level",
+        "light in smoke is gathered on voxels 2^n wide; auto: as wide as lighting.error allows",
+        or_word(whole(0, 8), "auto", -1), [](Shot & s) -> auto& { return s.lighting.lattice_level; }));
+    keys.push_back(make_key(
         "lighting.alpha", "a light of level l serves up to about alpha spacings of its level: larger is more exact",
         real_float({1.0, 64.0}), [](Shot & s) -> auto& { return s.lighting.alpha; }));
     keys.push_back(make_key(

@@ -1,4 +1,4 @@
-#include "medium_lighting/lit_levels.h"
+#include "medium_lighting/levels/lit_levels.h"
 
 #include <algorithm>
 #include <array>
@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "gathering/point_depths.h"
 #include "lighting_grid/voxel_lights.h"
+#include "medium_lighting/levels/coarse_lighting.h"
 #include "shadows/shadow_kernels.h"
 
 namespace brisance {
@@ -79,21 +80,6 @@ void weigh_by_camera(LitLevel& level, const PointDepths& depths, const LightingC
             level.visible[i] = seen * (width / distance) * (width / distance);
         },
         4096);
-}
-
-// Luminance of the emission coefficient per node of the medium.
-std::vector<float> emission_coefficients(const Medium& medium) {
-    std::vector<float> emission(medium.extinction.size(), 0.0f);
-    parallel_for(
-        emission.size(),
-        [&](std::size_t i) {
-            if (!medium.source.empty())
-                emission[i] = medium.extinction[i] * luminance(medium.source[i]);
-            if (!medium.emission.empty())
-                emission[i] += luminance(medium.emission[i]);
-        },
-        4096);
-    return emission;
 }
 
 // Averages the emission to the lattice twice as coarse, and makes it the source functions of a level.
@@ -182,7 +168,7 @@ std::vector<LitLevel> make_lit_levels(const ExtinctionPyramid& pyramid, const st
     std::vector<LitLevel> levels;
     const PointDepths depths(pyramid, kCameraRayLevel);
     const bool emits = pyramid.medium().emits();
-    std::vector<float> emission = emits ? emission_coefficients(pyramid.medium()) : std::vector<float>{};
+    std::vector<float> emission = emits ? emission_luminance(pyramid.medium()) : std::vector<float>{};
     for (int l = 1; l <= std::min(count, pyramid.level_count() - 1); ++l) {
         LitLevel level;
         level.level = l;

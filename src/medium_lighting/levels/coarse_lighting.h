@@ -1,0 +1,22 @@
+// Light on a coarser lattice than the medium's: the medium there, and the light back at the medium's nodes.
+#pragma once
+
+#include <vector>
+
+#include "medium/medium.h"
+
+namespace brisance {
+
+// The medium on the lattice 2^level coarser: mean extinction, mean emission as an emission coefficient, and mean albedo
+// by extinction.
+Medium medium_to_light(const Medium& fine, int level);
+
+// Luminance of the emission coefficient per node [W/(m^3 sr)].
+std::vector<float> emission_luminance(const Medium& medium);
+
+// Light at the nodes of a lattice from that at the nodes of one 2^level coarser. In smoke light falls almost
+// exponentially: its eighth root is interpolated.
+std::vector<Rgb> light_at_fine_nodes(const BrickLattice& coarse, std::vector<Rgb> light, int level,
+                                     const BrickLattice& fine);
+
+}  // namespace brisance
