@@ -138,7 +138,7 @@ TEST_P(Ranges, OfTheSchemaAreTheRenderers) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OfVirtualLights, Ranges,
-                         ::testing::Values("count", "point_bound", "sphere_neighbours", "sphere_samples",
+                         ::testing::Values("count", "window", "point_bound", "sphere_neighbours", "sphere_samples",
                                            "candidates_per_pixel", "neighbours", "radius_factor", "photons",
                                            "profile_resolution", "resampling_candidates", "n_min", "n_max",
                                            "importance_floor", "light_samples", "resampling_rays", "lightcuts_error",
@@ -151,7 +151,7 @@ TEST(AllRanges, AreTested) {
         if (key.path.starts_with("virtual_lights.") && key.path != "virtual_lights.seed" &&
             (key.schema.value("type", "") == "integer" || key.schema.value("type", "") == "number"))
             ++numbers;
-    EXPECT_EQ(numbers, 18);
+    EXPECT_EQ(numbers, 19);
 }
 
 // What the check takes the renderer can build, where it does not take long.

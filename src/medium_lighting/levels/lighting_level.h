@@ -1,9 +1,9 @@
 // The lattice on which the light of a medium lives: coarser than the medium's own where its error is allowed.
 //
-// A picture errs with the square of the optical depth of the voxels on which light is gathered, with the constant of the
-// believed errors (forecast/expected_errors.cpp), and with the emission that a coarser lattice cannot represent, whose
-// constant was chosen by pictures of one volume. What is allowed is what interpolation
-// may add (gathering/settings.h): nothing where lighting every node takes no more than a minute.
+// A picture errs with the square of the optical depth of the voxels on which light is gathered, with the constant of
+// the believed errors (forecast/expected_errors.cpp), and with the emission that a coarser lattice cannot represent,
+// whose constant was chosen by pictures of one volume. What is allowed is what interpolation may add
+// (gathering/settings.h): nothing where lighting every node takes no more than a minute.
 #pragma once
 
 #include "medium_lighting/input.h"
