@@ -63,10 +63,6 @@ constexpr std::size_t kRaysAtOnce = 1 << 18;
 
 }  // namespace
 
-// Neighbouring rays of a pixel that a volume of fine voxels was seen along (0.45 of them to a pixel): a third of a
-// voxel apart they err by 0.04 % of the picture, a fifth apart by 0.02 %, as far apart as pixels by 0.5 %.
-constexpr double kRaysOfVoxel = 3.0;
-
 int automatic_samples(const Camera& camera, const SourceField& field) {
     if (field.bricks().empty())
         return 1;
@@ -77,7 +73,7 @@ int automatic_samples(const Camera& camera, const SourceField& field) {
         nearest = std::min(nearest, std::max(0.0, glm::dot(centre - camera.eye_local(), camera.forward())));
     }
     const double footprint = camera.pixel_angle() * nearest / medium.spacing;  // voxels per pixel
-    return std::clamp(static_cast<int>(std::ceil(kRaysOfVoxel * std::min(footprint, 1e3))), 1, 8);
+    return std::clamp(static_cast<int>(std::ceil(5.0 * std::min(footprint, 1e3))), 1, 8);
 }
 
 Image render_picture(const SourceField& field, const Camera& camera, const PictureSettings& settings,

@@ -55,7 +55,7 @@ struct SurfaceSample {
 // rows of a picture; which of them go together changes the result by no more than what interpolation on planes may.
 using LightSurfaces = std::function<void(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light)>;
 
-// The number of samples along a pixel's side that keeps neighbouring rays within a third of a voxel where the medium is
+// The number of samples along a pixel's side that keeps neighbouring rays within a fifth of a voxel where the medium is
 // nearest.
 int automatic_samples(const Camera& camera, const SourceField& field);
 
