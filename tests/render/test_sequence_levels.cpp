@@ -36,6 +36,8 @@ TEST(SequenceLevels, AreThoseOfTheGivenFrameAndWhatTheShotStatesStays) {
     shot.lighting.levels = 3;
     EXPECT_EQ(with_levels_of(shot, folder / "a.0002.vdb", 2, silent).lighting.levels, 3);
     shot.scattering.lattice_level = 0;
+    EXPECT_TRUE(leaves_levels_open(shot));
+    shot.lighting.lattice_level = 0;
     EXPECT_FALSE(leaves_levels_open(shot));
     shot.scattering.lattice_level = -1;
     shot.method = RenderMethod::Path;

@@ -26,6 +26,7 @@ std::string to_text(const KeptChoice& choice) {
     const Shot& shot = choice.shot;
     Json json = {{"time", of_time(shot.time, shot.velocity)},
                  {"lighting_levels", shot.lighting.levels},
+                 {"lighting_lattice_level", shot.lighting.lattice_level},
                  {"lattice_level", shot.scattering.lattice_level},
                  {"said", choice.said},
                  {"volumes", Json::array()}};
@@ -43,6 +44,7 @@ std::optional<KeptChoice> kept_choice(const std::string& text, const Shot& given
         const Json json = Json::parse(text);
         take_time(json.at("time"), shot.time, shot.velocity);
         shot.lighting.levels = json.at("lighting_levels").get<int>();
+        shot.lighting.lattice_level = json.at("lighting_lattice_level").get<int>();
         shot.scattering.lattice_level = json.at("lattice_level").get<int>();
         json.at("said").get_to(out.said);
         if (json.contains("exposure_stops"))
