@@ -56,17 +56,11 @@ Medium coarse_medium(const ExtinctionPyramid& fine, int level) {
 Medium coarse_medium(const Medium& fine, int level) {
     BrickLattice lattice = fine.lattice;
     std::vector<float> extinction = fine.extinction;
-    for (int l = 0; l < level; ++l) {
-        BrickLattice coarse;
-        std::vector<float> values;
-        coarsen(lattice, extinction, 1, coarse, values);
-        lattice = std::move(coarse);
-        extinction = std::move(values);
-    }
+    average_down(lattice, extinction, 1, level);
     return coarse_medium(fine, std::move(lattice), std::move(extinction), level);
 }
 
-std::vector<float> averaged_down(BrickLattice lattice, std::vector<float> values, int channels, int levels) {
+void average_down(BrickLattice& lattice, std::vector<float>& values, int channels, int levels) {
     for (int l = 0; l < levels; ++l) {
         BrickLattice coarse;
         std::vector<float> means;
@@ -74,6 +68,10 @@ std::vector<float> averaged_down(BrickLattice lattice, std::vector<float> values
         lattice = std::move(coarse);
         values = std::move(means);
     }
+}
+
+std::vector<float> averaged_down(BrickLattice lattice, std::vector<float> values, int channels, int levels) {
+    average_down(lattice, values, channels, levels);
     return values;
 }
 

@@ -13,7 +13,10 @@ namespace brisance {
 Medium coarse_medium(const ExtinctionPyramid& fine, int level);
 Medium coarse_medium(const Medium& fine, int level);
 
-// Averages node values (`channels` interleaved) to the lattice 2^levels coarser, with a pyramid's weights.
+// Averages node values (`channels` interleaved) to the lattice 2^levels coarser, with a pyramid's weights. In place:
+// the lattice becomes that one.
+void average_down(BrickLattice& lattice, std::vector<float>& values, int channels, int levels);
+// The values alone.
 std::vector<float> averaged_down(BrickLattice lattice, std::vector<float> values, int channels, int levels);
 
 // Splats node values (`channels` interleaved) to the lattice 2^levels coarser; keeps their sum.

@@ -4,7 +4,7 @@
 
 namespace brisance {
 
-Medium with_mean_fire(const Medium& medium, std::span<const Medium* const> moments) {
+Medium with_mean_fire(Medium medium, std::span<const Medium* const> moments) {
     dvec3 mean(0.0);
     for (const Medium* const moment : moments)
         mean += total(voxel_lights(*moment)) / double(moments.size());
@@ -13,11 +13,10 @@ Medium with_mean_fire(const Medium& medium, std::span<const Medium* const> momen
     for (int c = 0; c < 3; ++c)
         if (own[c] > 0.0)
             factor[c] = float(mean[c] / own[c]);
-    Medium out = medium;
-    for (std::vector<Rgb>* const field : {&out.source, &out.emission})
+    for (std::vector<Rgb>* const field : {&medium.source, &medium.emission})
         for (Rgb& value : *field)
             value *= factor;
-    return out;
+    return medium;
 }
 
 }  // namespace brisance

@@ -10,6 +10,6 @@ namespace brisance {
 
 // The medium, with its fire made as strong as it is in the mean of the moments, of which there is at least one: the sum
 // of all voxel lights, channel by channel.
-Medium with_mean_fire(const Medium& medium, std::span<const Medium* const> moments);
+Medium with_mean_fire(Medium medium, std::span<const Medium* const> moments);
 
 }  // namespace brisance

@@ -485,6 +485,17 @@ class Rendering(VolumeCase):
                            "--set", "scattering.lattice_level=0", "--set", "lighting.lattice_level=0")
         self.assertNotIn("lattices of all frames", done.stderr)
 
+    def test_volumes_of_different_ranges(self):
+        pattern = self.make_sequence([1, 2, 3])
+        for frame in (1, 2):
+            shutil.copyfile(self.volume, self.folder / f"other_{frame:04}.vdb")
+        shot = self.write("two.json", json.dumps({"volume": {"file": pattern},
+                                                  "volumes": [{"file": "other_####.vdb"}]}))
+        self.expect(0, "render", shot, *SMALL, "-f", 2, "-o", self.out / "a.####.exr")
+        done = self.expect(66, "render", shot, *SMALL, "-f", 3, "-o", self.out / "a.####.exr",
+                           says=["frame 3 is missing", "time.after"])
+        self.assertEqual(done.stderr.count("error:"), 1)
+
     def test_damaged_frame_stops_the_rest(self):
         pattern = self.make_sequence([1, 2])
         (self.folder / "burst_0002.vdb").write_text("damaged", encoding="utf-8")

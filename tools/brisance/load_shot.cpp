@@ -209,7 +209,7 @@ std::string volume_pattern(const Shot& shot) {
     return shot.volume.file.empty() ? "" : (shot.folder / shot.volume.file).string();
 }
 
-std::vector<FrameFile> resolve_frames(const Shot& shot, const std::optional<std::vector<int>>& requested) {
+std::vector<FrameFile> own_frames(const Shot& shot, const std::optional<std::vector<int>>& requested) {
     std::vector<FrameFile> frames;
     if (has_frame_token(volume_pattern(shot)) && (requested || !shot.time.identity()))
         frames = frames_in_time(shot, requested);
@@ -218,6 +218,11 @@ std::vector<FrameFile> resolve_frames(const Shot& shot, const std::optional<std:
     else
         for (const int frame : requested.value_or(std::vector<int>{1}))
             frames.push_back({frame, {}});
+    return frames;
+}
+
+std::vector<FrameFile> resolve_frames(const Shot& shot, const std::optional<std::vector<int>>& requested) {
+    std::vector<FrameFile> frames = own_frames(shot, requested);
     for (const FrameFile& frame : frames)
         for (const fs::path& file : further_files(shot, frame.frame))
             if (!file.empty())

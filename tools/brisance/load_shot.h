@@ -43,5 +43,7 @@ std::string volume_pattern(const Shot& shot);
 // has no volume, or nothing is at a frame's time, files are empty. Without requested frames all that show the sequence,
 // or frame 1 where there is no volume. Throws Error as resolve_sequence and own_files.
 std::vector<FrameFile> resolve_frames(const Shot& shot, const std::optional<std::vector<int>>& requested);
+// The same by the shot's own volume alone, whatever its further volumes have at these frames.
+std::vector<FrameFile> own_frames(const Shot& shot, const std::optional<std::vector<int>>& requested);
 
 }  // namespace brisance

@@ -52,9 +52,8 @@ private:
             return 0.0f;
         const BrickLattice& nodes = medium_.lattice;
         BrickLattice lattice = nodes;
-        const std::vector<float> means = averaged_down(lattice, emission_, 1, level);
-        for (int l = 0; l < level; ++l)
-            lattice = coarse_lattice(lattice);
+        std::vector<float> means = emission_;
+        average_down(lattice, means, 1, level);
         const CoarseSampler sampler{lattice, level};
         std::vector<double> off(nodes.brick_count()), all(nodes.brick_count());
         parallel_for(

@@ -114,7 +114,8 @@ Instant OpenShutter::lit(std::size_t lighting) const {
         std::vector<const Medium*> media;
         for (const Instant& i : stretch)
             media.push_back(i.medium);
-        out.own_medium = std::make_unique<Medium>(with_mean_fire(*out.medium, media));
+        out.own_medium =
+            std::make_unique<Medium>(with_mean_fire(out.own_medium ? std::move(*out.own_medium) : *out.medium, media));
         out.medium = out.own_medium.get();
     }
     return out;

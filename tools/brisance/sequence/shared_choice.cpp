@@ -14,6 +14,7 @@
 #include "load_shot.h"
 #include "render/choice/sequence_levels.h"
 #include "render/input/kept_inputs.h"
+#include "render/input/load_medium.h"
 #include "render/input/volume_in_time.h"
 #include "sequence/kept_choice.h"
 #include "shot/write_shot.h"
@@ -26,12 +27,22 @@ namespace fs = std::filesystem;
 constexpr float kTrialError = 0.1f;  // lighting.error of a trial picture
 constexpr int kTrialSamples = 16;    // of its pixels, with method path
 
-// All frames on disk; none where there are fewer than two, and a frame chooses for itself.
+bool has_all_volumes(const Shot& shot, const FrameFile& frame) {
+    try {
+        const std::vector<fs::path> files = further_files(shot, frame.frame);
+        return std::ranges::all_of(files, [](const fs::path& f) { return f.empty() || fs::exists(f); });
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+// All frames on disk for which every volume of the shot is; none where there are fewer than two, and a frame chooses
+// for itself.
 std::vector<FrameFile> largest_first(const Shot& shot) {
     if (volume_pattern(shot).empty())
         return {};
-    std::vector<FrameFile> all = resolve_frames(shot, std::nullopt);
-    std::erase_if(all, [](const FrameFile& f) { return f.file.empty(); });
+    std::vector<FrameFile> all = own_frames(shot, std::nullopt);
+    std::erase_if(all, [&](const FrameFile& f) { return f.file.empty() || !has_all_volumes(shot, f); });
     if (all.size() < 2)
         return {};
     std::ranges::stable_sort(all, std::greater(), [](const FrameFile& f) { return fs::file_size(f.file); });
