@@ -26,6 +26,11 @@ namespace {
 
 constexpr std::int64_t kMostPixels = std::int64_t{1} << 28;  // 16384 x 16384; more is a damaged header
 
+// A few bytes can state a display window of any size. Empty space around the data is filled up to 512 MiB (8K in four
+// channels), or where the data has a 64th of the pixels at least.
+constexpr std::size_t kMostEmptyValues = std::size_t{1} << 27;
+constexpr std::size_t kMostEmptyPerPixel = 64;
+
 [[noreturn]] void reject(const std::filesystem::path& file, const std::string& why) {
     throw Error(ExitCode::BadData, fmt::format("{}: {}", file.string(), why));
 }
@@ -102,14 +107,25 @@ std::int64_t pixel_count(const std::filesystem::path& file, const Imath::Box2i& 
     return width * height;
 }
 
+void check_empty_space(const std::filesystem::path& file, std::size_t stored, std::size_t shown,
+                       const std::vector<Layer>& layers) {
+    std::size_t channels = 0;
+    for (const Layer& layer : layers)
+        channels += layer.channels.size();
+    if (shown * channels > kMostEmptyValues && shown / kMostEmptyPerPixel > stored)
+        reject(file, fmt::format("its display window of {} pixels has only {} pixels of data; crop it to these", shown,
+                                 stored));
+}
+
 Image read_layers(const std::filesystem::path& file) {
     Imf::InputFile input(file.c_str());
     const Imath::Box2i data = input.header().dataWindow();
     const Imath::Box2i display = input.header().displayWindow();
     const auto count = static_cast<std::size_t>(pixel_count(file, data));
-    pixel_count(file, display);
+    const auto shown = static_cast<std::size_t>(pixel_count(file, display));
     const Imf::ChannelList& channels = input.header().channels();
     Image image{display.max.x - display.min.x + 1, display.max.y - display.min.y + 1, layers_of(file, channels)};
+    check_empty_space(file, count, shown, image.layers);
 
     Imf::FrameBuffer frame;
     const std::int64_t data_width = std::int64_t{data.max.x} - data.min.x + 1;

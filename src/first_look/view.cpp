@@ -16,8 +16,7 @@ constexpr double kMostPixels = 1 << 22;
 // Cells along the same line of sight share a pixel.
 class Pixels {
 public:
-    Pixels(const View& view, const ViewAxes& axes)
-        : view_(view), axes_(axes), side_(kCellsPerPixel * view.cell_metres) {
+    Pixels(const View& view, const ViewAxes& axes) : axes_(axes), side_(kCellsPerPixel * view.cell_metres) {
         glm::dvec2 low(INFINITY), high(-INFINITY);
         for (const ViewCell& c : view.cells) {
             const glm::dvec2 p = project(c);
@@ -44,7 +43,6 @@ private:
         return {glm::dot(c.position, axes_.right), glm::dot(c.position, axes_.up)};
     }
 
-    const View& view_;
     const ViewAxes& axes_;
     double side_;
     glm::dvec2 low_{0.0};

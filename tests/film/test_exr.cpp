@@ -157,17 +157,29 @@ TEST(Exr, AnImageWithANumberThatIsNoneIsRefused) {
     }
 }
 
-TEST(Exr, DataWindowIsPlacedWithinTheDisplayWindow) {
-    const TemporaryFolder folder;
+// 2 x 2 pixels of ones at (3, 1) of a display window.
+void write_cropped(const std::filesystem::path& file, int display_width, int display_height) {
     OIIO::ImageSpec spec(2, 2, 3, OIIO::TypeDesc::FLOAT);
     spec.x = 3, spec.y = 1;
-    spec.full_width = 4, spec.full_height = 3;  // the data's right column lies outside
+    spec.full_width = display_width, spec.full_height = display_height;
     const std::vector<float> ones(2 * 2 * 3, 1.0f);
     const auto output = OIIO::ImageOutput::create("a.exr");
-    ASSERT_TRUE(output->open((folder / "a.exr").string(), spec));
+    ASSERT_TRUE(output->open(file.string(), spec));
     ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, ones.data()));
     ASSERT_TRUE(output->close());
+}
 
+TEST(Exr, AFewBytesDoNotTakeAGigabyteOfEmptySpace) {
+    const TemporaryFolder folder;
+    write_cropped(folder / "a.exr", 16384, 8192);
+    EXPECT_EQ(code_of([&] { read_exr(folder / "a.exr"); }), ExitCode::BadData);
+    write_cropped(folder / "b.exr", 7680, 4320);
+    EXPECT_EQ(read_exr(folder / "b.exr").width, 7680) << "a crop of a frame in 8K";
+}
+
+TEST(Exr, DataWindowIsPlacedWithinTheDisplayWindow) {
+    const TemporaryFolder folder;
+    write_cropped(folder / "a.exr", 4, 3);  // the data's right column lies outside
     const Image image = read_exr(folder / "a.exr");
     ASSERT_EQ(image.width, 4);
     ASSERT_EQ(image.height, 3);
