@@ -1,6 +1,7 @@
 #include "camera_rays/source_field.h"
 
 #include <algorithm>
+#include <memory>
 
 #include "core/parallel.h"
 #include "medium/lattice/voxel_walk.h"
@@ -9,26 +10,31 @@ namespace brisance {
 
 namespace {
 
-constexpr int kSide = BrickLattice::kSize + 1;
-constexpr int kRecords = kSide * kSide * kSide;
+constexpr int kNodesAside = BrickLattice::kSize + 1;
+constexpr int kNodes = kNodesAside * kNodesAside * kNodesAside;
+
+std::vector<float> around_brick(const BrickLattice& lattice, std::span<const float> field, int channels,
+                                const ivec3& low) {
+    std::vector<float> box(static_cast<std::size_t>(channels) * kNodes);
+    copy_box(lattice, field, channels, low, ivec3(kNodesAside), box);
+    return box;
+}
 
 template <class Record>
 void put(const Medium& medium, const std::vector<Rgb>& field, const ivec3& low, int slot, Record* records) {
     if (field.empty())
         return;
-    std::vector<float> box(3 * kRecords);
-    copy_box(medium.lattice, {reinterpret_cast<const float*>(field.data()), field.size() * 3}, 3, low, ivec3(kSide),
-             box);
-    for (int i = 0; i < kRecords; ++i)
+    const std::vector<float> box =
+        around_brick(medium.lattice, {reinterpret_cast<const float*>(field.data()), field.size() * 3}, 3, low);
+    for (int i = 0; i < kNodes; ++i)
         for (int c = 0; c < 3; ++c)
-            records[i].value[slot + c] = box[c * kRecords + i];
+            records[i].value[slot + c] = box[c * kNodes + i];
 }
 
 template <class Record>
 void put_extinction(const Medium& medium, const ivec3& low, Record* records) {
-    std::vector<float> box(kRecords);
-    copy_box(medium.lattice, medium.extinction, 1, low, ivec3(kSide), box);
-    for (int i = 0; i < kRecords; ++i)
+    const std::vector<float> box = around_brick(medium.lattice, medium.extinction, 1, low);
+    for (int i = 0; i < kNodes; ++i)
         records[i].value[Record::Extinction] = box[i];
 }
 
@@ -36,60 +42,104 @@ template <class Record>
 Record interpolated(const Record* records, const vec3& p) {
     const ivec3 base = glm::min(ivec3(p), ivec3(BrickLattice::kSize - 1));
     const vec3 f = p - vec3(base);
-    const Record* r = records + (base.x * kSide + base.y) * kSide + base.z;
+    const Record* r = records + (base.x * kNodesAside + base.y) * kNodesAside + base.z;
     Record out{};
     for (int k = 0; k < 8; ++k) {
         const float w = (k & 4 ? f.x : 1 - f.x) * (k & 2 ? f.y : 1 - f.y) * (k & 1 ? f.z : 1 - f.z);
-        const Record& corner = r[((k >> 2) * kSide + (k >> 1 & 1)) * kSide + (k & 1)];
+        const Record& corner = r[((k >> 2) * kNodesAside + (k >> 1 & 1)) * kNodesAside + (k & 1)];
         for (int i = 0; i < Record::Size; ++i)
             out.value[i] += w * corner.value[i];
     }
     return out;
 }
 
+bool light_from_outside(const NodeSources* sources) {
+    return sources != nullptr && (!sources->from_surfaces.empty() || !sources->from_emitters.empty());
+}
+
 }  // namespace
 
+SourceField::SourceField(const Medium& medium, const NodeSources* sources, const Medium* similar, float forward)
+    : medium_(&medium),
+      sources_(sources),
+      similar_(similar),
+      forward_(forward),
+      direct_(!medium.emission.empty()),
+      outside_(light_from_outside(sources)),
+      bricks_(voxel_lattice(medium)),
+      minimum_(bricks_.brick_count()),
+      majorant_(bricks_.brick_count()),
+      made_(bricks_.brick_count()) {
+    parallel_for(
+        bricks_.brick_count(),
+        [&](std::size_t b) {
+            const std::vector<float> extinction =
+                around_brick(medium.lattice, medium.extinction, 1, bricks_.first_node(b));
+            const auto [least, greatest] = std::minmax_element(extinction.begin(), extinction.end());
+            minimum_[b] = *least;
+            majorant_[b] = *greatest;
+        },
+        16);
+}
+
+SourceField::SourceField(const Medium& medium) : SourceField(medium, nullptr, nullptr, 0.0f) {}
+
 SourceField::SourceField(const Medium& medium, const NodeSources& sources, const Medium* similar, float forward)
-    : medium_(&medium), direct_(!medium.emission.empty()), bricks_(voxel_lattice(medium)) {
-    records_.resize(bricks_.brick_count() * kRecords, SourceRecord{});
-    similar_.resize(similar ? records_.size() : 0, SimilarRecord{});
-    const bool outside = !sources.from_surfaces.empty() || !sources.from_emitters.empty();
-    outside_.resize(outside ? records_.size() : 0, SurroundingsRecord{});
-    minimum_.resize(bricks_.brick_count());
-    majorant_.resize(bricks_.brick_count());
-    parallel_for(bricks_.brick_count(), [&](std::size_t b) {
-        SourceRecord* records = &records_[b * kRecords];
-        const ivec3 low = bricks_.first_node(b);
-        put_extinction(medium, low, records);
-        const auto by_extinction = [](const SourceRecord& p, const SourceRecord& q) { return p.value[0] < q.value[0]; };
-        const auto [least, greatest] = std::minmax_element(records, records + kRecords, by_extinction);
-        minimum_[b] = least->value[SourceRecord::Extinction];
-        majorant_[b] = greatest->value[SourceRecord::Extinction];
-        put(medium, direct_ ? medium.emission : medium.source, low, SourceRecord::V, records);
-        put(medium, sources.single, low, SourceRecord::MV, records);
-        put(medium, sources.multiple, low, SourceRecord::MM, records);
-        if (outside) {
-            put(medium, sources.from_surfaces, low, SurroundingsRecord::MS, &outside_[b * kRecords]);
-            put(medium, sources.from_emitters, low, SurroundingsRecord::MA, &outside_[b * kRecords]);
-        }
-        if (similar) {
-            put_extinction(*similar, low, &similar_[b * kRecords]);
-            put(*similar, direct_ ? similar->emission : similar->source, low, SimilarRecord::V,
-                &similar_[b * kRecords]);
-        }
-        for (int i = 0; i < kRecords; ++i) {
-            const ivec3 node = low + ivec3(i / (kSide * kSide), i / kSide % kSide, i % kSide);
-            const std::int64_t n = medium.lattice.find_node(node);
-            const Rgb albedo = n < 0 ? medium.albedo : medium.albedo_at(n);
-            records[i].value[SourceRecord::Albedo] = luminance(albedo);
-            for (int c = 0; similar && c < 3; ++c)
-                similar_[b * kRecords + i].value[SimilarRecord::Forward + c] = forward * albedo[c];
-        }
-    });
+    : SourceField(medium, &sources, similar, forward) {}
+
+SourceField::~SourceField() {
+    for (const std::atomic<const BrickRecords*>& made : made_)
+        delete made.load(std::memory_order_relaxed);
+}
+
+void SourceField::put_similar(BrickRecords& out, const ivec3& low) const {
+    out.similar.resize(kRecords);
+    put_extinction(*similar_, low, out.similar.data());
+    put(*similar_, direct_ ? similar_->emission : similar_->source, low, SimilarRecord::V, out.similar.data());
+}
+
+const SourceField::BrickRecords& SourceField::make(std::size_t brick) const {
+    auto out = std::make_unique<BrickRecords>();
+    SourceRecord* const own = out->own.data();
+    const ivec3 low = bricks_.first_node(brick);
+    put_extinction(*medium_, low, own);
+    put(*medium_, direct_ ? medium_->emission : medium_->source, low, SourceRecord::V, own);
+    if (sources_ != nullptr) {
+        put(*medium_, sources_->single, low, SourceRecord::MV, own);
+        put(*medium_, sources_->multiple, low, SourceRecord::MM, own);
+    }
+    if (outside_) {
+        out->outside.resize(kRecords);
+        put(*medium_, sources_->from_surfaces, low, SurroundingsRecord::MS, out->outside.data());
+        put(*medium_, sources_->from_emitters, low, SurroundingsRecord::MA, out->outside.data());
+    }
+    if (similar_ != nullptr)
+        put_similar(*out, low);
+    for (int i = 0; i < kRecords; ++i) {
+        const ivec3 node = low + ivec3(i / (kSide * kSide), i / kSide % kSide, i % kSide);
+        const std::int64_t n = medium_->lattice.find_node(node);
+        const Rgb albedo = n < 0 ? medium_->albedo : medium_->albedo_at(n);
+        own[i].value[SourceRecord::Albedo] = luminance(albedo);
+        for (int c = 0; similar_ != nullptr && c < 3; ++c)
+            out->similar[i].value[SimilarRecord::Forward + c] = forward_ * albedo[c];
+    }
+    const BrickRecords* kept = nullptr;
+    if (made_[brick].compare_exchange_strong(kept, out.get(), std::memory_order_acq_rel))
+        kept = out.release();
+    return *kept;
+}
+
+std::uint64_t SourceField::bytes() const {
+    const auto made = static_cast<std::uint64_t>(std::count_if(
+        made_.begin(), made_.end(), [](const auto& records) { return records.load(std::memory_order_relaxed); }));
+    const std::uint64_t of_brick = sizeof(BrickRecords) + kRecords * (has_similar() ? sizeof(SimilarRecord) : 0) +
+                                   kRecords * (has_outside() ? sizeof(SurroundingsRecord) : 0);
+    return made * of_brick + made_.size() * (sizeof(made_[0]) + 2 * sizeof(float)) + bricks_.bytes();
 }
 
 float SourceField::majorant_of_voxel(std::size_t brick, const ivec3& voxel) const {
-    const SourceRecord* r = &records_[brick * kRecords + std::size_t((voxel.x * kSide + voxel.y) * kSide + voxel.z)];
+    const SourceRecord* r =
+        &records(brick).own[static_cast<std::size_t>((voxel.x * kSide + voxel.y) * kSide + voxel.z)];
     float most = 0.0f;
     for (int k = 0; k < 8; ++k)
         most = std::max(most, r[((k >> 2) * kSide + (k >> 1 & 1)) * kSide + (k & 1)].value[SourceRecord::Extinction]);
@@ -97,15 +147,15 @@ float SourceField::majorant_of_voxel(std::size_t brick, const ivec3& voxel) cons
 }
 
 SourceRecord SourceField::sample(std::size_t brick, const vec3& p) const {
-    return interpolated(&records_[brick * kRecords], p);
+    return interpolated(records(brick).own.data(), p);
 }
 
 SurroundingsRecord SourceField::sample_outside(std::size_t brick, const vec3& p) const {
-    return interpolated(&outside_[brick * kRecords], p);
+    return interpolated(records(brick).outside.data(), p);
 }
 
 SimilarRecord SourceField::sample_similar(std::size_t brick, const vec3& p) const {
-    return interpolated(&similar_[brick * kRecords], p);
+    return interpolated(records(brick).similar.data(), p);
 }
 
 }  // namespace brisance

@@ -1,9 +1,12 @@
 // The medium as the camera samples it: extinction and the source functions of each ledger cell, together.
 //
 // Voxels lie in bricks of 8^3 with 9^3 node records, so that a trilinear sample touches one brick; bricks without
-// extinction or emission are absent, and a ray steps over them without a sample.
+// extinction or emission are absent, and a ray steps over them without a sample. The records of a brick are made when
+// the first ray samples it: smoke that is hidden, or outside the picture, has none.
 #pragma once
 
+#include <array>
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
@@ -34,10 +37,16 @@ struct SurroundingsRecord {
 
 class SourceField {
 public:
-    // `similar`: the medium of the sources, if it is not the medium itself; `forward`: the share of all scattering in
-    // its omitted peak.
-    explicit SourceField(const Medium& medium, const NodeSources& sources = {}, const Medium* similar = nullptr,
-                         float forward = 0.0f);
+    // The medium by itself: nothing lights it. Keeps a reference.
+    explicit SourceField(const Medium& medium);
+    // Keeps references to all. `similar`: the medium of the sources, if it is not the medium itself; `forward`: the
+    // share of all scattering in its omitted peak.
+    SourceField(const Medium& medium, const NodeSources& sources, const Medium* similar = nullptr,
+                float forward = 0.0f);
+    SourceField(const Medium&, NodeSources&&, const Medium* = nullptr, float = 0.0f) = delete;
+    ~SourceField();
+    SourceField(const SourceField&) = delete;
+    SourceField& operator=(const SourceField&) = delete;
 
     const Medium& medium() const { return *medium_; }
     const BrickLattice& bricks() const { return bricks_; }  // of voxels
@@ -45,12 +54,9 @@ public:
     float minimum(std::size_t brick) const { return minimum_[brick]; }  // of extinction over the brick's voxels
     float majorant(std::size_t brick) const { return majorant_[brick]; }
     float majorant_of_voxel(std::size_t brick, const ivec3& voxel) const;  // of extinction over its corners
-    bool has_similar() const { return !similar_.empty(); }
-    bool has_outside() const { return !outside_.empty(); }
-    std::uint64_t bytes() const {
-        return records_.size() * sizeof(SourceRecord) + similar_.size() * sizeof(SimilarRecord) +
-               outside_.size() * sizeof(SurroundingsRecord) + bricks_.bytes();
-    }
+    bool has_similar() const { return similar_ != nullptr; }
+    bool has_outside() const { return outside_; }
+    std::uint64_t bytes() const;  // of what has been made so far
 
     // Trilinear samples at p, in nodes from the brick's first node, each coordinate in [0, 8].
     SourceRecord sample(std::size_t brick, const vec3& p) const;
@@ -58,13 +64,32 @@ public:
     SurroundingsRecord sample_outside(std::size_t brick, const vec3& p) const;
 
 private:
+    static constexpr int kSide = BrickLattice::kSize + 1;
+    static constexpr int kRecords = kSide * kSide * kSide;
+    struct BrickRecords {
+        std::array<SourceRecord, kRecords> own;
+        std::vector<SimilarRecord> similar;       // empty: the medium itself
+        std::vector<SurroundingsRecord> outside;  // empty: the surroundings send no light
+    };
+
+    SourceField(const Medium& medium, const NodeSources* sources, const Medium* similar, float forward);
+
+    // Threads that make the same records at once make them alike; one of them is kept.
+    const BrickRecords& records(std::size_t brick) const {
+        const BrickRecords* const made = made_[brick].load(std::memory_order_acquire);
+        return made != nullptr ? *made : make(brick);
+    }
+    const BrickRecords& make(std::size_t brick) const;
+    void put_similar(BrickRecords& out, const ivec3& low) const;
+
     const Medium* medium_;
-    bool direct_;
+    const NodeSources* sources_;  // null: none
+    const Medium* similar_;       // null: the medium itself
+    float forward_;
+    bool direct_, outside_;
     BrickLattice bricks_;
-    std::vector<SourceRecord> records_;
-    std::vector<SimilarRecord> similar_;       // empty: the medium itself
-    std::vector<SurroundingsRecord> outside_;  // empty: the surroundings send no light
     std::vector<float> minimum_, majorant_;
+    mutable std::vector<std::atomic<const BrickRecords*>> made_;
 };
 
 }  // namespace brisance

@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/stopwatch.h"
 #include "forecast/memory_need.h"
+#include "medium_lighting/levels/lighting_level.h"
 #include "render/frame_picture.h"
 #include "render/many_lights.h"
 
@@ -58,6 +59,17 @@ std::optional<LightPictures> picture_lights(const DrawInput& input, const Virtua
     return out;
 }
 
+// Looks for the lattice of the light, which takes time, only where the medium's own needs too much.
+void check_memory_to_light(const DrawInput& input) {
+    const std::optional<std::uint64_t> available = available_memory();
+    const auto needed = [&](int level) {
+        return bytes_to_light(input.medium, input.plan.directional, input.shot.lighting.memory_limit_bytes, level);
+    };
+    if (available && needed(0) > *available)
+        check_memory(input.medium, needed(lighting_level(medium_lighting_input(input, input.plan, input.medium)).level),
+                     available);
+}
+
 // The picture of a frame, or of a stretch of its shutter, and the lights that it is made with.
 Drawn draw_lit(const DrawInput& input, const LitStretch* stretch, Statistics& statistics, Progress& progress) {
     const ManyLights lights(input, statistics, progress);
@@ -102,9 +114,7 @@ Drawn draw_by_many_lights(const DrawInput& input, Statistics& statistics, Progre
     if (input.surroundings)
         check_surroundings(input.shot);
     if (input.plan.single || input.plan.multiple)
-        check_memory(input.medium,
-                     bytes_to_light(input.medium, input.plan.directional, input.shot.lighting.memory_limit_bytes),
-                     available_memory());
+        check_memory_to_light(input);
     return input.shutter ? draw_moving(input, statistics, progress) : draw_lit(input, nullptr, statistics, progress);
 }
 

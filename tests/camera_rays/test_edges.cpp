@@ -47,7 +47,7 @@ std::vector<float> picture(const Rectangle& r, int samples, int refinement) {
     settings.layers = {Cell::A};
     settings.surroundings = &surroundings;
     Progress silent;
-    const Image image = render_picture(SourceField(medium, {}), camera, settings, silent);
+    const Image image = render_picture(SourceField(medium), camera, settings, silent);
     std::vector<float> out;
     const std::vector<float>& a = image.layer("A").pixels;
     for (std::size_t i = 0; i < a.size(); i += 3)

@@ -123,7 +123,8 @@ TEST(EmissionAbsorption, AFlameInSmokeIsDimmedByIt) {
 TEST(EmissionAbsorption, ScatteredSourcesAreSeenAsEmittedOnesAre) {
     const Medium medium = make_medium(slab(0.05));
     const std::vector<Rgb> single(medium.lattice.node_count(), Rgb(2.0f)), multiple(single.size(), Rgb(5.0f));
-    const SourceField field(medium, {single, multiple, {}, {}});
+    const NodeSources sources{single, multiple, {}, {}};
+    const SourceField field(medium, sources);
     const RaySum sum = integrate(field, {dvec3(medium.local_of_world({0.0, 0.0, -5.0})), {0, 0, 1}}, 2);
     const double opacity = -std::expm1(-32.0 * 0.05);
     EXPECT_NEAR(sum.cells.at(Cell::V).x / opacity, 1.0, 1e-4);

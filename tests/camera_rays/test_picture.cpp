@@ -111,7 +111,8 @@ TEST(Picture, BeautyIsTheSumOfItsCells) {
         single[i] = Rgb(float(i % 7), 1.0f, 0.5f);
         multiple[i] = Rgb(1.0f, float(i % 5), 0.0f);
     }
-    const SourceField field(medium, {single, multiple, {}, {}});
+    const NodeSources sources{single, multiple, {}, {}};
+    const SourceField field(medium, sources);
     PictureSettings settings;
     settings.layers = {Cell::V, Cell::MV, Cell::MM};
     Progress silent;

@@ -117,8 +117,9 @@ TEST(LightingLevel, FollowsTheOpticalDepthOfVoxelsWithoutJumps) {
         const LightingLevel level = lighting_level(medium, settings);
         const float at = float(level.level) + level.share_of_coarser;
         EXPECT_LE(at, before);
-        if (before < 100.0f)
+        if (before < 100.0f) {
             EXPECT_LT(before - at, 0.35f) << extinction;
+        }
         before = at;
     }
     EXPECT_EQ(before, 0.0f);

@@ -19,6 +19,13 @@ TEST(MemoryNeed, GrowsWithTheNodesAndWithTheDirectionsOfLight) {
     EXPECT_GT(bytes_to_light(small, false, kMaps), bytes_to_light(small, false, 0));
 }
 
+TEST(MemoryNeed, FallsWhereLightHasACoarserLattice) {
+    const Medium medium = make_medium(glowing_ball(40, 1.0f));
+    const std::uint64_t own = bytes_to_light(medium, false, kMaps), twice = bytes_to_light(medium, false, kMaps, 1);
+    EXPECT_LT(twice, own / 2);
+    EXPECT_GT(twice, own / 16) << "the camera keeps what it sees of every node";
+}
+
 TEST(MemoryNeed, IsRefusedWhereItIsMoreThanThereIs) {
     const Medium medium = make_medium(glowing_ball(10, 1.0f));
     const std::uint64_t needed = bytes_to_light(medium, false, kMaps);
@@ -31,6 +38,7 @@ TEST(MemoryNeed, IsRefusedWhereItIsMoreThanThereIs) {
         EXPECT_EQ(error.code(), ExitCode::Temporary);
         const std::string line = error.what();
         EXPECT_NE(line.find("lighting.memory_limit_mebibytes"), std::string::npos) << line;
+        EXPECT_NE(line.find("lighting.lattice_level"), std::string::npos) << line;
         EXPECT_NE(line.find("method=path"), std::string::npos) << line;
         EXPECT_EQ(line.find('\n'), std::string::npos);
     }

@@ -21,7 +21,7 @@ struct VolumePart {
     VelocitySettings velocity;
     bool blurred = false;  // the shutter is open: velocity is read where there is one
     dmat4 carried{0.0};    // velocity by what carries it (carried_volume.h)
-    MediumGrids grids;
+    MediumGrids grids{};
 };
 
 struct ReadVolume {

@@ -1,5 +1,7 @@
 #include "render/shutter/moment_lights.h"
 
+#include <utility>
+
 #include "medium/similar_medium.h"
 
 namespace brisance {
@@ -7,15 +9,17 @@ namespace brisance {
 namespace {
 
 std::unique_ptr<MovedField> moved_field(const LitMedium& lit, const Medium& medium, const Origins& origins) {
-    const NodeSources sources =
+    NodeSources sources =
         lit.lighting() ? moved_sources(lit.lighting()->at_nodes(), lit.field().medium(), origins) : NodeSources{};
-    return std::make_unique<MovedField>(sources, medium, lit.bounces(), lit.forward());
+    return std::make_unique<MovedField>(std::move(sources), medium, lit.bounces(), lit.forward());
 }
 
 }  // namespace
 
-MovedField::MovedField(const NodeSources& sources, const Medium& medium, int bounces, float forward)
-    : similar_(similar_medium(medium, bounces)), field_(medium, sources, similar_ ? &*similar_ : nullptr, forward) {}
+MovedField::MovedField(NodeSources sources, const Medium& medium, int bounces, float forward)
+    : sources_(std::move(sources)),
+      similar_(similar_medium(medium, bounces)),
+      field_(medium, sources_, similar_ ? &*similar_ : nullptr, forward) {}
 
 MomentLights::MomentLights(const ManyLights& lights)
     : field_(&lights.medium().field()),

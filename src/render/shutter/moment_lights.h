@@ -13,13 +13,14 @@ namespace brisance {
 class MovedField {
 public:
     // `sources`: at the nodes of `medium`; `bounces`, `forward`: of the lit medium (LitMedium).
-    MovedField(const NodeSources& sources, const Medium& medium, int bounces, float forward);
+    MovedField(NodeSources sources, const Medium& medium, int bounces, float forward);
     MovedField(const MovedField&) = delete;
     MovedField& operator=(const MovedField&) = delete;
 
     const SourceField& field() const { return field_; }
 
 private:
+    NodeSources sources_;
     std::optional<Medium> similar_;
     SourceField field_;
 };
