@@ -73,9 +73,9 @@ Bsdf::Bsdf(const SurfaceMaterial& m, const ShadingFrame& frame, const EnergyTabl
       specular_(matched_ ? 0.0f : m.specular),
       f0_(glm::min(float(normal_reflectance(ior_)) * m.specular_colour, Rgb(1.0f))) {
     assert(valid(m) && (tables ? tables->ior() == double(m.ior) : !needs_energy_tables(m)));
+    f0_max_ = max_channel(f0_);
     if (!tables)
         return;
-    f0_max_ = max_channel(f0_);
     const float mean_blend = static_cast<float>(tables->mean_blend());
     base_share_mean_ = 1.0f - specular_ * (f0_max_ + (1.0f - f0_max_) * mean_blend);
     const float crossing = base_share_mean_;

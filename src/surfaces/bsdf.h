@@ -114,7 +114,7 @@ private:
     bool has_base_, has_specular_;
     Rgb base_;
     float metal_, coated_, glass_, sheet_;  // shares of the surface; their sum is 1
-    float specular_, f0_max_;               // the dielectric's F90, and its largest F0 / F90
+    float specular_, f0_max_ = 0.0f;        // the dielectric's F90, and its largest F0 / F90
     Rgb f0_;                                // its F0 / F90
     // Albedo of multiple scattering: the share that returns of light lost by single scattering.
     Rgb metal_multiple_{0.0f}, coat_multiple_{0.0f};

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <new>
+#include <vector>
 
 #include "core/rng.h"
 #include "surface_fixture.h"
@@ -20,6 +22,24 @@ bool finite_and_not_negative(const Rgb& c) {
 dvec3 any_direction(Rng& rng) {
     const double z = 2.0 * rng.next_double() - 1.0;
     return direction(z, 6.283185 * rng.next_double());
+}
+
+// In memory full of numbers that are none, so that a member without a value would be one.
+TEST(Bsdf, LeavesNoMemberToChance) {
+    alignas(Bsdf) static volatile unsigned char memory[sizeof(Bsdf)];
+    SurfaceMaterial plain;
+    plain.specular = 0.0f;
+    std::vector<NamedSurface> surfaces = coloured_surfaces();
+    surfaces.push_back({"Lambert alone", plain});
+    for (const NamedSurface& surface : surfaces) {
+        for (volatile unsigned char& byte : memory)
+            byte = 0xff;
+        const Bsdf* const bsdf = new (const_cast<unsigned char*>(memory)) Bsdf(surface.material, ShadingFrame{});
+        const dvec3 wo = direction(0.7, 0.3), wi = direction(0.4, 2.0);
+        EXPECT_TRUE(finite_and_not_negative(bsdf->evaluate(wo, wi))) << surface.name;
+        EXPECT_EQ(bsdf->evaluate(wo, wi), Bsdf(surface.material, ShadingFrame{}).evaluate(wo, wi)) << surface.name;
+        EXPECT_EQ(bsdf->pdf(wo, wi), Bsdf(surface.material, ShadingFrame{}).pdf(wo, wi)) << surface.name;
+    }
 }
 
 // f(wo, wi) / index_o^2 = f(wi, wo) / index_i^2, with the index of the side that each direction lies on (Veach 1997,
