@@ -32,6 +32,13 @@ std::string budget_of(const SuiteSize& size, const Method& method) {
     return method.base == "lighting_grid" ? size.grid_steps : size.sides;
 }
 
+// What a method says of itself stays so.
+void add_settings(const std::vector<std::string>& settings, Method& method) {
+    for (const std::string& setting : settings)
+        if (!sets(method.settings, setting.substr(0, setting.find('='))))
+            method.settings.push_back(setting);
+}
+
 }  // namespace
 
 const std::vector<SuiteSize>& suite_sizes() {
@@ -39,17 +46,18 @@ const std::vector<SuiteSize>& suite_sizes() {
         {"quick",
          "minutes: small pictures, few lights, coarse lattices",
          64,
-         256,
+         64,
          "4,16",
-         "1,3",
+         "1,2",
          "1",
-         // Photons are the cheapest MM and SM beside virtual lights, which are judged by MS and SS alone.
-         {"scattering.method=volumetric_photons", "camera.edge_refinement=1", "lighting.lattice_level=4", "lighting.error=0.1", "lighting.alpha=1",
-          "scattering.lattice_level=4", "scattering.alpha=1", "virtual_lights.count=500",
-          "virtual_lights.photons=50000", "virtual_lights.neighbours=32", "ray_lights.paths=2048",
+         {"camera.edge_refinement=1", "lighting.lattice_level=3", "lighting.error=0.1", "lighting.alpha=1",
+          "scattering.lattice_level=3", "scattering.alpha=1", "virtual_lights.count=300",
+          "virtual_lights.photons=20000", "virtual_lights.neighbours=32", "ray_lights.paths=2048",
           "ray_lights.count=8192", "volumetric_vpls.paths=4096", "volumetric_vpls.count=8192",
-          "volumetric_photons.paths=50000"}},
-        {"full", "hours: the shots' own settings", 160, 4096, "4,16,64,256", "1,2,3,4", "1,2,4", {}}};
+          "volumetric_photons.paths=50000"},
+         {"lighting.lattice_level=5", "lighting.error=0.3"},
+         {"scattering.method=volumetric_photons", "volumetric_photons.paths=20000"}},
+        {"full", "hours: the shots' own settings", 160, 4096, "4,16,64,256", "1,2,3,4", "1,2,4", {}, {}, {}}};
     return all;
 }
 
@@ -68,7 +76,14 @@ std::vector<Method> suite_methods(const SuiteSize& size, const std::vector<std::
     MethodOptions options{names.empty() ? built_in_methods() : names, {}, {}};
     for (const Method& method : parse_methods(options))
         options.budgets.push_back(method.label + ":" + budget_of(size, method));
-    return parse_methods(options);
+    std::vector<Method> methods = parse_methods(options);
+    for (Method& method : methods) {
+        if (!owns(method, name_of(Cell::MV)))
+            add_settings(size.beside_fire, method);
+        if (!owns(method, name_of(Cell::MM)))
+            add_settings(size.beside_scattering, method);
+    }
+    return methods;
 }
 
 std::vector<SuiteScene> suite_scenes(const fs::path& shots, const std::vector<std::string>& further) {

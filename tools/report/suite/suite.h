@@ -19,6 +19,9 @@ struct SuiteSize {
     std::string grid_steps;             // of the ladder of lighting_grid: "1,3"
     std::string sides;                  // samples along a pixel's side, of all other methods: "1,2"
     std::vector<std::string> settings;  // over those of every shot, for every method
+    // What is cheap where it is not judged: further ones of the methods that do not own MV, and of those without MM.
+    std::vector<std::string> beside_fire;
+    std::vector<std::string> beside_scattering;
 };
 
 const std::vector<SuiteSize>& suite_sizes();

@@ -69,7 +69,9 @@ Json head_json(const SuiteReport& suite) {
               {"path_samples", size.path_samples},
               {"grid_steps", size.grid_steps},
               {"sides", size.sides},
-              {"settings", size.settings}}}};
+              {"settings", size.settings},
+              {"beside_fire", size.beside_fire},
+              {"beside_scattering", size.beside_scattering}}}};
 }
 
 }  // namespace

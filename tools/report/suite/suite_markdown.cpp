@@ -142,6 +142,10 @@ std::string how_it_was_made(const SuiteReport& suite) {
         size.name, size.width, suite.reference_samples, size.path_samples, size.grid_steps, size.sides);
     if (!size.settings.empty())
         text += fmt::format(" Settings over those of every shot: `{}`.", fmt::join(size.settings, " "));
+    for (const auto& [settings, cell] : {std::pair{&size.beside_fire, "MV"}, {&size.beside_scattering, "MM"}})
+        if (!settings->empty())
+            text += fmt::format(" Methods that do not compete in `{}` have `{}` for it.", cell,
+                                fmt::join(*settings, " "));
     return text + "\n";
 }
 
