@@ -82,8 +82,7 @@ TEST(SuiteScenes, AreTheListThenMediaThenFurther) {
 TEST(SuiteScenes, KeepTheirShape) {
     SuiteSize size;
     size.width = 64;
-    EXPECT_EQ(size_settings(size, 1280, 720, {}),
-              (std::vector<std::string>{"camera.width=64", "camera.height=36"}));
+    EXPECT_EQ(size_settings(size, 1280, 720, {}), (std::vector<std::string>{"camera.width=64", "camera.height=36"}));
     EXPECT_EQ(size_settings(size, 500, 1000, {}).back(), "camera.height=128");
     EXPECT_TRUE(size_settings(size, 1280, 720, {"camera.width=8"}).empty());
 }

@@ -121,8 +121,8 @@ std::string suites_help() {
 // Methods on one shot, or on those of a suite.
 int report_on(ReportOptions options) {
     if (options.suite.empty() && options.inputs.size() != 1)
-        throw Error(ExitCode::Usage, fmt::format("report takes one SHOT_OR_VDB, or --suite; {} were given",
-                                                 options.inputs.size()));
+        throw Error(ExitCode::Usage,
+                    fmt::format("report takes one SHOT_OR_VDB, or --suite; {} were given", options.inputs.size()));
     if (options.suite.empty())
         options.input = options.inputs.front();
     return run_report(options);
@@ -169,8 +169,9 @@ void add_report_options(CLI::App& command, ReportOptions& options) {
             ->expected(1, 2)
             ->excludes(suite);
     command
-        .add_option("--reference-samples", options.reference_samples,
-                    "Paths per pixel of the reference; default: 1024, or four times the largest budget; of a suite: its own")
+        .add_option(
+            "--reference-samples", options.reference_samples,
+            "Paths per pixel of the reference; default: 1024, or four times the largest budget; of a suite: its own")
         ->check(CLI::Range(4, 1 << 30))
         ->excludes(reference);
     command.add_option("--reference-seconds", options.reference_seconds, "Stops the reference after this time [s]")
@@ -314,8 +315,9 @@ private:
         add_common_options(flicker, flickering_);
         flicker.footer(kExitCodes);
 #ifdef BRISANCE_REPORT
-        CLI::App& report = add("report", "Measures methods against a reference, on one shot or a suite of scenes: page, CSV and JSON",
-                               [this] { return report_on(reported_); });
+        CLI::App& report =
+            add("report", "Measures methods against a reference, on one shot or a suite of scenes: page, CSV and JSON",
+                [this] { return report_on(reported_); });
         add_report_options(report, reported_);
         report.footer(kExitCodes);
         reported_.command_line = {"brisance"};

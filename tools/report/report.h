@@ -34,7 +34,7 @@ struct MeasuredRun {
     MethodStep step;
     std::vector<std::string> settings;  // of method and step, over those of the shot
     std::string command;                // that repeats the render
-    Cost cost;            // median of the repeats, by wall time
+    Cost cost;                          // median of the repeats, by wall time
     double samples_per_pixel = 0.0;
     Statistics statistics;
     std::map<std::string, LayerErrors> errors;  // by layer, "" the beauty

@@ -55,8 +55,9 @@ Json errors_after_json(const ErrorCurve& curve, const std::vector<double>& times
     for (const double seconds : times) {
         const Reading reading = curve.error_after(seconds);
         const bool there = reading.kind != ReadingKind::NotReached;
-        errors.push_back(
-            {{"seconds", seconds}, {"error", there ? json_number(reading.value) : Json()}, {"kind", name_of(reading.kind)}});
+        errors.push_back({{"seconds", seconds},
+                          {"error", there ? json_number(reading.value) : Json()},
+                          {"kind", name_of(reading.kind)}});
     }
     return errors;
 }

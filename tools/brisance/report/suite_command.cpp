@@ -118,18 +118,23 @@ int run_suite(const ReportOptions& options) {
     check_report_files(files.all(), inputs);
 
     const Stopwatch watch;
-    SuiteReport suite{size,           options.reference_samples > 0 ? options.reference_samples : size.reference_samples,
-                      BRISANCE_VERSION, report_date(),
-                      command_of(options), this_machine(),
-                      0.0,            {}};
+    SuiteReport suite{size,
+                      options.reference_samples > 0 ? options.reference_samples : size.reference_samples,
+                      BRISANCE_VERSION,
+                      report_date(),
+                      command_of(options),
+                      this_machine(),
+                      0.0,
+                      {}};
     for (std::size_t i = 0; i < scenes.size(); ++i) {
         NamedProgress named(progress, fmt::format("scene {} of {}, {}", i + 1, scenes.size(), scenes[i].name));
         suite.scenes.push_back(try_scene(scenes[i], size, methods, options, named));
     }
     suite.seconds = watch.seconds();
-    if (std::none_of(suite.scenes.begin(), suite.scenes.end(), [](const MeasuredScene& s) { return s.report.has_value(); }))
-        throw Error(ExitCode::RenderFailed, fmt::format("every scene failed; {}: {}", suite.scenes[0].scene.name,
-                                                        suite.scenes[0].failure));
+    if (std::none_of(suite.scenes.begin(), suite.scenes.end(),
+                     [](const MeasuredScene& s) { return s.report.has_value(); }))
+        throw Error(ExitCode::RenderFailed,
+                    fmt::format("every scene failed; {}: {}", suite.scenes[0].scene.name, suite.scenes[0].failure));
     progress.stage("writing");
     write_suite(files, suite);
     progress.finish();

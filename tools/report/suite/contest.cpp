@@ -60,8 +60,8 @@ Contest contest_of(const Report& report, const std::string& cell, Clock clock) {
     }
     contest.at_time = smallest(contest.contenders, error_of);
     for (std::size_t t = 0; t < kSuiteTargets.size(); ++t)
-        if (const auto first = smallest(contest.contenders,
-                                        [t](const Contender& c) -> const Reading& { return c.times[t]; })) {
+        if (const auto first =
+                smallest(contest.contenders, [t](const Contender& c) -> const Reading& { return c.times[t]; })) {
             contest.target = t;
             contest.at_error = first;
         }

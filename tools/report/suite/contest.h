@@ -16,18 +16,18 @@ constexpr std::array<double, 3> kSuiteTargets = {0.10, 0.05, 0.02};
 
 struct Contender {
     std::string method;
-    Reading error;                                   // after Contest::seconds
+    Reading error;                                    // after Contest::seconds
     std::array<Reading, kSuiteTargets.size()> times;  // [s] to each of kSuiteTargets
-    double floor = 0.0;                              // the smallest error that it was measured with
+    double floor = 0.0;                               // the smallest error that it was measured with
 };
 
 struct Contest {
     std::string cell;
-    double seconds = 0.0;                // at which errors are compared: the median of the contenders' longest runs
-    double noise = 0.0;                  // of the reference: smaller errors are not told apart; 0: not known
-    std::vector<Contender> contenders;   // that own the cell and have an error in it
-    std::optional<std::size_t> at_time;  // index of the smallest error then
-    std::optional<std::size_t> target;   // index of the smallest error of kSuiteTargets that any of them reaches
+    double seconds = 0.0;                 // at which errors are compared: the median of the contenders' longest runs
+    double noise = 0.0;                   // of the reference: smaller errors are not told apart; 0: not known
+    std::vector<Contender> contenders;    // that own the cell and have an error in it
+    std::optional<std::size_t> at_time;   // index of the smallest error then
+    std::optional<std::size_t> target;    // index of the smallest error of kSuiteTargets that any of them reaches
     std::optional<std::size_t> at_error;  // index of the first to reach it
 };
 

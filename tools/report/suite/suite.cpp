@@ -68,8 +68,8 @@ const SuiteSize& suite_size(const std::string& name) {
             return size;
         names.push_back(size.name);
     }
-    throw Error(ExitCode::Usage, fmt::format("--suite: no suite is called \"{}\"; there are {}", name,
-                                             fmt::join(names, ", ")));
+    throw Error(ExitCode::Usage,
+                fmt::format("--suite: no suite is called \"{}\"; there are {}", name, fmt::join(names, ", ")));
 }
 
 std::vector<Method> suite_methods(const SuiteSize& size, const std::vector<std::string>& names) {

@@ -60,19 +60,22 @@ std::string winner_row(const SuiteScene& scene, const Contest& contest) {
     const auto with_error = [&](std::size_t i) {
         return fmt::format("{} ({})", named(i), error_text(contest, contest.contenders[i]));
     };
-    return markdown_row({markdown_text(scene.name), contest.cell, seconds(contest.seconds), with_error(*contest.at_time),
-                second ? with_error(*second) : "-", contest.target ? target_text(kSuiteTargets[*contest.target]) : "-",
-                contest.at_error ? fmt::format("{} ({})", named(*contest.at_error),
-                                               time_text(contest.contenders[*contest.at_error].times[*contest.target]))
-                                 : "none reaches 10 %"});
+    return markdown_row(
+        {markdown_text(scene.name), contest.cell, seconds(contest.seconds), with_error(*contest.at_time),
+         second ? with_error(*second) : "-", contest.target ? target_text(kSuiteTargets[*contest.target]) : "-",
+         contest.at_error ? fmt::format("{} ({})", named(*contest.at_error),
+                                        time_text(contest.contenders[*contest.at_error].times[*contest.target]))
+                          : "none reaches 10 %"});
 }
 
 std::string winners(const SuiteReport& suite) {
-    std::string text = "## Who is best\n\n" + markdown_head({"scene", "cell", "equal time", "best then (error)",
-                                                    "second (error)", "equal error", "first to reach it (time)"});
+    std::string text =
+        "## Who is best\n\n" + markdown_head({"scene", "cell", "equal time", "best then (error)", "second (error)",
+                                              "equal error", "first to reach it (time)"});
     for (const MeasuredScene& scene : suite.scenes) {
         if (!scene.report) {
-            text += markdown_row({markdown_text(scene.scene.name), "-", "-", "failed: " + markdown_text(scene.failure), "", "", ""});
+            text += markdown_row(
+                {markdown_text(scene.scene.name), "-", "-", "failed: " + markdown_text(scene.failure), "", "", ""});
             continue;
         }
         for (const Contest& contest : contests(*scene.report, kSuiteClock))
@@ -90,15 +93,14 @@ std::string failures(const SuiteReport& suite) {
             for (const MethodFailure& failure : scene.report->failures)
                 rows += markdown_row({markdown_text(scene.scene.name), failure.method, markdown_text(failure.reason)});
     }
-    return "## What failed\n\n" +
-           (rows.empty() ? "Nothing: every scene and every method gave pictures.\n"
-                         : markdown_head({"scene", "method", "reason"}) + rows);
+    return "## What failed\n\n" + (rows.empty() ? "Nothing: every scene and every method gave pictures.\n"
+                                                : markdown_head({"scene", "method", "reason"}) + rows);
 }
 
 std::string contender_row(const Contest& contest, std::size_t i) {
     const Contender& contender = contest.contenders[i];
-    std::vector<std::string> fields = {contest.cell, contest.at_time == i ? "**" + contender.method + "**"
-                                                                          : contender.method,
+    std::vector<std::string> fields = {contest.cell,
+                                       contest.at_time == i ? "**" + contender.method + "**" : contender.method,
                                        error_text(contest, contender)};
     for (const Reading& time : contender.times)
         fields.push_back(time_text(time));
@@ -144,8 +146,8 @@ std::string how_it_was_made(const SuiteReport& suite) {
         text += fmt::format(" Settings over those of every shot: `{}`.", fmt::join(size.settings, " "));
     for (const auto& [settings, cell] : {std::pair{&size.beside_fire, "MV"}, {&size.beside_scattering, "MM"}})
         if (!settings->empty())
-            text += fmt::format(" Methods that do not compete in `{}` have `{}` for it.", cell,
-                                fmt::join(*settings, " "));
+            text +=
+                fmt::format(" Methods that do not compete in `{}` have `{}` for it.", cell, fmt::join(*settings, " "));
     return text + "\n";
 }
 
@@ -166,10 +168,11 @@ but `MS` and `SS`, scattering methods in `MM` and `SM`, virtual lights in `MS` a
 }  // namespace
 
 std::string suite_markdown(const SuiteReport& suite) {
-    std::string text = "# Comparison of the methods\n\nMade by `brisance report --suite` ([Compare and "
-                       "report](compare_and_report.md#suites)); not written by hand.\n\n";
-    text += how_it_was_made(suite) + "\n" + kHowToRead + "\n" + winners(suite) + "\n" + failures(suite) +
-            "\n## Figures\n";
+    std::string text =
+        "# Comparison of the methods\n\nMade by `brisance report --suite` ([Compare and "
+        "report](compare_and_report.md#suites)); not written by hand.\n\n";
+    text +=
+        how_it_was_made(suite) + "\n" + kHowToRead + "\n" + winners(suite) + "\n" + failures(suite) + "\n## Figures\n";
     for (const MeasuredScene& scene : suite.scenes)
         text += "\n" + figures_of(scene);
     return text;
