@@ -128,10 +128,10 @@ class Page:
         """The system's colour scheme: "light" or "dark"."""
         self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
 
-    def open(self, file):
-        """Loads a file, by its file:// address, to the end."""
+    def open(self, file, query=""):
+        """Loads a file, by its file:// address and a query ("?scene=1"), to the end."""
         self.events.clear()
-        self.call("Page.navigate", url=pathlib.Path(file).resolve().as_uri())
+        self.call("Page.navigate", url=pathlib.Path(file).resolve().as_uri() + query)
         while "Page.loadEventFired" not in self.events:
             self.receive()
         self.settle()

@@ -109,6 +109,44 @@ TEST(Measuring, FindsTheErrorsOfThePathTracerHalvedByFourTimesThePaths) {
     EXPECT_TRUE(page["flip"]["method1step3"].contains("MM"));
 }
 
+// A shot that is larger than its reference cannot be compared: the second step fails, and the other method goes on.
+TEST(Measuring, GoesOnAfterAFailureWhenAskedTo) {
+    Progress silent;
+    Shot long_one = shot();
+    long_one.tracing.seed = 1;
+    const ReportReference reference = trace_reference(long_one, input(), silent);
+    auto planned = plan_runs(shot(), parse_methods({{"one=path", "two=path"}, {"4,8"}, {}}));
+    planned[0].runs[1].shot.camera.width = 30;
+    Report report;
+    PagePictures pictures({});
+    EXPECT_THROW(measure_runs(planned, input(), reference, {}, report, pictures, silent), Error);
+
+    report = {};
+    PagePictures few({});
+    measure_runs(planned, input(), reference, {1, true, true}, report, few, silent);
+    ASSERT_EQ(report.methods.size(), 2u);
+    EXPECT_EQ(report.methods[0].runs.size(), 1u);
+    EXPECT_EQ(report.methods[1].runs.size(), 2u);
+    ASSERT_EQ(report.failures.size(), 1u);
+    EXPECT_EQ(report.failures[0].method, "one");
+    EXPECT_EQ(report.failures[0].reason, "8 spp: pictures of different sizes cannot be compared");
+    // Of the last steps alone, and of all cells, since paths own them.
+    const nlohmann::ordered_json page = few.to_json();
+    EXPECT_FALSE(page["images"].contains("method2step1"));
+    EXPECT_EQ(page["images"]["method2step2"].size(), 4u);
+}
+
+TEST(Planning, MakesAFailureOfAMethodThatAShotRefuses) {
+    Report report;
+    const auto methods = parse_methods({{"path", "thin=path,smoke.albedo=0"}, {"4"}, {}});
+    const auto planned = plan_what_can_run(shot(), methods, {}, report);
+    ASSERT_EQ(planned.size(), 1u);
+    EXPECT_EQ(planned[0].method.label, "path");
+    ASSERT_EQ(report.failures.size(), 1u);
+    EXPECT_EQ(report.failures[0].method, "thin");
+    EXPECT_HAS(report.failures[0].reason, "smoke.albedo");
+}
+
 class GivenReference : public ::testing::Test {
 protected:
     std::filesystem::path write(const std::string& name, const Shot& shot, float value, int frame = 1,

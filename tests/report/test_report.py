@@ -357,10 +357,9 @@ class Page(unittest.TestCase):
         self.assertEqual(self.page.problems, [])
 
 
-def main():
+def main(module):
     names = sys.argv[3:]
     loader = unittest.TestLoader()
-    module = sys.modules[__name__]
     suite = loader.loadTestsFromNames(names, module) if names else loader.loadTestsFromModule(module)
     result = unittest.TextTestRunner(verbosity=2).run(suite)
     if not result.wasSuccessful():
@@ -370,4 +369,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.modules[__name__])

@@ -28,7 +28,8 @@
 #include "stability_command.h"
 #include "trace_path_command.h"
 #ifdef BRISANCE_REPORT
-#include "report_command.h"
+#include "report/report_command.h"
+#include "suite/suite.h"
 #endif
 
 namespace {
@@ -110,44 +111,79 @@ void add_compare_options(CLI::App& command, CompareOptions& options) {
 }
 
 #ifdef BRISANCE_REPORT
+std::string suites_help() {
+    std::vector<std::string> lines;
+    for (const SuiteSize& size : suite_sizes())
+        lines.push_back(size.name + ": " + size.help);
+    return fmt::format("{}", fmt::join(lines, "; "));
+}
+
+// Methods on one shot, or on those of a suite.
+int report_on(ReportOptions options) {
+    if (options.suite.empty() && options.inputs.size() != 1)
+        throw Error(ExitCode::Usage,
+                    fmt::format("report takes one SHOT_OR_VDB, or --suite; {} were given", options.inputs.size()));
+    if (options.suite.empty())
+        options.input = options.inputs.front();
+    return run_report(options);
+}
+
 void add_report_options(CLI::App& command, ReportOptions& options) {
-    command.add_option("SHOT_OR_VDB", options.input, "A shot (JSON), or a .vdb with or without frame token (####)")
-        ->required();
-    command.add_option("-o,--output", options.output, "The page; CSV and JSON go beside it; default report.html");
-    command.add_option("-f,--frame", options.frame, "The frame; without it, the only one on disk");
+    command
+        .add_option("SHOT_OR_VDB", options.inputs,
+                    "A shot (JSON), glTF, or a .vdb with or without frame token (####); with --suite, further scenes")
+        ->type_name("");
+    command.add_option("-o,--output", options.output,
+                       "The page; CSV and JSON go beside it, of a suite also a summary (.md); default report.html");
+    CLI::Option* const frame =
+        command.add_option("-f,--frame", options.frame, "The frame; without it, the only one on disk");
+    CLI::Option* const suite =
+        command.add_option("--suite", options.suite, "All methods on a list of scenes; " + suites_help())
+            ->excludes(frame);
+    command
+        .add_option("--shots", options.shots,
+                    "The folder with the suite's shots: explosion.json, fire_room.json, street.json, media/*.json; "
+                    "default shots")
+        ->needs(suite);
     command
         .add_option("--methods", options.methods.methods,
                     fmt::format("NAME, or LABEL=NAME, and settings: exact=path,tracing.free_flight=exact; "
-                                "names: {}; default: lighting_grid path",
+                                "names: {}; default: lighting_grid path; of a suite: all",
                                 fmt::join(built_in_methods(), ", ")))
         ->type_name("METHOD ...");
     command
         .add_option("--budgets", options.methods.budgets,
                     "Paths per pixel of the path methods: 4,16,64,256; of one method alone: path:16,64; steps 1 to 4, "
                     "from coarse to fine, of the other one: lighting_grid:2,3")
-        ->type_name("[METHOD:]LIST ...");
+        ->type_name("[METHOD:]LIST ...")
+        ->excludes(suite);
     command
         .add_option("--ladder", options.methods.ladders,
                     "Steps of a method's own: lighting_grid:lighting.alpha=1,2,3; several keys go side by side")
-        ->type_name("METHOD:KEY=LIST ...");
+        ->type_name("METHOD:KEY=LIST ...")
+        ->excludes(suite);
     CLI::Option* const reference =
         command
             .add_option("--reference", options.references,
                         "An EXR, or two independent halves, instead of a reference made for the report")
-            ->expected(1, 2);
+            ->expected(1, 2)
+            ->excludes(suite);
     command
-        .add_option("--reference-samples", options.reference_samples,
-                    "Paths per pixel of the reference; default: 1024, or four times the largest budget")
+        .add_option(
+            "--reference-samples", options.reference_samples,
+            "Paths per pixel of the reference; default: 1024, or four times the largest budget; of a suite: its own")
         ->check(CLI::Range(4, 1 << 30))
         ->excludes(reference);
     command.add_option("--reference-seconds", options.reference_seconds, "Stops the reference after this time [s]")
         ->check(CLI::PositiveNumber)
-        ->excludes(reference);
+        ->excludes(reference)
+        ->excludes(suite);
     command.add_option("--repeats", options.repeats, "Renders each step this many times; its time is the median")
         ->check(CLI::Range(1, 1000));
     command.add_option("--exposures", options.exposures, "Of the page's pictures, beside the shot's [stops]: -3,0,3")
         ->delimiter(',')
-        ->allow_extra_args(false);
+        ->allow_extra_args(false)
+        ->excludes(suite);
     command.add_option("--picture-width", options.picture_width, "Of the page's pictures, at most [pixels]: 480")
         ->check(CLI::Range(16, 16384));
     add_common_options(command, options);
@@ -279,8 +315,9 @@ private:
         add_common_options(flicker, flickering_);
         flicker.footer(kExitCodes);
 #ifdef BRISANCE_REPORT
-        CLI::App& report = add("report", "Measures methods against a reference: page, CSV and JSON",
-                               [this] { return run_report(reported_); });
+        CLI::App& report =
+            add("report", "Measures methods against a reference, on one shot or a suite of scenes: page, CSV and JSON",
+                [this] { return report_on(reported_); });
         add_report_options(report, reported_);
         report.footer(kExitCodes);
         reported_.command_line = {"brisance"};

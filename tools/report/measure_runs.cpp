@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 
 #include "core/error.h"
 #include "methods.h"
@@ -79,7 +80,10 @@ LayerErrors errors_of(const Comparison& comparison, const std::optional<double>&
     return errors;
 }
 
-void compare_layers(const Image& image, const ReportReference& reference, MeasuredRun& run, PagePictures& pictures) {
+// Errors of all layers; of those that `shows` accepts also pictures.
+template <class Shows>
+void compare_layers(const Image& image, const ReportReference& reference, const Shows& shows, MeasuredRun& run,
+                    PagePictures& pictures) {
     const std::vector<std::string> there = picture_layers(image);
     for (const auto& [layer, target] : reference.layers) {
         if (std::find(there.begin(), there.end(), layer) == there.end())
@@ -89,10 +93,44 @@ void compare_layers(const Image& image, const ReportReference& reference, Measur
         const auto noise = reference.summary.noise.find(layer);
         run.errors[layer] =
             errors_of(comparison, noise == reference.summary.noise.end() ? std::nullopt : std::optional(noise->second));
+        if (!shows(layer))
+            continue;
         pictures.add_picture(run.id, layer, picture);
         pictures.add_errors(run.id, layer, picture, mean_picture(target), comparison.differences.epsilon,
                             comparison.flip.errors);
     }
+}
+
+struct RunNumber {
+    std::size_t method, step;  // from 0
+};
+
+MeasuredRun measure_run(const PlannedMethod& planned, RunNumber number, const FrameInput& input,
+                        const ReportReference& reference, const MeasureOptions& options, PagePictures& pictures,
+                        Progress& progress) {
+    const PlannedRun& step = planned.runs[number.step];
+    NamedProgress named(progress, fmt::format("{}, {}", planned.method.label, step.step.label));
+    Rendered rendered = render_repeatedly(step.shot, input, options.repeats, named);
+    MeasuredRun run;
+    run.id = fmt::format("method{}step{}", number.method + 1, number.step + 1);
+    run.step = step.step;
+    run.settings = step.settings;
+    run.cost = rendered.cost;
+    run.samples_per_pixel = rendered.frame.metadata.samples_per_pixel;
+    run.statistics = std::move(rendered.frame.statistics);
+    named.stage("measuring");
+    const bool last = number.step + 1 == planned.runs.size();
+    const auto shows = [&](const std::string& layer) {
+        return !options.few_pictures || (last && (layer.empty() || owns(planned.method, layer)));
+    };
+    compare_layers(rendered.frame.image, reference, shows, run, pictures);
+    return run;
+}
+
+// The first line of what an exception says.
+std::string reason_of(const std::exception& error) {
+    const std::string text = error.what();
+    return text.substr(0, text.find('\n'));
 }
 
 }  // namespace
@@ -125,25 +163,36 @@ std::vector<PlannedMethod> plan_runs(const Shot& shot, const std::vector<Method>
     return planned;
 }
 
+std::vector<PlannedMethod> plan_what_can_run(const Shot& shot, const std::vector<Method>& methods,
+                                             const std::set<int>& taken, Report& report) {
+    std::vector<PlannedMethod> planned;
+    for (const Method& method : methods) {
+        try {
+            planned.push_back(plan_runs(shot, {method}, taken).front());
+        } catch (const std::exception& error) {
+            report.failures.push_back({method.label, reason_of(error)});
+        }
+    }
+    return planned;
+}
+
 void measure_runs(const std::vector<PlannedMethod>& methods, const FrameInput& input, const ReportReference& reference,
                   const MeasureOptions& options, Report& report, PagePictures& pictures, Progress& progress) {
     for (std::size_t m = 0; m < methods.size(); ++m) {
         MethodResult result{methods[m].method, {}};
         for (std::size_t s = 0; s < methods[m].runs.size(); ++s) {
-            const PlannedRun& planned = methods[m].runs[s];
-            NamedProgress named(progress, fmt::format("{}, {}", result.method.label, planned.step.label));
-            Rendered rendered = render_repeatedly(planned.shot, input, options.repeats, named);
-            MeasuredRun run;
-            run.id = fmt::format("method{}step{}", m + 1, s + 1);
-            run.step = planned.step;
-            run.cost = rendered.cost;
-            run.samples_per_pixel = rendered.frame.metadata.samples_per_pixel;
-            run.statistics = std::move(rendered.frame.statistics);
-            named.stage("measuring");
-            compare_layers(rendered.frame.image, reference, run, pictures);
-            result.runs.push_back(std::move(run));
+            try {
+                result.runs.push_back(measure_run(methods[m], {m, s}, input, reference, options, pictures, progress));
+            } catch (const std::exception& error) {
+                if (!options.keep_going)
+                    throw;
+                report.failures.push_back(
+                    {result.method.label, fmt::format("{}: {}", methods[m].runs[s].step.label, reason_of(error))});
+                break;
+            }
         }
-        report.methods.push_back(std::move(result));
+        if (!result.runs.empty())
+            report.methods.push_back(std::move(result));
     }
 }
 

@@ -39,8 +39,14 @@ int free_seed(const std::set<int>& taken);
 Shot shot_with(const Shot& shot, const std::string& source, const std::vector<std::string>& settings);
 
 struct MeasureOptions {
-    int repeats = 1;  // of each render; its time is their median
+    int repeats = 1;          // of each render; its time is their median
+    bool keep_going = false;  // a render that fails ends its method, as one of the report's failures, and nothing else
+    bool few_pictures = false;  // of the last step of a method alone: its picture, and the cells that it owns
 };
+
+// The methods that `plan_runs` accepts; the others become failures of `report`.
+std::vector<PlannedMethod> plan_what_can_run(const Shot& shot, const std::vector<Method>& methods,
+                                             const std::set<int>& taken, Report& report);
 
 // Adds the runs' results to `report`, whose reference is set, and their pictures to `pictures`.
 void measure_runs(const std::vector<PlannedMethod>& methods, const FrameInput& input, const ReportReference& reference,

@@ -24,11 +24,19 @@ struct BuiltIn {
     std::string name;
     Settings settings;
     StepsOf steps = StepsOf::Grid;
+    CellSet cells;
 };
+
+const CellSet kAllCells = {Cell::V,  Cell::A,  Cell::MV, Cell::MM, Cell::MS,
+                           Cell::MA, Cell::SV, Cell::SM, Cell::SS, Cell::SA};
+// All but the light that surfaces scatter, which virtual lights carry also where the grid has everything else.
+const CellSet kCellsOfGrid = {Cell::V, Cell::A, Cell::MV, Cell::MM, Cell::MA, Cell::SV, Cell::SM, Cell::SA};
+const CellSet kCellsOfScatteringMethods = {Cell::MM, Cell::SM};
+const CellSet kCellsOfVirtualLights = {Cell::MS, Cell::SS};
 
 // Virtual lights by the settings of a preset.
 BuiltIn by_virtual_lights(const TechniquePreset& preset) {
-    BuiltIn method{preset.name, {"method=lighting_grid"}, StepsOf::Samples};
+    BuiltIn method{preset.name, {"method=lighting_grid"}, StepsOf::Samples, kCellsOfVirtualLights};
     for (const auto& [key, value] : preset.settings)
         method.settings.push_back("virtual_lights." + key + "=" + value);
     return method;
@@ -38,8 +46,10 @@ BuiltIn by_virtual_lights(const TechniquePreset& preset) {
 void add_scattering_methods(std::vector<BuiltIn>& methods) {
     for (const ScatteringMethod& method : scattering_methods())
         for (const MethodPreset& preset : method.presets) {
-            BuiltIn built_in{
-                preset.label, {"method=lighting_grid", "scattering.method=" + method.name}, StepsOf::Samples};
+            BuiltIn built_in{preset.label,
+                             {"method=lighting_grid", "scattering.method=" + method.name},
+                             StepsOf::Samples,
+                             kCellsOfScatteringMethods};
             for (const std::string& setting : preset.settings)
                 built_in.settings.push_back(method.name + "." + setting);
             methods.push_back(std::move(built_in));
@@ -48,12 +58,13 @@ void add_scattering_methods(std::vector<BuiltIn>& methods) {
 
 std::vector<BuiltIn> make_built_ins() {
     std::vector<BuiltIn> methods = {
-        {"lighting_grid", {"method=lighting_grid", "scattering.method=lighting_grid"}, StepsOf::Grid},
-        {"path", {"method=path"}, StepsOf::Paths},
+        {"lighting_grid", {"method=lighting_grid", "scattering.method=lighting_grid"}, StepsOf::Grid, kCellsOfGrid},
+        {"path", {"method=path"}, StepsOf::Paths, kAllCells},
         {"path_plain",
          {"method=path", "tracing.emission=collision", "tracing.light_sampling=false",
           "tracing.free_flight=null_collision"},
-         StepsOf::Paths}};
+         StepsOf::Paths,
+         kAllCells}};
     add_scattering_methods(methods);
     return methods;
 }
@@ -135,7 +146,8 @@ Method parse_method(const std::string& text) {
     const std::vector<std::string> parts = split(text);
     const bool named = parts[0].find('=') != std::string::npos;
     const BuiltIn& base = built_in(named ? value_of(parts[0]) : parts[0], text);
-    Method method{named ? key_of(parts[0]) : text, base.name, base.settings, {}, base.steps == StepsOf::Paths, false};
+    Method method{named ? key_of(parts[0]) : text, base.name, base.settings, {},
+                  base.steps == StepsOf::Paths,    false,     base.cells};
     if (method.label.empty() || method.label.find(':') != std::string::npos)
         refuse(fmt::format("--methods {}: a label is not empty and holds no colon", text));
     for (std::size_t i = 1; i < parts.size(); ++i) {
@@ -336,6 +348,32 @@ const std::vector<std::string>& built_in_methods() {
         return all;
     }();
     return names;
+}
+
+bool owns(const Method& method, const std::string& cell) {
+    for (std::size_t c = 0; c < kCells; ++c)
+        if (cell == kCellNames[c])
+            return method.cells[c];
+    return false;
+}
+
+namespace {
+
+bool shares_a_cell(const CellSet& a, const CellSet& b) {
+    for (std::size_t cell = 0; cell < kCells; ++cell)
+        if (a[cell] && b[cell])
+            return true;
+    return false;
+}
+
+}  // namespace
+
+std::vector<Method> owners_of(const std::vector<Method>& methods, const CellSet& cells) {
+    std::vector<Method> owners;
+    for (const Method& method : methods)
+        if (shares_a_cell(method.cells, cells))
+            owners.push_back(method);
+    return owners;
 }
 
 std::vector<Method> parse_methods(const MethodOptions& options) {

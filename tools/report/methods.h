@@ -15,6 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "core/cell.h"
+
 namespace brisance {
 
 struct MethodStep {
@@ -29,6 +31,7 @@ struct Method {
     std::vector<MethodStep> steps;      // at least one
     bool unbiased = false;
     bool averages = false;  // its steps average more and more samples: the error falls as time^-1/2
+    CellSet cells;          // that it computes by its own technique; the others of its pictures are another method's
 };
 
 struct MethodOptions {
@@ -45,5 +48,11 @@ bool sets(const std::vector<std::string>& settings, const std::string& key);
 
 // Names of the built-in methods.
 const std::vector<std::string>& built_in_methods();
+
+// Whether the method owns the cell of this name.
+bool owns(const Method& method, const std::string& cell);
+
+// Those of `methods` that own one of the cells.
+std::vector<Method> owners_of(const std::vector<Method>& methods, const CellSet& cells);
 
 }  // namespace brisance

@@ -32,8 +32,9 @@ struct LayerErrors {
 struct MeasuredRun {
     std::string id;  // of its pictures in the page
     MethodStep step;
-    std::string command;  // that repeats the render
-    Cost cost;            // median of the repeats, by wall time
+    std::vector<std::string> settings;  // of method and step, over those of the shot
+    std::string command;                // that repeats the render
+    Cost cost;                          // median of the repeats, by wall time
     double samples_per_pixel = 0.0;
     Statistics statistics;
     std::map<std::string, LayerErrors> errors;  // by layer, "" the beauty
@@ -42,6 +43,12 @@ struct MeasuredRun {
 struct MethodResult {
     Method method;
     std::vector<MeasuredRun> runs;
+};
+
+// A method, or a step of it, that gave no picture.
+struct MethodFailure {
+    std::string method;
+    std::string reason;  // one line
 };
 
 struct ReferenceSummary {
@@ -78,6 +85,7 @@ struct Report {
     std::vector<std::string> layers;  // of the reference: "" and its cells
     ReferenceSummary reference;
     std::vector<MethodResult> methods;
+    std::vector<MethodFailure> failures;
 };
 
 // The errors that times are read off for, from the largest.

@@ -7,21 +7,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double value) {
-    return std::isfinite(value) ? Json(value) : Json();
-}
-
 Json optional_number(const std::optional<double>& value) {
-    return value ? number(*value) : Json();
+    return value ? json_number(*value) : Json();
 }
 
 Json errors_json(const LayerErrors& errors) {
     return {{"noise_free", optional_number(errors.noise_free)},
-            {"rrmse", number(errors.differences.rrmse)},
-            {"relmse", number(errors.differences.relmse)},
-            {"mape", number(errors.differences.mape)},
-            {"mean", number(errors.differences.mean)},
-            {"flip", number(errors.flip)},
+            {"rrmse", json_number(errors.differences.rrmse)},
+            {"relmse", json_number(errors.differences.relmse)},
+            {"mape", json_number(errors.differences.mape)},
+            {"mean", json_number(errors.differences.mean)},
+            {"flip", json_number(errors.flip)},
             {"below_noise", errors.below_noise},
             {"not_finite", {{"image", errors.not_finite.image}, {"reference", errors.not_finite.reference}}}};
 }
@@ -47,7 +43,7 @@ Json times_json(const ErrorCurve& curve) {
         const Reading reading = curve.time_to(target);
         const bool reached = reading.kind != ReadingKind::NotReached;
         times.push_back({{"target", target},
-                         {"seconds", reached ? number(reading.value) : Json()},
+                         {"seconds", reached ? json_number(reading.value) : Json()},
                          {"kind", name_of(reading.kind)},
                          {"floor", curve.floor()}});
     }
@@ -59,8 +55,9 @@ Json errors_after_json(const ErrorCurve& curve, const std::vector<double>& times
     for (const double seconds : times) {
         const Reading reading = curve.error_after(seconds);
         const bool there = reading.kind != ReadingKind::NotReached;
-        errors.push_back(
-            {{"seconds", seconds}, {"error", there ? number(reading.value) : Json()}, {"kind", name_of(reading.kind)}});
+        errors.push_back({{"seconds", seconds},
+                          {"error", there ? json_number(reading.value) : Json()},
+                          {"kind", name_of(reading.kind)}});
     }
     return errors;
 }
@@ -74,14 +71,22 @@ Json convergence_json(const Report& report, const MethodResult& result) {
             if (curve.points().empty())
                 continue;
             const std::optional<PowerLaw> law = curve.law(), of_work = curve.law_of_work();
-            json[layer][name] = {{"slope", law ? number(law->exponent) : Json()},
-                                 {"constant", law ? number(law->constant) : Json()},
-                                 {"startup_seconds", number(curve.startup())},
-                                 {"slope_in_paths", of_work ? number(of_work->exponent) : Json()},
+            json[layer][name] = {{"slope", law ? json_number(law->exponent) : Json()},
+                                 {"constant", law ? json_number(law->constant) : Json()},
+                                 {"startup_seconds", json_number(curve.startup())},
+                                 {"slope_in_paths", of_work ? json_number(of_work->exponent) : Json()},
                                  {"times", times_json(curve)},
                                  {"errors", errors_after_json(curve, equal_times(report, clock))}};
         }
     return json;
+}
+
+Json cells_json(const CellSet& cells) {
+    Json names = Json::array();
+    for (std::size_t cell = 0; cell < kCells; ++cell)
+        if (cells[cell])
+            names.push_back(kCellNames[cell]);
+    return names;
 }
 
 Json method_json(const Report& report, const MethodResult& result) {
@@ -91,6 +96,7 @@ Json method_json(const Report& report, const MethodResult& result) {
     return {{"label", result.method.label},
             {"base", result.method.base},
             {"settings", result.method.settings},
+            {"cells", cells_json(result.method.cells)},
             {"unbiased", result.method.unbiased},
             {"converges", result.method.averages},
             {"convergence", convergence_json(report, result)},
@@ -100,7 +106,7 @@ Json method_json(const Report& report, const MethodResult& result) {
 Json reference_json(const ReferenceSummary& reference) {
     Json noise = Json::object();
     for (const auto& [layer, value] : reference.noise)
-        noise[layer] = number(value);
+        noise[layer] = json_number(value);
     return {{"label", reference.label},
             {"description", reference.description},
             {"files", reference.files},
@@ -153,6 +159,10 @@ Json time_json(const Report& report) {
 
 }  // namespace
 
+nlohmann::ordered_json json_number(double value) {
+    return std::isfinite(value) ? Json(value) : Json();
+}
+
 const char* name_of(ReadingKind kind) {
     switch (kind) {
         case ReadingKind::Interpolated:
@@ -171,6 +181,9 @@ Json report_json(const Report& report) {
     Json methods = Json::array();
     for (const MethodResult& result : report.methods)
         methods.push_back(method_json(report, result));
+    Json failures = Json::array();
+    for (const MethodFailure& failure : report.failures)
+        failures.push_back({{"method", failure.method}, {"reason", failure.reason}});
     return {{"schema_version", 1},
             {"brisance", report.version},
             {"date", report.date},
@@ -184,7 +197,8 @@ Json report_json(const Report& report) {
             {"equal_times", {{"wall", equal_times(report, Clock::Wall)}, {"cpu", equal_times(report, Clock::Cpu)}}},
             {"layers", report.layers},
             {"reference", reference_json(report.reference)},
-            {"methods", std::move(methods)}};
+            {"methods", std::move(methods)},
+            {"failures", std::move(failures)}};
 }
 
 }  // namespace brisance

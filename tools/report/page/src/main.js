@@ -4,7 +4,8 @@ import { byId } from "./dom.js";
 import { addMeasurements } from "./measurements.js";
 import { addPictures } from "./pictures.js";
 import { addRepeat } from "./repeat.js";
-import { report } from "./report.js";
+import { hasPicture, report } from "./report.js";
+import { addSuite } from "./suite.js";
 import { addThemeChoice } from "./theme.js";
 
 const { shot, machine } = report;
@@ -19,12 +20,13 @@ byId("subtitle").textContent = [
 ].join(" \u00b7 ");
 
 addThemeChoice();
+addSuite(byId("suite"), byId("suite-link"));
 const plot = addConvergence(byId("convergence"), byId("reach"), byId("equal-time"));
 const viewer = addPictures(byId("pictures"));
 addMeasurements(byId("measurements"));
 addCost(byId("cost"));
 addRepeat(byId("repeat"));
-plot.onPick((id) => viewer.show({ left: id }));
+plot.onPick((id) => hasPicture(id) && viewer.show({ left: id }));
 
 // For scripts and the browser's console.
 window.brisanceReport = { report, plot, viewer };

@@ -1,7 +1,7 @@
 // The pictures: any two of them in the viewer, and all of them side by side.
 import { h } from "./dom.js";
 import { measures } from "./format.js";
-import { pictures, reference, report, seriesColour } from "./report.js";
+import { picturedRuns, pictures, reference, report, seriesColour } from "./report.js";
 import { caption, setPicture, Viewer } from "./viewer.js";
 
 function thumbnail(viewer, id, title) {
@@ -46,7 +46,7 @@ function gallery(viewer) {
             h(
                 "div",
                 { class: "thumbs" },
-                method.runs.map((run) => thumbnail(viewer, run.id, run.label)),
+                picturedRuns(method).map((run) => thumbnail(viewer, run.id, run.label)),
             ),
         ),
     );

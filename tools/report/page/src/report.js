@@ -3,14 +3,26 @@ import { clocks } from "./format.js";
 
 const parse = (id) => JSON.parse(document.getElementById(id).textContent);
 
-export const report = parse("report-data");
-export const pictures = parse("report-pictures");
+// Of a page with several scenes: the suite, and which of its scenes the address names (?scene=2, from 0).
+export const suite = document.getElementById("suite-data") ? parse("suite-data") : null;
+const scenes = suite ? suite.scenes.filter((scene) => scene.report !== null).length : 0;
+const asked = Number(new URLSearchParams(location.search).get("scene") ?? 0);
+export const sceneIndex = Number.isInteger(asked) && asked >= 0 && asked < scenes ? asked : 0;
+
+const ofScene = (id) => parse(suite ? `${id}-${sceneIndex}` : id);
+
+export const report = ofScene("report-data");
+export const pictures = ofScene("report-pictures");
 
 export const reference = "reference"; // id of its pictures
 
 const runs = new Map(report.methods.flatMap((method) => method.runs.map((run) => [run.id, { method, run }])));
 
 export const findRun = (id) => runs.get(id);
+
+// Pages with several scenes have pictures of some runs only.
+export const hasPicture = (id) => pictures.images[id] !== undefined;
+export const picturedRuns = (method) => method.runs.filter((run) => hasPicture(run.id));
 
 export const layers = report.layers;
 

@@ -2,7 +2,7 @@
 import "img-comparison-slider";
 import { choice, h } from "./dom.js";
 import { layerTitle, measures, seconds, shown } from "./format.js";
-import { findRun, layers, nameOf, pictures, reference, report } from "./report.js";
+import { findRun, layers, nameOf, picturedRuns, pictures, reference, report } from "./report.js";
 
 const png = (base64) => `data:image/png;base64,${base64}`;
 const stops = (value) => `${value < 0 ? "\u2212" : "+"}${Math.abs(value)} EV`.replace("+0 EV", "0 EV");
@@ -31,7 +31,7 @@ export function setPicture(image, id, state) {
         ? ""
         : id === reference && state.kind !== "picture"
           ? "The reference has no error"
-          : "No such layer";
+          : "No picture of this layer";
 }
 
 export function caption(id, layer) {
@@ -46,7 +46,7 @@ function pictureSelect(label, onchange) {
         h(
             "optgroup",
             { label: method.label },
-            method.runs.map((run) => h("option", { value: run.id }, nameOf(run.id))),
+            picturedRuns(method).map((run) => h("option", { value: run.id }, nameOf(run.id))),
         ),
     );
     return h("select", { "aria-label": label, onchange }, h("option", { value: reference }, "Reference"), groups);
@@ -79,10 +79,10 @@ function colourBar(kind) {
 
 export class Viewer {
     constructor() {
-        const last = (method) => method.runs[method.runs.length - 1].id;
-        const [first, second] = report.methods;
+        const last = (method) => picturedRuns(method).at(-1).id;
+        const [first, second] = report.methods.filter((method) => picturedRuns(method).length > 0);
         this.state = {
-            left: last(first),
+            left: first ? last(first) : reference,
             right: second ? last(second) : reference,
             layer: "",
             kind: "picture",
@@ -192,7 +192,7 @@ export class Viewer {
         const wanted = left && key(left.run);
         if (!right || !(wanted > 0)) return;
         const distance = (run) => (key(run) > 0 ? Math.abs(Math.log(key(run) / wanted)) : Infinity);
-        const best = right.method.runs.reduce((a, b) => (distance(b) < distance(a) ? b : a));
+        const best = picturedRuns(right.method).reduce((a, b) => (distance(b) < distance(a) ? b : a));
         this.show({ right: best.id });
     }
 

@@ -1,31 +1,21 @@
-#include "report_command.h"
+#include "measured_shot.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
-#include <cstdio>
-#include <filesystem>
+#include <optional>
 #include <set>
 
 #include "camera/camera.h"
 #include "core/error.h"
-#include "core/parallel.h"
 #include "core/stopwatch.h"
-#include "film/whole_file.h"
 #include "film/write_image.h"
+#include "forecast/plan.h"
 #include "load_shot.h"
 #include "measure_runs.h"
-#include "page.h"
-#include "page_pictures.h"
 #include "reference.h"
 #include "render/input/frame_input.h"
-#include "report.h"
-#include "report_json.h"
-#include "report_text.h"
 #include "shot/write_shot.h"
-#include "volume/frame_path.h"
 
 namespace brisance {
 namespace {
@@ -34,30 +24,6 @@ namespace fs = std::filesystem;
 
 constexpr int kLeastReferenceSamples = 1024;
 constexpr int kReferenceOverBudget = 4;  // times the paths of the largest run
-
-struct ReportFiles {
-    fs::path page, measurements, times, data;
-};
-
-ReportFiles report_files(const ReportOptions& options) {
-    const fs::path page = options.output;
-    if (page.extension() != ".html")
-        throw Error(ExitCode::Usage, fmt::format("-o names the page and must end in .html: {}", options.output));
-    const auto beside = [&](const char* extension) { return fs::path(page).replace_extension(extension); };
-    return {page, beside(".csv"), beside(".times.csv"), beside(".json")};
-}
-
-void check_outputs(const ReportFiles& files, const std::vector<fs::path>& inputs) {
-    for (const fs::path& file : {files.page, files.measurements, files.times, files.data}) {
-        for (const fs::path& input : inputs) {
-            std::error_code error;
-            if (fs::equivalent(file, input, error))
-                throw Error(ExitCode::Usage,
-                            fmt::format("{} is read and would be overwritten; choose another -o", file.string()));
-        }
-        check_writable(file);
-    }
-}
 
 FrameFile only_frame(const Shot& shot, const ReportOptions& options) {
     const std::vector<FrameFile> frames =
@@ -131,12 +97,10 @@ std::string render_command(const ReportOptions& options, const std::vector<std::
     return line;
 }
 
-void add_commands(const ReportOptions& options, const std::vector<PlannedMethod>& methods, Report& report) {
-    for (std::size_t m = 0; m < methods.size(); ++m)
-        for (std::size_t s = 0; s < methods[m].runs.size(); ++s) {
-            MeasuredRun& run = report.methods[m].runs[s];
-            run.command = render_command(options, methods[m].runs[s].settings, run.id + ".exr");
-        }
+void add_commands(const ReportOptions& options, Report& report) {
+    for (MethodResult& result : report.methods)
+        for (MeasuredRun& run : result.runs)
+            run.command = render_command(options, run.settings, run.id + ".exr");
 }
 
 Report begin_report(const ReportOptions& options, const Shot& shot, const FrameFile& frame) {
@@ -159,7 +123,7 @@ Report begin_report(const ReportOptions& options, const Shot& shot, const FrameF
 }
 
 ReportReference make_reference(const ReportOptions& options, const std::vector<PlannedMethod>& methods,
-                               const Shot& shot, const FrameInput& input, TextProgress& progress) {
+                               const Shot& shot, const FrameInput& input, Progress& progress) {
     const std::vector<std::string> settings = reference_settings(options, methods);
     ReportReference reference = trace_reference(shot_with(shot, "reference", settings), input, progress);
     reference.summary.command = render_command(options, settings, "reference.exr");
@@ -184,38 +148,43 @@ PagePictures begin_pictures(const ReportOptions& options, const Shot& shot, cons
     return pictures;
 }
 
-void write_report(const ReportFiles& files, const Report& report, const PagePictures& pictures) {
-    const nlohmann::ordered_json json = report_json(report);
-    write_text(files.data, json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
-    write_text(files.measurements, measurements_csv(report));
-    write_text(files.times, times_csv(report));
-    write_text(files.page, report_page(json, pictures.to_json()));
+// Only those that own a cell which the shot needs, and run.
+std::vector<PlannedMethod> plan_owners(const Shot& shot, const FrameInput& input, const std::vector<Method>& methods,
+                                       const std::set<int>& taken, Report& report) {
+    const Plan plan = plan_cells(shot, input.medium, input.surroundings.get());
+    const std::vector<Method> owners = owners_of(methods, plan.needed);
+    if (owners.empty())
+        throw Error(ExitCode::BadData, "no method owns a cell of this shot that holds light");
+    return plan_what_can_run(shot, owners, taken, report);
 }
 
 }  // namespace
 
-int run_report(const ReportOptions& options) {
-    TextProgress progress(options.progress);
-    const ThreadLimit limit(options.threads);
-    const std::vector<Method> methods = parse_methods(options.methods);
-    const ReportFiles files = report_files(options);
-    Shot shot = load_shot(options.input, {options.preset, options.overrides}, progress);
-    const FrameFile frame = only_frame(shot, options);
-    std::vector<fs::path> inputs = {options.input, frame.file};
-    inputs.insert(inputs.end(), options.references.begin(), options.references.end());
-    check_outputs(files, inputs);
-    const std::vector<PlannedMethod> unframed = plan_runs(shot, methods);  // reports errors before anything is read
-    Report report = begin_report(options, shot, frame);
+OpenedShot open_shot(const ReportOptions& options, Progress& progress) {
+    OpenedShot opened{load_shot(options.input, {options.preset, options.overrides}, progress), {}};
+    opened.frame = only_frame(opened.shot, options);
+    return opened;
+}
+
+MeasuredShot measure_shot(const ReportOptions& options, const OpenedShot& opened, const std::vector<Method>& methods,
+                          Comparing comparing, Progress& progress) {
+    Shot shot = opened.shot;
+    const bool owners = comparing == Comparing::Owners;
+    if (!owners)
+        plan_runs(shot, methods);  // reports errors before anything is read
+    Report report = begin_report(options, shot, opened.frame);
     std::optional<ReportReference> reference;
     if (!options.references.empty())
-        reference = read_reference({options.references.begin(), options.references.end()}, shot, frame.frame);
+        reference = read_reference({options.references.begin(), options.references.end()}, shot, opened.frame.frame);
 
     const Stopwatch watch;
     Statistics loading;
-    const FrameInput input = load_frame(shot, frame.file, frame.frame, loading, progress);
+    const FrameInput input = load_frame(shot, opened.frame.file, opened.frame.frame, loading, progress);
     report.loading_seconds = watch.seconds();
     fix_camera(shot, input);
-    const std::vector<PlannedMethod> planned = plan_runs(shot, methods, reference ? reference->seeds : std::set<int>());
+    const std::set<int> taken = reference ? reference->seeds : std::set<int>();
+    const std::vector<PlannedMethod> planned =
+        owners ? plan_owners(shot, input, methods, taken, report) : plan_runs(shot, methods, taken);
     if (!reference)
         reference = make_reference(options, planned, shot, input, progress);
     report.reference = reference->summary;
@@ -223,16 +192,14 @@ int run_report(const ReportOptions& options) {
         if (reference->layers.contains(layer))
             report.layers.push_back(layer);
     PagePictures pictures = begin_pictures(options, shot, *reference);
-    measure_runs(planned, input, *reference, {options.repeats}, report, pictures, progress);
-    add_commands(options, planned, report);
-    progress.stage("writing");
-    write_report(files, report, pictures);
-    progress.finish();
-    std::fputs(times_table(report).c_str(), stdout);
-    std::fputs(surface_table(report).c_str(), stdout);
-    for (const fs::path& file : {files.page, files.measurements, files.times, files.data})
-        fmt::print("{}\n", file.string());
-    return static_cast<int>(ExitCode::Success);
+    measure_runs(planned, input, *reference, {options.repeats, owners, owners}, report, pictures, progress);
+    if (report.methods.empty())
+        throw Error(ExitCode::RenderFailed, report.failures.empty()
+                                                ? std::string("no method was measured")
+                                                : fmt::format("every method failed; {}: {}", report.failures[0].method,
+                                                              report.failures[0].reason));
+    add_commands(options, report);
+    return {std::move(report), std::move(pictures)};
 }
 
 }  // namespace brisance

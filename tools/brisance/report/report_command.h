@@ -10,7 +10,10 @@
 namespace brisance {
 
 struct ReportOptions {
-    std::string input;                   // a shot file, or a .vdb with or without frame tokens
+    std::vector<std::string> inputs;  // of the command line; one without a suite, with it any number of further scenes
+    std::string input;                // a shot file, or a .vdb with or without frame tokens
+    std::string suite;                // of suite_sizes(); empty: one shot
+    std::string shots = "shots";      // the folder with the shots of a suite
     std::string output = "report.html";  // CSV and JSON go beside it
     std::string frame;                   // -f; empty: the only one on disk
     std::string preset;

@@ -1,0 +1,111 @@
+#include "suite/suite.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/error.h"
+
+namespace brisance {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Of the shots' folder; all of its folder `media` follow.
+constexpr std::array<const char*, 3> kScenes = {"explosion", "fire_room", "street"};
+
+std::vector<SuiteScene> scenes_of_media(const fs::path& shots) {
+    std::vector<SuiteScene> scenes;
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(shots / "media", error))
+        if (entry.path().extension() == ".json")
+            scenes.push_back({"media/" + entry.path().stem().string(), entry.path()});
+    std::sort(scenes.begin(), scenes.end(), [](const SuiteScene& a, const SuiteScene& b) { return a.name < b.name; });
+    return scenes;
+}
+
+std::string budget_of(const SuiteSize& size, const Method& method) {
+    if (method.unbiased)
+        return size.path_samples;
+    return method.base == "lighting_grid" ? size.grid_steps : size.sides;
+}
+
+// What a method says of itself stays so.
+void add_settings(const std::vector<std::string>& settings, Method& method) {
+    for (const std::string& setting : settings)
+        if (!sets(method.settings, setting.substr(0, setting.find('='))))
+            method.settings.push_back(setting);
+}
+
+}  // namespace
+
+const std::vector<SuiteSize>& suite_sizes() {
+    static const std::vector<SuiteSize> all = {
+        {"quick",
+         "minutes: small pictures, few lights, coarse lattices",
+         64,
+         64,
+         "4,16",
+         "1,2",
+         "1",
+         {"camera.edge_refinement=1", "lighting.lattice_level=3", "lighting.error=0.1", "lighting.alpha=1",
+          "scattering.lattice_level=3", "scattering.alpha=1", "virtual_lights.count=300",
+          "virtual_lights.photons=20000", "virtual_lights.neighbours=32", "ray_lights.paths=2048",
+          "ray_lights.count=8192", "volumetric_vpls.paths=4096", "volumetric_vpls.count=8192",
+          "volumetric_photons.paths=50000"},
+         {"lighting.lattice_level=5", "lighting.error=0.3"},
+         {"scattering.method=volumetric_photons", "volumetric_photons.paths=20000"}},
+        {"full", "hours: the shots' own settings", 160, 4096, "4,16,64,256", "1,2,3,4", "1,2,4", {}, {}, {}}};
+    return all;
+}
+
+const SuiteSize& suite_size(const std::string& name) {
+    std::vector<std::string> names;
+    for (const SuiteSize& size : suite_sizes()) {
+        if (size.name == name)
+            return size;
+        names.push_back(size.name);
+    }
+    throw Error(ExitCode::Usage,
+                fmt::format("--suite: no suite is called \"{}\"; there are {}", name, fmt::join(names, ", ")));
+}
+
+std::vector<Method> suite_methods(const SuiteSize& size, const std::vector<std::string>& names) {
+    MethodOptions options{names.empty() ? built_in_methods() : names, {}, {}};
+    for (const Method& method : parse_methods(options))
+        options.budgets.push_back(method.label + ":" + budget_of(size, method));
+    std::vector<Method> methods = parse_methods(options);
+    for (Method& method : methods) {
+        if (!owns(method, name_of(Cell::MV)))
+            add_settings(size.beside_fire, method);
+        if (!owns(method, name_of(Cell::MM)))
+            add_settings(size.beside_scattering, method);
+    }
+    return methods;
+}
+
+std::vector<SuiteScene> suite_scenes(const fs::path& shots, const std::vector<std::string>& further) {
+    if (!fs::is_directory(shots))
+        throw Error(ExitCode::MissingInput,
+                    fmt::format("{}: no such folder; --shots names the one with the suite's shots", shots.string()));
+    std::vector<SuiteScene> scenes;
+    for (const char* const name : kScenes)
+        scenes.push_back({name, shots / (std::string(name) + ".json")});
+    for (SuiteScene& scene : scenes_of_media(shots))
+        scenes.push_back(std::move(scene));
+    for (const std::string& file : further)
+        scenes.push_back({fs::path(file).stem().string(), file});
+    return scenes;
+}
+
+std::vector<std::string> size_settings(const SuiteSize& size, int width, int height,
+                                       const std::vector<std::string>& given) {
+    if (sets(given, "camera.width") || sets(given, "camera.height"))
+        return {};
+    const long rows = std::max(1L, std::lround(double(size.width) * height / width));
+    return {fmt::format("camera.width={}", size.width), fmt::format("camera.height={}", rows)};
+}
+
+}  // namespace brisance
