@@ -1,5 +1,7 @@
 #include "surface_lighting/medium_along_ray.h"
 
+#include <cmath>
+
 #include "camera_rays/integrate.h"
 #include "transport/emitters_along_ray.h"
 
@@ -27,6 +29,11 @@ RaySum MediumAlongRay::look(const Ray& ray, double end, Rng& rng) const {
 
 Rgb scattered_by_medium(const CellSum& cells) {
     return cells.at(Cell::MV) + cells.at(Cell::MM) + cells.at(Cell::MS) + cells.at(Cell::MA);
+}
+
+LitSmoke::Light LitSmokeAlongRay::along(const Ray& ray, double end, Rng& rng) const {
+    const RaySum seen = medium_.look(ray, end, rng);
+    return {seen.cells.at(Cell::V), scattered_by_medium(seen.cells), std::exp(-seen.depth)};
 }
 
 }  // namespace brisance

@@ -5,6 +5,7 @@
 #include "camera_rays/source_field.h"
 #include "light_selection/in_scattering.h"
 #include "transport/direct_light.h"
+#include "virtual_lights/lit_smoke.h"
 
 namespace brisance {
 
@@ -33,5 +34,15 @@ private:
 
 // The light of the row M.
 Rgb scattered_by_medium(const CellSum& cells);
+
+// The same for paths between surfaces.
+class LitSmokeAlongRay : public LitSmoke {
+public:
+    explicit LitSmokeAlongRay(const MediumAlongRay& medium) : medium_(medium) {}
+    Light along(const Ray& ray, double end, Rng& rng) const override;
+
+private:
+    MediumAlongRay medium_;
+};
 
 }  // namespace brisance

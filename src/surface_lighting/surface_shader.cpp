@@ -20,6 +20,17 @@ bool has_specular(const SurfaceMaterial& m) {
     return needs_energy_tables(m);
 }
 
+// Voxels of a segment of a path between surfaces are not cut: the path is one of many.
+constexpr int kPartsForPaths = 1;
+
+// Where smoke scatters sharply, what is known of its light toward the camera says little of other directions. Virtual
+// lights in the smoke have noise of their own along every segment.
+float share_of_walks(const SurfaceLightingInput& input) {
+    if (input.in_scattering)
+        return 1.0f;
+    return glm::smoothstep(0.3f, 0.6f, std::abs(input.field.medium().mean_cosine));
+}
+
 // Whether the lobes other than the base are not deltas.
 bool has_wide_lobes(const SurfaceMaterial& m) {
     return has_specular(m) && double(m.roughness) * m.roughness >= kSmoothAlpha;
@@ -32,7 +43,9 @@ SurfaceShader::SurfaceShader(const SurfaceLightingInput& input)
       surroundings_(*input.paths.direct().surroundings()),
       medium_(input.field, input.paths.direct(), input.parts, input.in_scattering, input.emitters_by_rays),
       panes_(surroundings_),
-      mirrors_(input.paths.direct(), medium_, input.needed.contains(Cell::SS)) {}
+      mirrors_(input.paths.direct(), medium_, input.needed.contains(Cell::SS)),
+      smoke_of_paths_({input.field, input.paths.direct(), kPartsForPaths, nullptr, input.emitters_by_rays}),
+      walks_(share_of_walks(input)) {}
 
 // A point to shade and the state of its random numbers.
 struct SurfaceShader::ShadedPoint {
@@ -187,9 +200,10 @@ void SurfaceShader::shade_point(const SurfaceSample& sample, const BaseLight& ba
     if (!input_.needed.contains(Cell::SS))
         return;
     if (input_.virtual_lights) {
-        out.at(Cell::SS) += input_.virtual_lights->shade(
-            vertex, rng, &at.vertices,
-            samples_through_panes() ? VirtualLights::Panes::Sampled : VirtualLights::Panes::Followed);
+        const auto panes =
+            samples_through_panes() ? VirtualLights::Panes::Sampled : VirtualLights::Panes::Followed;
+        out.at(Cell::SS) +=
+            input_.virtual_lights->shade(vertex, rng, {panes, &smoke_of_paths_, walks_, &at.vertices});
         return;
     }
     PathSum path{};

@@ -74,6 +74,8 @@ private:
     MediumAlongRay medium_;
     Panes panes_;
     Mirrors mirrors_;
+    LitSmokeAlongRay smoke_of_paths_;
+    float walks_;  // of the paths between surfaces, the share that walks through the smoke
 };
 
 }  // namespace brisance

@@ -1,4 +1,7 @@
 // Path extension: the light that virtual lights hold where a ray ends, and how the path continues from there.
+//
+// A surface that the path reaches sees smoke that is lit already (lit_smoke.h): a walk through dense smoke beside a
+// fire meets its bright core rarely, and is what most noise of light between surfaces came from.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -40,10 +43,11 @@ double VirtualLights::share_kept(const PathVertex& vertex, const RaySegment& seg
 // what surfaces reflect toward it; later vertices gather all light.
 class VirtualLights::ExtendedPath : public PlainPath {
 public:
-    ExtendedPath(const VirtualLights& lights, Panes panes)
+    ExtendedPath(const VirtualLights& lights, Panes panes, const LitSmoke* smoke)
         : PlainPath(lights.scene_),
           lights_(lights),
           panes_(panes),
+          smoke_(smoke),
           lamps_along_(scene_.has_emitters() && aims_at_lamps(scene_) && !scene_.field().bricks().empty()) {}
 
     Rgb own_lights(const PathState& state, Rng& rng) const {
@@ -63,6 +67,10 @@ public:
                         (receiver_lit_ && panes_ == Panes::Sampled && goes_straight_on(state.vertex, *step.sample));
         if (receiver_lit_)
             return transmitted_along(state, step.segment, rng);
+        if (smoke_) {
+            const LitSmoke::Light seen = smoke_->along(step.segment.ray, step.segment.end, rng);
+            return {seen.emission, seen.scattered, std::nullopt, seen.transmittance};
+        }
         const Rgb lamps = lamps_along_ ? lights_.lamps_on(step.segment, rng) : Rgb(0.0f);
         SegmentMedium medium = PlainPath::medium_along(state, step, rng);
         medium.scattered = lamps;
@@ -74,8 +82,10 @@ public:
         sum_ += state.throughput * step.from_own_lights;
         sum_ += state.throughput * step.from_fire;
         sum_ += state.throughput * step.from_emitters;
-        sum_ += step.leaving * step.medium.scattered;
-        sum_ += step.leaving * step.medium.emission * step.emission_weight;
+        if (step.sample) {
+            const Rgb light = step.medium.scattered + step.medium.emission * step.emission_weight;
+            sum_ += state.throughput * step.sample->weight * light;
+        }
         sum_ += step.leaving * step.at_end;
     }
 
@@ -109,19 +119,21 @@ private:
 
     const VirtualLights& lights_;
     Panes panes_;
+    const LitSmoke* smoke_;     // null: paths walk through the smoke
     bool lamps_along_;          // estimate lamps along segments, not at vertices in the medium
     bool receiver_lit_ = true;  // by the medium along the current segment
     Rgb sum_{0.0f};
     int vertices_ = 0;
 };
 
-Rgb VirtualLights::shade(const PathVertex& vertex, Rng& rng, int* vertices, Panes panes) const {
+Rgb VirtualLights::shade(const PathVertex& vertex, Rng& rng, const Shading& how) const {
     if (!shines_)
         return Rgb(0.0f);
-    ExtendedPath path(*this, panes);
+    const bool walks = how.walks > 0.0f && rng.next() < how.walks;
+    ExtendedPath path(*this, how.panes, walks ? nullptr : how.smoke);
     walk_path(scene_, {vertex, Rgb(1.0f), 0.0f, 1}, path, rng);
-    if (vertices)
-        *vertices += path.vertices();
+    if (how.vertices)
+        *how.vertices += path.vertices();
     return path.sum();
 }
 

@@ -20,6 +20,7 @@
 
 #include "virtual_lights/gatherers/gatherer.h"
 #include "virtual_lights/light_set.h"
+#include "virtual_lights/lit_smoke.h"
 
 namespace brisance {
 
@@ -34,11 +35,21 @@ public:
     // One sample of the radiance [W/(m^2 sr)] that a path vertex scatters of what surfaces reflect toward it: the
     // ledger's cell SS for a surface, MS for smoke (without its albedo). Light that emitters or the fire send straight
     // to the vertex is not part of it. Its mean is right up to the lights' own blur and noise; with path extension,
-    // that is only found where many lights lie in a ray's footprint. `vertices`: is raised by the number of vertices of
-    // the path, this one among them. `panes`: vertices may see fire and smoke straight through panes, which are
-    // surfaces. Sampled: the caller has already lit the vertex by what is seen through them.
+    // that is only found where many lights lie in a ray's footprint.
+    // `panes`: vertices may see fire and smoke straight through panes, which are surfaces. Sampled: the caller has
+    // already lit the vertex by what is seen through them.
+    // `smoke`: what later surfaces of the path see of the smoke, but with the probability `walks`; a walk through the
+    // smoke finds it then, and always without `smoke`.
+    // `vertices`: is raised by the number of vertices of the path, this one among them.
     enum class Panes { Followed, Sampled };
-    Rgb shade(const PathVertex& vertex, Rng& rng, int* vertices = nullptr, Panes panes = Panes::Followed) const;
+    struct Shading {
+        Panes panes = Panes::Followed;
+        const LitSmoke* smoke = nullptr;
+        float walks = 0.0f;
+        int* vertices = nullptr;
+    };
+    Rgb shade(const PathVertex& vertex, Rng& rng, const Shading& how) const;
+    Rgb shade(const PathVertex& vertex, Rng& rng) const { return shade(vertex, rng, Shading{}); }
 
     const std::vector<VirtualLight>& lights() const { return set_->lights; }
     // Radiance of a light of its own surface's colour [W/(m^2 sr)]. `toward`: unit, world.

@@ -23,7 +23,7 @@ int vertices_along(const Room& room, const VirtualLights& lights, const Ray& ray
     const RaySegment segment = room.direct.segment_along(ray);
     Rng rng(Stream::Path, number);
     int vertices = 0;
-    lights.shade(PathVertex(*segment.point, ray.direction), rng, &vertices);
+    lights.shade(PathVertex(*segment.point, ray.direction), rng, {.vertices = &vertices});
     return vertices;
 }
 
@@ -75,7 +75,7 @@ TEST(PathLengths, CountingChangesNothing) {
         Rng counted(Stream::Path, i), plain(Stream::Path, i);
         int vertices = 0;
         const PathVertex vertex(*segment.point, ray.direction);
-        EXPECT_EQ(lights.shade(vertex, counted, &vertices), lights.shade(vertex, plain));
+        EXPECT_EQ(lights.shade(vertex, counted, {.vertices = &vertices}), lights.shade(vertex, plain));
     }
 }
 
