@@ -41,7 +41,7 @@ private:
         std::vector<SurfaceSample> all;
         for (const auto& row : rows)
             for (const FoundSurface& f : row)
-                all.push_back(f.sample);
+                all.push_back({f.sample.pixel, f.sample.number, f.sample.ray, f.sample.hit, f.weight});
         std::vector<CellSum> lit(all.size());
         light_surfaces_(all, lit);
         std::size_t next = 0;

@@ -49,6 +49,7 @@ struct SurfaceSample {
     std::uint64_t number;  // of the ray in its pixel, and of the pass (PictureSettings)
     Ray ray;
     SurfaceHit hit;
+    float share = 1.0f;  // of the light along the ray, what the pixel shows
 };
 
 // Light that surfaces scatter toward the camera: fills the row S of `light`, one entry per sample. A call has whole

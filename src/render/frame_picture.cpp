@@ -42,6 +42,18 @@ glm::dvec2 shift_of_moment(std::size_t moment) {
     return p - glm::floor(p);
 }
 
+// Adds light per pixel to a cell's layer, where there is one, and to the picture.
+void add_to_cell(Image& image, Cell cell, const std::vector<Rgb>& light) {
+    for (Layer& layer : image.layers) {
+        if (!layer.name.empty() && layer.name != name_of(cell))
+            continue;
+        const std::size_t channels = layer.channels.size();
+        for (std::size_t p = 0; p < light.size(); ++p)
+            for (int c = 0; c < 3; ++c)
+                layer.pixels[p * channels + c] += light[p][c];
+    }
+}
+
 }  // namespace
 
 FramePicture::FramePicture(const DrawInput& input, const ManyLights& lights, const LitStretch* stretch,
@@ -105,11 +117,19 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
     settings_.once = lights.once();
     if (!input_.plan.surfaces)
         return render_picture(lights.field(), camera, settings_, progress_);
+    std::optional<SharedBounce> shared;
+    const double radius = input_.shot.virtual_lights.sharing_radius;
+    if (lights_.virtual_lights() && input_.plan.needs(Cell::SS) && radius > 0.0)
+        shared.emplace(camera.settings().width, camera.settings().height, radius, rays_of_pixel());
     const SurfaceShader shader({input_.plan.needed, lights.field(), *lights.paths(), lights_.medium().lighting(),
                                 lights_.virtual_lights(), estimator, input_.plan.emitters_by_rays, settings_.parts,
-                                camera.settings().width, rays_of_pixel(), lengths_ ? &*lengths_ : nullptr});
-    return render_picture(lights.field(), camera, settings_, progress_,
-                          [&](const auto& samples, auto& light) { shader.shade(samples, light); });
+                                camera.settings().width, rays_of_pixel(), lengths_ ? &*lengths_ : nullptr,
+                                shared ? &*shared : nullptr, camera.pixel_angle()});
+    Image image = render_picture(lights.field(), camera, settings_, progress_,
+                                 [&](const auto& samples, auto& light) { shader.shade(samples, light); });
+    if (shared)
+        add_to_cell(image, Cell::SS, shared->pixels());
+    return image;
 }
 
 Image FramePicture::order_picture(const NodeSources& order, PictureSettings settings) {

@@ -1,6 +1,7 @@
 #include "surface_lighting/surface_shader.h"
 
 #include <cmath>
+#include <limits>
 
 #include "core/parallel.h"
 #include "surface_lighting/planar_receivers.h"
@@ -52,6 +53,7 @@ struct SurfaceShader::ShadedPoint {
     BehindMirrors seen;
     Rng ray_rng;  // for rays through the medium
     int vertices;
+    std::optional<SharedBounce::Sample> shared = std::nullopt;
 };
 
 // The samples of a pixel divide the emitters among themselves: a sequence of evenly spread choices runs through them
@@ -185,6 +187,46 @@ void SurfaceShader::reflect_scattered(const SurfacePoint& point, const dvec3& to
         reflect_medium(point, toward_viewer, *gloss, rng, ray_rng, light);
 }
 
+VirtualLights::Shading SurfaceShader::shading(ShadedPoint& at) const {
+    return {samples_through_panes() ? VirtualLights::Panes::Sampled : VirtualLights::Panes::Followed,
+            &smoke_of_paths_, walks_, &at.vertices};
+}
+
+// What the sample itself shows; the base's part is left to all pixels, where they share it.
+Rgb SurfaceShader::from_virtual_lights(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng,
+                                       ShadedPoint& at) const {
+    const SurfacePoint& point = at.seen.point;
+    const bool shares = input_.shared && at.seen.mirrors == 0 && has_base(point.material);
+    if (!shares)
+        return input_.virtual_lights->shade(vertex, rng, shading(at));
+    const Bsdf base(point.material, point.frame, Lobes::Base);
+    if (const Rgb albedo = base.base_albedo(-at.seen.arriving); albedo != Rgb(0.0f))
+        at.shared = shared_base(sample, base, albedo, rng, at);
+    if (!has_specular(point.material))
+        return Rgb(0.0f);
+    const Bsdf others(point.material, point.frame, Lobes::Specular);
+    return input_.virtual_lights->shade(PathVertex(point, others, at.seen.arriving), rng, shading(at));
+}
+
+SharedBounce::Sample SurfaceShader::shared_base(const SurfaceSample& sample, const Bsdf& base, const Rgb& albedo,
+                                                Rng& rng, ShadedPoint& at) const {
+    const SurfacePoint& point = at.seen.point;
+    VirtualLights::Shading how = shading(at);
+    double distance = std::numeric_limits<double>::infinity();
+    how.distance = &distance;
+    const Rgb light = input_.virtual_lights->shade(PathVertex(point, base, at.seen.arriving), rng, how);
+    SharedBounce::Sample out;
+    out.pixel = sample.pixel;
+    out.position = vec3(point.position);
+    out.normal = vec3(point.frame.normal);
+    out.pixel_size = float(input_.pixel_angle * glm::distance(point.position, sample.ray.origin));
+    for (int c = 0; c < 3; ++c)
+        out.light[c] = albedo[c] > 0.0f ? light[c] / albedo[c] : 0.0f;
+    out.weight = sample.share * albedo;
+    out.closeness = float(1.0 / distance);
+    return out;
+}
+
 void SurfaceShader::shade_point(const SurfaceSample& sample, const BaseLight& base, ShadedPoint& at,
                                 CellSum& out) const {
     const SurfacePoint& point = at.seen.point;
@@ -200,10 +242,7 @@ void SurfaceShader::shade_point(const SurfaceSample& sample, const BaseLight& ba
     if (!input_.needed.contains(Cell::SS))
         return;
     if (input_.virtual_lights) {
-        const auto panes =
-            samples_through_panes() ? VirtualLights::Panes::Sampled : VirtualLights::Panes::Followed;
-        out.at(Cell::SS) +=
-            input_.virtual_lights->shade(vertex, rng, {panes, &smoke_of_paths_, walks_, &at.vertices});
+        out.at(Cell::SS) += from_virtual_lights(sample, vertex, rng, at);
         return;
     }
     PathSum path{};
@@ -232,6 +271,9 @@ void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector
         kSamplesAtOnce);
     for (std::size_t i = 0; input_.lengths && i < samples.size(); ++i)
         input_.lengths->add(samples[i].pixel, points[i].vertices);
+    for (const ShadedPoint& point : points)
+        if (point.shared)
+            input_.shared->add(*point.shared);
 }
 
 }  // namespace brisance

@@ -24,6 +24,7 @@
 #include "surface_lighting/mirrors.h"
 #include "surface_lighting/panes.h"
 #include "surface_lighting/path_lengths.h"
+#include "surface_lighting/shared_bounce.h"
 #include "virtual_lights/virtual_lights.h"
 
 namespace brisance {
@@ -41,6 +42,8 @@ struct SurfaceLightingInput {
     int width = 0;                                    // of the picture, in pixels
     int samples = 1;                                  // rays of a pixel
     PathLengths* lengths = nullptr;                   // counts the paths of virtual lights; null: not counted
+    SharedBounce* shared = nullptr;                   // gets what bases reflect of SS; null: the samples keep it
+    double pixel_angle = 0.0;                         // [rad], for `shared`
 };
 
 class SurfaceShader {
@@ -57,6 +60,10 @@ private:
     std::vector<BaseLight> light_bases(const std::vector<SurfaceSample>& samples,
                                        const std::vector<ShadedPoint>& points) const;
     void shade_point(const SurfaceSample& sample, const BaseLight& base, ShadedPoint& at, CellSum& light) const;
+    Rgb from_virtual_lights(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng, ShadedPoint& at) const;
+    SharedBounce::Sample shared_base(const SurfaceSample& sample, const Bsdf& base, const Rgb& albedo, Rng& rng,
+                                     ShadedPoint& at) const;
+    VirtualLights::Shading shading(ShadedPoint& at) const;
     Rgb from_emitters(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng) const;
     Rgb from_chosen_emitters(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng) const;
     void reflect_scattered(const SurfacePoint& point, const dvec3& toward_viewer, Rng& rng, Rng& ray_rng,

@@ -39,6 +39,7 @@ void check(const VirtualLightSettings& s) {
     require_in(R::lightcuts_error, s.lightcuts_error, "lightcuts_error");
     require_in(R::lightcuts_most, s.lightcuts_most, "lightcuts_most");
     require_in(R::stochastic_cut_size, s.stochastic_cut_size, "stochastic_cut_size");
+    require_in(R::sharing_radius, s.sharing_radius, "sharing_radius");
     require_in(R::n_min, s.n_min, "n_min");
     require_in(R::n_max, s.n_max, "n_max");
     if (!(s.n_max >= s.n_min))

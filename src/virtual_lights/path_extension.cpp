@@ -91,6 +91,8 @@ public:
 
     // On a surface the virtual lights take over what they hold; the path continues with the rest.
     bool arrive(const PathState& state, const PathStep& step, PathState& next) {
+        if (state.order == 1)
+            first_end_ = step.segment.end;
         if (step.medium.collision || step.sample->delta)
             return true;
         const Seen seen = lights_.seen_by(step.segment);
@@ -107,6 +109,7 @@ public:
 
     const Rgb& sum() const { return sum_; }
     int vertices() const { return vertices_; }
+    const std::optional<double>& first_end() const { return first_end_; }  // of the first ray, on a surface [m]
 
 private:
     // The receiver has been lit by the medium along this segment already.
@@ -124,6 +127,7 @@ private:
     bool receiver_lit_ = true;  // by the medium along the current segment
     Rgb sum_{0.0f};
     int vertices_ = 0;
+    std::optional<double> first_end_;
 };
 
 Rgb VirtualLights::shade(const PathVertex& vertex, Rng& rng, const Shading& how) const {
@@ -134,6 +138,8 @@ Rgb VirtualLights::shade(const PathVertex& vertex, Rng& rng, const Shading& how)
     walk_path(scene_, {vertex, Rgb(1.0f), 0.0f, 1}, path, rng);
     if (how.vertices)
         *how.vertices += path.vertices();
+    if (how.distance && path.first_end())
+        *how.distance = *path.first_end();
     return path.sum();
 }
 

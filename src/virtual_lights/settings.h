@@ -52,6 +52,7 @@ struct VirtualLightSettings {
     bool path_extension = true;      // paths continue where a ray's footprint covers few lights
     double n_min = 40.0;             // lights in the footprint: with fewer the path continues, ...
     double n_max = 80.0;             // ... with more it ends; between them it does both in part
+    double sharing_radius = 0.2;     // pixels share light on matt surfaces: over the distance to others; 0: none does
     std::uint32_t seed = 0;          // other seeds draw other random numbers
 };
 
@@ -84,6 +85,7 @@ struct VirtualLightRanges {
     static constexpr SettingRange<double> lightcuts_error{0.0, 1.0};
     static constexpr SettingRange<int> lightcuts_most{1, 100000000};
     static constexpr SettingRange<int> stochastic_cut_size{1, 1000000};
+    static constexpr SettingRange<double> sharing_radius{0.0, 1.0};
     static constexpr SettingRange<double> n_min{0.0, kUnlimited};  // and not above n_max
     static constexpr SettingRange<double> n_max{0.0, kUnlimited};
 };

@@ -128,7 +128,8 @@ const std::vector<TechniquePreset>& baselines() {
                                                  {"flux", "own"},
                                                  {"kind", "point"},
                                                  {"sampling", "power"},
-                                                 {"path_extension", "false"}}};
+                                                 {"path_extension", "false"},
+                                                 {"sharing_radius", "0"}}};
         std::vector<TechniquePreset> out;
         for (const TechniquePreset& other : differences)
             out.push_back(changed(instant_radiosity, other));

@@ -40,13 +40,15 @@ public:
     // already lit the vertex by what is seen through them.
     // `smoke`: what later surfaces of the path see of the smoke, but with the probability `walks`; a walk through the
     // smoke finds it then, and always without `smoke`.
-    // `vertices`: is raised by the number of vertices of the path, this one among them.
+    // `vertices`: is raised by the number of vertices of the path, this one among them. `distance`: becomes that of the
+    // surface which the first ray of the path meets [m], or stays as it is.
     enum class Panes { Followed, Sampled };
     struct Shading {
         Panes panes = Panes::Followed;
         const LitSmoke* smoke = nullptr;
         float walks = 0.0f;
         int* vertices = nullptr;
+        double* distance = nullptr;
     };
     Rgb shade(const PathVertex& vertex, Rng& rng, const Shading& how) const;
     Rgb shade(const PathVertex& vertex, Rng& rng) const { return shade(vertex, rng, Shading{}); }

@@ -142,7 +142,8 @@ INSTANTIATE_TEST_SUITE_P(OfVirtualLights, Ranges,
                                            "candidates_per_pixel", "neighbours", "radius_factor", "photons",
                                            "profile_resolution", "resampling_candidates", "n_min", "n_max",
                                            "importance_floor", "light_samples", "resampling_rays", "lightcuts_error",
-                                           "lightcuts_most", "stochastic_cut_size"));
+                                           "lightcuts_most", "stochastic_cut_size",
+                                           "sharing_radius"));
 
 // Every key with numbers is in the list above, but for the seed, of which the renderer takes any.
 TEST(AllRanges, AreTested) {
@@ -151,7 +152,7 @@ TEST(AllRanges, AreTested) {
         if (key.path.starts_with("virtual_lights.") && key.path != "virtual_lights.seed" &&
             (key.schema.value("type", "") == "integer" || key.schema.value("type", "") == "number"))
             ++numbers;
-    EXPECT_EQ(numbers, 19);
+    EXPECT_EQ(numbers, 20);
 }
 
 // What the check takes the renderer can build, where it does not take long.

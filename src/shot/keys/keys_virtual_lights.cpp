@@ -97,6 +97,13 @@ void add_placement_keys(std::vector<Key>& keys) {
         whole_in(Ranges::profile_resolution), [](Shot & s) -> auto& { return s.virtual_lights.profile_resolution; }));
 }
 
+void add_sharing_key(std::vector<Key>& keys) {
+    keys.push_back(make_key(
+        "virtual_lights.sharing_radius",
+        "pixels share light between matt surfaces: how far, over the distance to surfaces around; 0: none does",
+        real_in(Ranges::sharing_radius), [](Shot & s) -> auto& { return s.virtual_lights.sharing_radius; }));
+}
+
 void add_cut_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "virtual_lights.lightcuts_error", "for sampling lightcuts: what a node of the cut may err, over the sum of all",
@@ -117,6 +124,7 @@ void add_gathering_keys(std::vector<Key>& keys) {
         "virtual_lights.light_samples",
         "for sampling power, plain_power, uniform and light_tree: lights sampled at every vertex",
         whole_in(Ranges::light_samples), [](Shot & s) -> auto& { return s.virtual_lights.light_samples; }));
+    add_sharing_key(keys);
     add_cut_keys(keys);
     keys.push_back(make_key(
         "virtual_lights.resampling_candidates",

@@ -1,0 +1,155 @@
+#include "surface_lighting/shared_bounce.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+
+namespace brisance {
+
+namespace {
+
+constexpr int kUsualRays = 16;
+constexpr float kLeastPixels = 1.5f;  // of the radius
+constexpr int kReach = 4;             // neighbours to each side, in steps
+constexpr int kSteps[] = {1, 4, 16};  // [pixels]
+constexpr float kMostPixels = float(kReach * 16);
+
+// A sample belongs to a patch whose normal has at least this cosine to its own, and whose plane is nearer than this
+// many pixels.
+constexpr float kSameNormal = 0.9f, kSamePlane = 2.0f;
+
+// Neighbours whose normals have this cosine share nothing, and those whose planes lie apart by this part of the radius.
+constexpr float kOtherNormal = 0.8f, kOtherPlane = 0.2f;
+
+float square(float x) {
+    return x * x;
+}
+
+}  // namespace
+
+SharedBounce::SharedBounce(int width, int height, double radius, int rays)
+    : width_(width),
+      height_(height),
+      radius_(float(radius * std::pow(double(kUsualRays) / std::max(rays, 1), 1.0 / 6.0))),
+      first_(std::size_t(width) * height, kNone) {}
+
+void SharedBounce::add(const Sample& s) {
+    std::uint32_t* at = &first_[s.pixel];
+    while (*at != kNone) {
+        const Patch& p = patches_[*at];
+        const vec3 normal = glm::normalize(p.normal);
+        const float off_plane = std::abs(glm::dot(s.position - p.position / p.samples, normal));
+        if (glm::dot(s.normal, normal) > kSameNormal && off_plane < kSamePlane * s.pixel_size)
+            break;
+        at = &patches_[*at].next;
+    }
+    const std::size_t found = *at == kNone ? patches_.size() : *at;
+    if (*at == kNone) {
+        *at = static_cast<std::uint32_t>(found);
+        patches_.emplace_back();  // may move what `at` points to
+    }
+    Patch& p = patches_[found];
+    p.position += s.position;
+    p.normal += s.normal;
+    p.pixel_size += s.pixel_size;
+    p.light += s.light;
+    p.weight += s.weight;
+    p.closeness += s.closeness;
+    p.samples += 1.0f;
+}
+
+std::vector<SharedBounce::Patch> SharedBounce::means() const {
+    std::vector<Patch> out = patches_;
+    for (Patch& p : out) {
+        const float each = 1.0f / p.samples;
+        p.position *= each;
+        p.normal = glm::normalize(p.normal);
+        p.pixel_size *= each;
+        p.light *= each;
+        p.closeness *= each;
+    }
+    return out;
+}
+
+template <class Visit>
+void SharedBounce::for_each_patch(const Visit& visit) const {
+    parallel_for(
+        first_.size(),
+        [&](std::size_t pixel) {
+            for (std::uint32_t k = first_[pixel]; k != kNone; k = patches_[k].next)
+                visit(pixel, k);
+        },
+        256);
+}
+
+template <class Take>
+void SharedBounce::for_neighbours(const std::vector<Patch>& patches, std::size_t pixel, const Patch& patch,
+                                  float radius, int step, const Take& take) const {
+    const int x = int(pixel % std::size_t(width_)), y = int(pixel / std::size_t(width_));
+    const int reach = std::min(kReach, int(radius / (patch.pixel_size * float(step))) + 1);
+    const float inverse = 1.0f / radius;
+    for (int dy = -reach; dy <= reach; ++dy)
+        for (int dx = -reach; dx <= reach; ++dx) {
+            const int u = x + dx * step, v = y + dy * step;
+            if (u < 0 || u >= width_ || v < 0 || v >= height_)
+                continue;
+            for (std::uint32_t k = first_[std::size_t(v) * width_ + u]; k != kNone; k = patches[k].next) {
+                const Patch& other = patches[k];
+                const vec3 offset = (other.position - patch.position) * inverse;
+                const float far = glm::dot(offset, offset), facing = glm::dot(other.normal, patch.normal);
+                const float off_plane = glm::dot(offset, patch.normal) / kOtherPlane;
+                if (far >= 1.0f || facing <= kOtherNormal || off_plane * off_plane >= 1.0f)
+                    continue;
+                take(k, other.samples * square(1.0f - far) * (1.0f - off_plane * off_plane) *
+                            (facing - kOtherNormal));
+            }
+        }
+}
+
+// How far each patch shares [m]. Distances to surfaces around are noisy themselves and are averaged first.
+std::vector<float> SharedBounce::radii(const std::vector<Patch>& patches) const {
+    std::vector<float> radius(patches.size());
+    for_each_patch([&](std::size_t pixel, std::uint32_t k) {
+        const Patch& p = patches[k];
+        float closeness = 0.0f, weights = 0.0f;
+        for_neighbours(patches, pixel, p, kReach * p.pixel_size, 1, [&](std::uint32_t j, float w) {
+            closeness += w * patches[j].closeness;
+            weights += w;
+        });
+        const float least = kLeastPixels * p.pixel_size, most = kMostPixels * p.pixel_size;
+        radius[k] = closeness > 0.0f ? std::clamp(radius_ * weights / closeness, least, most) : most;
+    });
+    return radius;
+}
+
+std::vector<Rgb> SharedBounce::pixels() const {
+    std::vector<Patch> patches = means();
+    const std::vector<float> radius = radii(patches);
+    std::vector<Rgb> light(patches.size());
+    for (const int step : kSteps) {
+        for_each_patch([&](std::size_t pixel, std::uint32_t k) {
+            const Patch& p = patches[k];
+            light[k] = p.light;
+            // What is nearer than a step has been shared by the step before.
+            if (step > 1 && radius[k] <= float(step) * p.pixel_size)
+                return;
+            Rgb sum(0.0f);
+            float weights = 0.0f;
+            for_neighbours(patches, pixel, p, std::min(radius[k], float(kReach * step) * p.pixel_size), step,
+                           [&](std::uint32_t j, float w) {
+                               sum += w * patches[j].light;
+                               weights += w;
+                           });
+            if (weights > 0.0f)
+                light[k] = sum / weights;
+        });
+        for (std::size_t k = 0; k < patches.size(); ++k)
+            patches[k].light = light[k];
+    }
+    std::vector<Rgb> out(first_.size(), Rgb(0.0f));
+    for_each_patch([&](std::size_t pixel, std::uint32_t k) { out[pixel] += patches[k].weight * patches[k].light; });
+    return out;
+}
+
+}  // namespace brisance

@@ -1,0 +1,72 @@
+// Light between surfaces (SS) that Lambert bases reflect, shared among the pixels of a picture.
+//
+// A pixel has few paths and much noise, while the light that arrives at a matt surface from others changes slowly: over
+// a distance that is a part of the distance to the surfaces around (G. Ward, F. Rubinstein, R. Clear, A Ray Tracing
+// Solution for Diffuse Interreflection, SIGGRAPH 1988, on the split sphere). So each pixel takes the mean of what its
+// neighbours found on the same surface, without the colour of the base, weighted by distance, by normals, and by how
+// far they lie off the plane. Weights depend on the surfaces alone, never on the light: the mean keeps its energy but
+// for what crosses edges, and a bright grain is divided among as many pixels as any other sample.
+//
+// The radius shrinks with the sixth root of the rays of a pixel, so that bias and noise go to zero together. Where
+// surfaces are close, as in corners, it ends at about a pixel. Steps of 1, 4 and 16 pixels reach far with few
+// neighbours each (H. Dammertz et al., Edge-Avoiding A-Trous Wavelet Transform for fast Global Illumination Filtering,
+// HPG 2010).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/vec.h"
+
+namespace brisance {
+
+class SharedBounce {
+public:
+    // What one path found.
+    struct Sample {
+        std::uint32_t pixel = 0;
+        vec3 position{0.0f};     // local [m]
+        vec3 normal{0.0f};       // unit, the shading normal
+        float pixel_size = 0.0;  // of the picture at the point [m]
+        Rgb light{0.0f};         // radiance that the base reflects, over its albedo [W/(m^2 sr)]
+        Rgb weight{0.0f};        // the pixel shows light times weight
+        float closeness = 0.0f;  // inverse distance of the surface that the path met first; 0: none [1/m]
+    };
+
+    // `radius`: over the distance to surrounding surfaces, for 16 rays per pixel. `rays`: of a pixel.
+    SharedBounce(int width, int height, double radius, int rays);
+
+    // Samples of a pixel in any order that does not depend on threads. Not thread-safe.
+    void add(const Sample& sample);
+
+    // Radiance of each pixel.
+    std::vector<Rgb> pixels() const;
+
+private:
+    // The samples of a pixel that lie on one surface, as sums, until they are shared as means.
+    struct Patch {
+        vec3 position{0.0f}, normal{0.0f};
+        float pixel_size = 0.0f;
+        Rgb light{0.0f}, weight{0.0f};
+        float closeness = 0.0f;
+        float samples = 0.0f;
+        std::uint32_t next = kNone;  // of the pixel
+    };
+    static constexpr std::uint32_t kNone = ~0u;
+
+    std::vector<Patch> means() const;
+    // Calls take(neighbour, weight) for all patches within `radius` metres that lie `step` pixels apart.
+    template <class Take>
+    void for_neighbours(const std::vector<Patch>& patches, std::size_t pixel, const Patch& patch, float radius,
+                        int step, const Take& take) const;
+    std::vector<float> radii(const std::vector<Patch>& patches) const;
+    template <class Visit>
+    void for_each_patch(const Visit& visit) const;  // visit(pixel, patch), in parallel
+
+    int width_, height_;
+    float radius_;
+    std::vector<std::uint32_t> first_;  // patch of each pixel
+    std::vector<Patch> patches_;
+};
+
+}  // namespace brisance
