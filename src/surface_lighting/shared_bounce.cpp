@@ -20,7 +20,7 @@ constexpr float kMostPixels = float(kReach * 16);
 constexpr float kSameNormal = 0.9f, kSamePlane = 2.0f;
 
 // Neighbours whose normals have this cosine share nothing, and those whose planes lie apart by this part of the radius.
-constexpr float kOtherNormal = 0.8f, kOtherPlane = 0.2f;
+constexpr float kOtherNormal = 0.8f, kOtherPlane = 0.1f;
 
 float square(float x) {
     return x * x;

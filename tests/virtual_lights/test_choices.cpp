@@ -96,7 +96,7 @@ TEST(Presets, AreSettingsOfAShotThatGoTogether) {
     for (const TechniquePreset& preset : light_presets()) {
         Shot shot;
         for (const auto& [name, value] : preset.settings) {
-            const Json json = value == "false" || value == "true" ? Json(value == "true") : Json(value);
+            const Json parsed = Json::parse(value, nullptr, false), json = parsed.is_discarded() ? Json(value) : parsed;
             EXPECT_TRUE(key_of(name).set(shot, json)) << preset.name << ": " << name << "=" << value;
         }
         EXPECT_EQ(why_not_together(shot.virtual_lights), "") << preset.name;

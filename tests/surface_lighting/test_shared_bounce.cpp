@@ -1,0 +1,132 @@
+// Pixels that share light between surfaces: constants and energy are kept, edges are not crossed, noise falls.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "core/rng.h"
+#include "surface_lighting/shared_bounce.h"
+
+namespace brisance {
+namespace {
+
+constexpr int kWidth = 96, kHeight = 64, kRays = 4;
+constexpr float kPixel = 0.01f;  // [m]
+
+using Sample = SharedBounce::Sample;
+
+// A wall that faces the camera, seen by `rays` samples of each pixel. `finish` sets the light, and what else differs.
+SharedBounce wall(double radius, const std::function<void(Sample&, Rng&)>& finish, int rays = kRays) {
+    SharedBounce shared(kWidth, kHeight, radius, rays);
+    Rng rng(Stream::Surface, 1);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x)
+            for (int k = 0; k < rays; ++k) {
+                Sample s;
+                s.pixel = std::uint32_t(y * kWidth + x);
+                s.position = vec3(float(x) + rng.next(), float(y) + rng.next(), 0.0f) * kPixel;
+                s.normal = vec3(0.0f, 0.0f, 1.0f);
+                s.pixel_size = kPixel;
+                s.weight = Rgb(1.0f / float(rays));
+                s.closeness = 0.5f;
+                finish(s, rng);
+                shared.add(s);
+            }
+    return shared;
+}
+
+struct Spread {
+    double mean = 0.0, variance = 0.0;
+};
+
+Spread spread(const std::vector<Rgb>& pixels) {
+    Spread s;
+    for (const Rgb& p : pixels)
+        s.mean += p.y / double(pixels.size());
+    for (const Rgb& p : pixels)
+        s.variance += (p.y - s.mean) * (p.y - s.mean) / double(pixels.size());
+    return s;
+}
+
+// Rare and bright, as grains are.
+void grain(Sample& s, Rng& rng) {
+    s.light = Rgb(rng.next() < 0.02f ? 50.0f : 0.0f);
+}
+
+TEST(SharedBounce, KeepsConstantLightOnAnyColour) {
+    float colour = 0.0f;
+    const SharedBounce shared = wall(0.2, [&](Sample& s, Rng& rng) {
+        colour = 0.1f + 0.8f * rng.next();
+        s.light = Rgb(1.0f, 2.0f, 3.0f);
+        s.weight *= colour;
+    });
+    Rgb mean(0.0f);
+    const std::vector<Rgb> pixels = shared.pixels();
+    for (const Rgb& p : pixels) {
+        EXPECT_NEAR(p.y / p.x, 2.0f, 1e-4f);
+        EXPECT_NEAR(p.z / p.x, 3.0f, 1e-4f);
+        mean += p / float(pixels.size());
+    }
+    EXPECT_NEAR(mean.x, 0.5f, 0.01f);  // of the colours: 0.23 / sqrt(4 * 96 * 64) = 0.0015
+}
+
+// The mean of grains has a standard error of 4.5 % here, the variance of single pixels is divided by the number of
+// pixels that share: more than fifty.
+TEST(SharedBounce, DividesNoiseAndKeepsEnergy) {
+    const Spread alone = spread(wall(0.0, grain).pixels()), shared = spread(wall(0.2, grain).pixels());
+    EXPECT_LT(shared.variance, alone.variance / 50.0);
+    EXPECT_NEAR(shared.mean, alone.mean, 0.03 * alone.mean);  // pixels at the border share with fewer
+    EXPECT_NEAR(shared.mean, 1.0, 3.0 * 0.045);
+}
+
+TEST(SharedBounce, CrossesNoEdgeOfNormals) {
+    const SharedBounce shared = wall(0.2, [](Sample& s, Rng&) {
+        const bool right = s.pixel % kWidth >= kWidth / 2;
+        s.light = Rgb(right ? 1.0f : 0.0f);
+        s.normal = right ? vec3(1.0f, 0.0f, 0.0f) : vec3(0.0f, 0.0f, 1.0f);
+    });
+    const std::vector<Rgb> pixels = shared.pixels();
+    for (std::size_t p = 0; p < pixels.size(); ++p)
+        EXPECT_NEAR(pixels[p].x, p % kWidth >= kWidth / 2 ? 1.0f : 0.0f, 1e-5f) << p;
+}
+
+// A step in depth of ten pixels, within the radius, between walls that face the same way; half of the pixels see both.
+TEST(SharedBounce, CrossesNoStepInDepth) {
+    const SharedBounce shared = wall(0.2, [](Sample& s, Rng& rng) {
+        const bool behind = rng.next() < 0.5f;
+        s.light = Rgb(behind ? 1.0f : 0.0f);
+        s.position.z = behind ? -10.0f * kPixel : 0.0f;
+        s.weight = behind ? Rgb(1.0f, 0.0f, 0.0f) : Rgb(0.0f, 1.0f, 0.0f);
+    });
+    for (const Rgb& p : shared.pixels()) {
+        EXPECT_NEAR(p.x, std::round(p.x), 1e-4f);  // a whole number of samples, each of light 1
+        EXPECT_EQ(p.y, 0.0f);
+    }
+}
+
+// Light varies over a part of the distance to what sends it: beside a surface two pixels away it is not blurred.
+TEST(SharedBounce, StaysSharpBesideOtherSurfaces) {
+    const SharedBounce shared = wall(0.2, [](Sample& s, Rng&) {
+        s.light = Rgb(s.pixel % kWidth >= kWidth / 2 ? 1.0f : 0.0f);
+        s.closeness = 1.0f / (2.0f * kPixel);
+    });
+    const std::vector<Rgb> pixels = shared.pixels();
+    for (std::size_t p = 0; p < pixels.size(); ++p)
+        if (const int from_edge = std::abs(int(p % kWidth) - kWidth / 2); from_edge > 3)
+            EXPECT_NEAR(pixels[p].x, p % kWidth >= kWidth / 2 ? 1.0f : 0.0f, 1e-5f) << p;
+}
+
+// Consistent: with more rays of a pixel the blur of an edge of light gets narrower.
+TEST(SharedBounce, BlursLessWithMoreRays) {
+    const auto edge = [](Sample& s, Rng&) { s.light = Rgb(s.pixel % kWidth >= kWidth / 2 ? 1.0f : 0.0f); };
+    const auto blurred = [&](int rays) {
+        int count = 0;
+        for (const Rgb& p : wall(0.05, edge, rays).pixels())
+            count += p.x > 0.01f && p.x < 0.99f;
+        return count;
+    };
+    EXPECT_LT(blurred(64), 0.8 * blurred(1));
+}
+
+}  // namespace
+}  // namespace brisance
