@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "forecast/mean_escape.h"
+#include "forecast/scattering_choice.h"
 #include "medium_lighting/automatic_levels.h"
 #include "render/input/load_medium.h"
 
@@ -23,7 +25,8 @@ private:
 
 bool leaves_levels_open(const Shot& shot) {
     return shot.method != RenderMethod::Path &&
-           (shot.lighting.lattice_level < 0 || shot.lighting.levels <= 0 || shot.scattering.lattice_level < 0);
+           (shot.lighting.lattice_level < 0 || shot.lighting.levels <= 0 || shot.scattering.lattice_level < 0 ||
+            leaves_escape_open(shot));
 }
 
 Shot with_levels_of(Shot shot, const std::filesystem::path& volume, int frame, Progress& progress) {
@@ -31,7 +34,8 @@ Shot with_levels_of(Shot shot, const std::filesystem::path& volume, int frame, P
         return shot;
     WarningsAlone quiet(progress);
     Statistics unused;
-    const AutomaticLevels levels = automatic_levels_of(load_medium(shot, volume, frame, unused, quiet), shot.lighting);
+    const Medium medium = load_medium(shot, volume, frame, unused, quiet);
+    const AutomaticLevels levels = automatic_levels_of(medium, shot.lighting);
     if (shot.lighting.lattice_level < 0)
         shot.lighting.lattice_level = levels.light;
     if (shot.lighting.levels <= 0)
@@ -42,6 +46,11 @@ Shot with_levels_of(Shot shot, const std::filesystem::path& volume, int frame, P
         "lattices of all frames, by the largest file, {}: lighting.levels={}, lighting.lattice_level={}, "
         "scattering.lattice_level={}",
         volume.filename().string(), shot.lighting.levels, shot.lighting.lattice_level, shot.scattering.lattice_level));
+    if (leaves_escape_open(shot)) {
+        shot.scattering.escape = static_cast<float>(mean_escape(medium));
+        progress.notice(fmt::format("mean escape probability of all frames, by the same file: scattering.escape={:.4g}",
+                                    shot.scattering.escape));
+    }
     return shot;
 }
 
