@@ -12,7 +12,7 @@ namespace brisance {
 
 namespace {
 
-constexpr double kDense = 0.125, kThin = 0.3;
+constexpr double kDense = 0.125, kThin = 0.2;
 constexpr float kSmooth = 0.4f, kSharp = 0.6f;
 
 // Of the picture, with both weights.
