@@ -68,11 +68,11 @@ public:
             return {cell, limited(std::hypot(std::sqrt(gathered), error_of_voxels(float(depth_)) + coarse_light_)),
                     kSpread};
         if (cell == "MM")
-            return mixed({cell,
-                          limited(std::sqrt(gathered + square(coarse_light_) +
-                                            square(kErrorOfLattice * lattice_ * depth_)) +
-                                  remainder_),
-                          kSpread});
+            return mixed(
+                {cell,
+                 limited(std::sqrt(gathered + square(coarse_light_) + square(kErrorOfLattice * lattice_ * depth_)) +
+                         remainder_),
+                 kSpread});
         const ExpectedError rest{cell, kErrorOfSurfaces, kSpreadOfRest};
         return cell == "SM" ? mixed(rest) : rest;
     }

@@ -13,8 +13,8 @@ namespace {
 
 using namespace testing;
 
-constexpr double kError = 0.01;        // as stated in mean_escape.h
-constexpr double kOfVoxels = 0.01;     // relative: the rim of a ball of voxels
+constexpr double kError = 0.01;     // as stated in mean_escape.h
+constexpr double kOfVoxels = 0.01;  // relative: the rim of a ball of voxels
 
 Recipe ball_of(int nodes, float extinction) {
     Recipe r;

@@ -24,9 +24,8 @@ private:
 }  // namespace
 
 bool leaves_levels_open(const Shot& shot) {
-    return shot.method != RenderMethod::Path &&
-           (shot.lighting.lattice_level < 0 || shot.lighting.levels <= 0 || shot.scattering.lattice_level < 0 ||
-            leaves_escape_open(shot));
+    return shot.method != RenderMethod::Path && (shot.lighting.lattice_level < 0 || shot.lighting.levels <= 0 ||
+                                                 shot.scattering.lattice_level < 0 || leaves_escape_open(shot));
 }
 
 Shot with_levels_of(Shot shot, const std::filesystem::path& volume, int frame, Progress& progress) {

@@ -1,6 +1,6 @@
 // One choice of lattices for all frames of a sequence, and of the mean escape probability by which solutions of
-// scattered light are mixed. A frame that chooses for itself may be solved on another lattice than its neighbours, which
-// shows as a jump of about a percent.
+// scattered light are mixed. A frame that chooses for itself may be solved on another lattice than its neighbours,
+// which shows as a jump of about a percent.
 #pragma once
 
 #include <filesystem>
