@@ -112,7 +112,7 @@ Plan by_lighting_grid(Plan plan) {
 
 Plan by_scattering_method(Plan plan) {
     plan.share_of_method = 1.0f;
-    plan.emitters_by_rays = 1.0f;
+    plan.emitters_by_rays = plan.needs(Cell::MA) ? 1.0f : 0.0f;
     return plan;
 }
 

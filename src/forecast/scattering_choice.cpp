@@ -44,8 +44,10 @@ ScatteringChoice choose_scattering(const Shot& shot, const Medium& medium, bool 
     const bool automatic = is_automatic(shot), grid = asked == kLightingGridMethod;
     const float sharp = twice ? sharpness(medium.mean_cosine) : 0.0f;
     ScatteringChoice out{automatic ? kLightingGridMethod : asked, 0.0f, 0.0f, "scattering.method is " + asked, {}};
-    if (!automatic && !grid && twice)
-        out.share = out.emitters_by_rays = 1.0f;
+    if (!automatic && !grid && twice) {
+        out.share = 1.0f;
+        out.emitters_by_rays = lamps ? 1.0f : 0.0f;
+    }
     if (automatic)
         out.reason += fmt::format(": abs(mean_cosine) up to {} the lighting grid", kSmooth);
     const bool open = (automatic && sharp > 0.0f) || (lamps && out.share == 0.0f && (automatic || sharp < 1.0f));

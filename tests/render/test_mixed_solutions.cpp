@@ -125,6 +125,23 @@ TEST(MixedSolutions, AreTheWeightedSumsOfBoth) {
     EXPECT_NEAR(stages, mixed.statistics.seconds, 1e-6 + 1e-6 * stages);
 }
 
+// Fire alone: no rays look for lamps in either picture.
+TEST(MixedSolutions, NeedNoLamps) {
+    Recipe r = glowing_ball(8, 1.0f);
+    r.settings.smoke.albedo = Rgb(0.8f);
+    r.settings.smoke.mean_cosine = 0.7f;
+    const Medium medium = make_medium(r);
+    Progress silent;
+    for (const float escape : {0.0f, escape_for(kMiddle), 1.0f}) {
+        const Shot shot = lamp_in_haze(escape);
+        EXPECT_EQ(plan_cells(shot, medium).emitters_by_rays, 0.0f);
+        const RenderedFrame frame = render_medium(shot, medium, silent);
+        EXPECT_EQ(ran(frame, kGridStage), escape < 1.0f) << escape;
+        EXPECT_EQ(ran(frame, kPhotonStage), escape > 0.0f) << escape;
+        EXPECT_GT(mean_of(frame.image), 0.0) << escape;
+    }
+}
+
 // From the grid's picture to the photons' while g rises from 0.4 to 0.6.
 TEST(MixedSolutions, FollowTheMeanCosineWithoutJumps) {
     const Shot shot = lamp_in_haze(1.0f);
