@@ -67,17 +67,24 @@ public:
         if (cell == "MV")
             return {cell, limited(std::hypot(std::sqrt(gathered), error_of_voxels(float(depth_)) + coarse_light_)),
                     kSpread};
-        if (cell == "MM" && !plan_.scattering_method)
-            return {cell,
-                    limited(std::sqrt(gathered + square(coarse_light_) + square(kErrorOfLattice * lattice_ * depth_)) +
-                            remainder_),
-                    kSpread};
-        if (cell == "MM" || cell == "SM")
-            return {cell, plan_.scattering_method ? kErrorOfOtherMethods : kErrorOfSurfaces, kSpreadOfRest};
-        return {cell, kErrorOfSurfaces, kSpreadOfRest};
+        if (cell == "MM")
+            return mixed(
+                {cell,
+                 limited(std::sqrt(gathered + square(coarse_light_) + square(kErrorOfLattice * lattice_ * depth_)) +
+                         remainder_),
+                 kSpread});
+        const ExpectedError rest{cell, kErrorOfSurfaces, kSpreadOfRest};
+        return cell == "SM" ? mixed(rest) : rest;
     }
 
 private:
+    // A scattering method's share of the cell's light errs by itself.
+    ExpectedError mixed(const ExpectedError& grid) const {
+        const double share = plan_.share_of_method;
+        return {grid.cell, std::hypot((1.0 - share) * grid.error, share * kErrorOfOtherMethods),
+                grid.spread + share * (kSpreadOfRest - grid.spread)};
+    }
+
     const Plan& plan_;
     double coarse_light_, interpolation_, depth_, lattice_, remainder_, maps_ = 0.0;
 };

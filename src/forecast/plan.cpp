@@ -1,8 +1,9 @@
 #include "forecast/plan.h"
 
-#include <algorithm>
-#include <cmath>
 #include <functional>
+#include <utility>
+
+#include "forecast/scattering_choice.h"
 
 namespace brisance {
 
@@ -44,42 +45,6 @@ void decide(Plan& plan, bool scatters, bool visible, int bounces) {
     plan.multiple = plan.needs(Cell::MM);
 }
 
-// Whether all smoke is in boxes, none from files.
-bool haze_alone(const Shot& shot) {
-    return shot.volume.file.empty() && !shot.volumes.empty() &&
-           std::all_of(shot.volumes.begin(), shot.volumes.end(),
-                       [](const FurtherVolume& v) { return v.volume.box.has_value(); });
-}
-
-// Whether the phase function is too sharp for spherical harmonics of degree 2, which store the directions of light.
-bool scatters_sharply(const Medium& medium) {
-    return std::abs(medium.mean_cosine) > 0.5f;
-}
-
-// The share of MS that particles carry, which know directions exactly but have noise. Virtual lights, which have none,
-// carry the rest.
-float share_of_particles(const Medium& medium) {
-    return glm::smoothstep(0.4f, 0.6f, std::abs(medium.mean_cosine));
-}
-
-struct Choice {
-    std::string method;
-    std::string reason;
-};
-
-Choice choose_scattering(const Shot& shot, const Medium& medium) {
-    const std::string& method = shot.scattering_methods.method;
-    if (method != kAutomaticMethod)
-        return {method, "scattering.method is " + method};
-    if (!haze_alone(shot))
-        return {kLightingGridMethod, "scattering.method is auto: media from files use the lighting grid"};
-    if (!scatters_sharply(medium))
-        return {kLightingGridMethod,
-                "scattering.method is auto: homogeneous boxes with abs(mean_cosine) up to 0.5 use the lighting grid"};
-    return {VolumetricPhotonsMethod::kName,
-            "scattering.method is auto: all media are homogeneous boxes with abs(mean_cosine) above 0.5"};
-}
-
 // Names of all methods but the grid, to report those that are skipped.
 std::string other_methods() {
     std::string names;
@@ -92,19 +57,22 @@ using Skip = std::function<void(const std::string& part, const std::string& reas
 
 // Chooses the method of MM and SM, and how MA and MS are computed beside them.
 std::string choose_owners(Plan& plan, const Shot& shot, const Medium& medium, const Skip& skip) {
-    const Choice choice = choose_scattering(shot, medium);
-    plan.scattering_choice = choice.method;
     const bool many_lights = shot.method != RenderMethod::Path;
+    const bool twice = many_lights && (plan.multiple || plan.needs(Cell::SM));
+    ScatteringChoice choice = choose_scattering(shot, medium, twice, many_lights && plan.needs(Cell::MA));
+    plan.scattering_choice = choice.method;
     const ScatteringMethod* const method = many_lights ? find_scattering_method(choice.method) : nullptr;
-    const bool twice = plan.multiple || plan.needs(Cell::SM);
-    plan.scattering_method = twice ? method : nullptr;
-    plan.emitters_by_rays = many_lights && plan.needs(Cell::MA) && (plan.scattering_method || haze_alone(shot));
-    plan.reflected_by_particles = many_lights && plan.needs(Cell::MS) ? share_of_particles(medium) : 0.0f;
+    plan.scattering_method = choice.share > 0.0f ? method : nullptr;
+    plan.share_of_method = choice.share;
+    plan.emitters_by_rays = choice.emitters_by_rays;
+    plan.choice_cost = std::move(choice.cost);
+    // Of MS: particles know directions exactly, but have noise. Virtual lights, which have none, carry the rest.
+    plan.reflected_by_particles = many_lights && plan.needs(Cell::MS) ? sharpness(medium.mean_cosine) : 0.0f;
     if (method && !plan.scattering_method)
         skip(method->product, "no light is scattered twice");
-    if (many_lights && twice && !method)
+    if (twice && !method)
         skip(other_methods(), choice.reason);
-    return choice.reason + ", which owns MM and SM";
+    return choice.reason + (plan.mixed() ? "; MM and SM are theirs" : ", which owns MM and SM");
 }
 
 void skip_without_emission(const Plan& plan, const Shot& shot, const Medium& medium, const std::string& owner,
@@ -114,7 +82,7 @@ void skip_without_emission(const Plan& plan, const Shot& shot, const Medium& med
         if (!plan.needs(cell) && (cell != Cell::SV || plan.surfaces))
             skip(name_of(cell), "nothing emits");
     skip("lights, hierarchy, shadow maps", "nothing emits");
-    if (plan.scattering_method)
+    if (plan.scattering_method && !plan.mixed())
         skip("scattered hierarchies", owner);
 }
 
@@ -128,13 +96,25 @@ void skip_with_emission(const Plan& plan, const Shot& shot, const Medium& medium
         skip("MM", scatters ? "scattering.bounces is " + std::to_string(shot.scattering.bounces) : dark);
     if (!plan.single || !many_lights)
         skip("lights, hierarchy, shadow maps", many_lights ? "no cell needs them" : "method is path");
-    else if (plan.scattering_method)
+    else if (plan.scattering_method && !plan.mixed())
         skip("scattered hierarchies", owner);
     else if (!plan.multiple)
         skip("scattered hierarchies", "one scattering only");
 }
 
 }  // namespace
+
+Plan by_lighting_grid(Plan plan) {
+    plan.scattering_method = nullptr;
+    plan.share_of_method = 0.0f;
+    return plan;
+}
+
+Plan by_scattering_method(Plan plan) {
+    plan.share_of_method = 1.0f;
+    plan.emitters_by_rays = plan.needs(Cell::MA) ? 1.0f : 0.0f;
+    return plan;
+}
 
 Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surroundings) {
     Plan plan;

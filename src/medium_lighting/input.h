@@ -32,7 +32,7 @@ struct MediumLightingInput {
     bool multiple = false;            // MM
     bool surfaces_on_medium = false;  // MS
     bool emitters_on_medium = false;  // MA, or its share of MM
-    bool emitters_at_nodes = true;    // MA is computed at the nodes; false: along the camera's rays
+    float emitters_at_nodes = 1.0f;   // the share of MA that nodes hold; the rest: along the camera's rays
     bool surfaces_lit = false;        // SV or SM: lights are kept for receivers on surfaces
     bool directional = false;         // anisotropic phase function: light keeps its direction
     bool orders_apart = false;        // orders of scattering are kept for layers of their own

@@ -52,8 +52,11 @@ LatticeLighting::LatticeLighting(const MediumLightingInput& input, int level, St
     }
     if (input.surroundings && input.emitters_on_medium) {
         const Gathered arriving = light_from_emitters(lattice_, statistics, progress);
-        if (input.emitters_at_nodes)
+        if (input.emitters_at_nodes > 0.0f) {
             nodes_.from_emitters = lattice_.source_function(arriving);
+            for (Rgb& source : nodes_.from_emitters)
+                source *= input.emitters_at_nodes;
+        }
         first.add(arriving);
     }
     if (input.multiple) {

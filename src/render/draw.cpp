@@ -1,5 +1,7 @@
 #include "render/draw.h"
 
+#include <utility>
+
 #include "camera_rays/moment_mean.h"
 #include "core/available_memory.h"
 #include "core/error.h"
@@ -108,6 +110,42 @@ Drawn draw_moving(const DrawInput& input, Statistics& statistics, Progress& prog
     return out;
 }
 
+Drawn draw_one(const DrawInput& input, Statistics& statistics, Progress& progress) {
+    return input.shutter ? draw_moving(input, statistics, progress) : draw_lit(input, nullptr, statistics, progress);
+}
+
+// Adds a share of another picture with the same layers, and takes as much from this one.
+void mix(Image& image, const Image& other, float share) {
+    for (Layer& layer : image.layers) {
+        const std::vector<float>& pixels = other.layer(layer.name).pixels;
+        for (std::size_t i = 0; i < pixels.size(); ++i)
+            layer.pixels[i] += share * (pixels[i] - layer.pixels[i]);
+    }
+}
+
+// Two whole pictures, since MA and MM of one solution are right together and not beside those of the other
+// (scattering_choice.h). What both compute alike, with the same random numbers, is as in either.
+Drawn draw_mixed(const DrawInput& input, Statistics& statistics, Progress& progress) {
+    Shot shot = input.shot;
+    if (std::exchange(shot.output.bounce_layers, false))
+        progress.warning("bounce-layers", why_no_order_layers(input));
+    const auto draw = [&](const Plan& plan, Statistics& costs) {
+        const DrawInput part{shot,         plan,          input.medium,         input.surroundings,
+                             input.camera, input.shutter, input.light_positions};
+        return draw_one(part, costs, progress);
+    };
+    Drawn out = draw(by_lighting_grid(input.plan), statistics);
+    Statistics costs;
+    const Drawn other = draw(by_scattering_method(input.plan), costs);
+    for (StageCost& stage : costs.stages) {
+        stage.name += ", of the picture by " + input.plan.scattering_method->product;
+        statistics.stages.push_back(std::move(stage));
+    }
+    mix(out.image, other.image, input.plan.share_of_method);
+    out.samples_per_pixel += other.samples_per_pixel;
+    return out;
+}
+
 }  // namespace
 
 Drawn draw_by_many_lights(const DrawInput& input, Statistics& statistics, Progress& progress) {
@@ -115,7 +153,7 @@ Drawn draw_by_many_lights(const DrawInput& input, Statistics& statistics, Progre
         check_surroundings(input.shot);
     if (input.plan.single || input.plan.multiple)
         check_memory_to_light(input);
-    return input.shutter ? draw_moving(input, statistics, progress) : draw_lit(input, nullptr, statistics, progress);
+    return (input.plan.mixed() ? draw_mixed : draw_one)(input, statistics, progress);
 }
 
 std::optional<std::string> why_no_virtual_lights(const Shot& shot, const Plan& plan) {

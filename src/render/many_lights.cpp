@@ -78,7 +78,7 @@ MediumLightingInput medium_lighting_input(const DrawInput& input, const Plan& pl
     out.multiple = plan.multiple;
     out.surfaces_on_medium = plan.needs(Cell::MS);
     out.emitters_on_medium = plan.needs(Cell::MA);
-    out.emitters_at_nodes = !plan.emitters_by_rays;
+    out.emitters_at_nodes = 1.0f - plan.emitters_by_rays;
     out.surfaces_lit = plan.needs(Cell::SV) || plan.needs(Cell::SM);
     out.directional = plan.directional;
     out.orders_apart = orders_apart && !out.surfaces_lit;
@@ -108,7 +108,7 @@ ManyLights::ManyLights(const DrawInput& input, Statistics& statistics, Progress&
     }
     if (shot.virtual_lights.count > 0 && (plan.needs(Cell::SS) || plan.needs(Cell::MS)))
         virtual_lights_ = place_virtual_lights(input, paths_->direct(), statistics, progress);
-    if ((plan.scattering_method || plan.emitters_by_rays) && !paths_)
+    if ((plan.scattering_method || plan.emitters_by_rays > 0.0f) && !paths_)
         own_direct_.emplace(input.medium, shot.tracing, input.surroundings);
     light_medium(input, statistics, progress);
     if (wants_single_scattering_apart(input))

@@ -140,6 +140,13 @@ void warn_of_darkness(const Medium& medium, const Surroundings* surroundings, Pr
 // Where virtual lights lie, for a plan that needs them; none: the frame places its own.
 using PositionsFor = std::function<std::vector<SharedPositions>(const Shot&, Progress&)>;
 
+void add_plan(const Plan& plan, Statistics& statistics) {
+    statistics.cells = plan.cells();
+    statistics.skipped = plan.skipped;
+    if (!plan.choice_cost.name.empty())
+        statistics.stages.push_back(plan.choice_cost);
+}
+
 bool needs_virtual_lights(const Plan& plan) {
     return plan.needs(Cell::SS) || plan.needs(Cell::MS);
 }
@@ -150,8 +157,7 @@ void render_into(RenderedFrame& out, const Shot& given, const FrameView& frame, 
     const Surroundings* const surroundings = frame.surroundings;
     const Shot shot = with_chosen_method(given, medium, surroundings, frame.camera, out, progress);
     const Plan plan = plan_cells(shot, medium, surroundings);
-    out.statistics.cells = plan.cells();
-    out.statistics.skipped = plan.skipped;
+    add_plan(plan, out.statistics);
     warn_of_darkness(medium, surroundings, progress);
     const Camera camera(frame.camera, medium);
     const OpenShutter shutter(shot.shutter, medium, surroundings, frame.camera, frame.animation, progress);
@@ -242,9 +248,7 @@ Statistics plan_frame(const Shot& shot, const std::filesystem::path& volume, int
     if (chosen.method == RenderMethod::Automatic)
         chosen = with_method(chosen,
                              forecast_methods(chosen, input.medium, input.surroundings.get(), input.camera, progress));
-    const Plan plan = plan_cells(chosen, input.medium, input.surroundings.get());
-    statistics.cells = plan.cells();
-    statistics.skipped = plan.skipped;
+    add_plan(plan_cells(chosen, input.medium, input.surroundings.get()), statistics);
     return statistics;
 }
 

@@ -31,19 +31,6 @@ std::vector<float> luminances(const std::vector<Rgb>& intensity) {
     return y;
 }
 
-// Node index of each of `rays` systematic picks in proportion to `density`.
-std::vector<std::size_t> pick_nodes(const std::vector<float>& density, std::size_t rays) {
-    const double sum = std::accumulate(density.begin(), density.end(), 0.0);
-    std::vector<std::size_t> picks;
-    double passed = 0.0;
-    for (std::size_t i = 0; i < density.size(); ++i) {
-        passed += density[i];
-        while (picks.size() < rays && passed > (picks.size() + 0.5) / rays * sum)
-            picks.push_back(i);
-    }
-    return picks;
-}
-
 // Golden-ratio rotation of consecutive rays: well spread for any run of them.
 vec3 ray_direction(std::size_t ray) {
     return uniform_sphere_direction(std::fmod(0.5 + ray * 0.7548776662466927, 1.0),
@@ -99,7 +86,7 @@ CollisionEstimate collision_estimate(const std::vector<Rgb>& intensity, std::spa
 
 CollisionEstimate estimate_collisions(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& intensity,
                                       std::span<const float> directional, std::size_t rays) {
-    const std::vector<std::size_t> picks = pick_nodes(luminances(intensity), rays);
+    const std::vector<std::size_t> picks = systematic_picks(luminances(intensity), rays);
     if (picks.empty())
         return {};
     return collision_estimate(intensity, directional, picks,
@@ -109,7 +96,7 @@ CollisionEstimate estimate_collisions(const ExtinctionPyramid& pyramid, const st
 PartlyCollided estimate_collisions(const ExtinctionPyramid& pyramid, const std::vector<Rgb>& intensity,
                                    std::span<const float> directional, std::size_t rays,
                                    const std::vector<float>& part) {
-    const std::vector<std::size_t> picks = pick_nodes(luminances(intensity), rays);
+    const std::vector<std::size_t> picks = systematic_picks(luminances(intensity), rays);
     if (picks.empty())
         return {};
     const EscapeRays from_lights = rays_from(pyramid, pyramid.occluders(), picks);
@@ -124,7 +111,7 @@ EscapeEstimate estimate_escape(const ExtinctionPyramid& pyramid, const std::vect
                                std::size_t rays) {
     const NodeWeights density = escape_density(intensity, likelihood);
     const double all = std::accumulate(density.begin(), density.end(), 0.0);
-    const std::vector<std::size_t> picks = pick_nodes(density, rays);
+    const std::vector<std::size_t> picks = systematic_picks(density, rays);
     if (picks.size() < kBatches)
         return {};
     const std::vector<float> collided = rays_from(pyramid, nullptr, picks).collision_probabilities();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/parallel.h"
 #include "medium/phase.h"
@@ -20,6 +21,18 @@ vec3 uniform_sphere_direction(double u, double v) {
     const double s = std::sqrt(std::max(0.0, 1.0 - z * z));
     const double angle = 2.0 * kPi * v;
     return vec3(s * std::cos(angle), s * std::sin(angle), z);
+}
+
+std::vector<std::size_t> systematic_picks(const std::vector<float>& density, std::size_t count) {
+    const double sum = std::accumulate(density.begin(), density.end(), 0.0);
+    std::vector<std::size_t> picks;
+    double passed = 0.0;
+    for (std::size_t i = 0; i < density.size(); ++i) {
+        passed += density[i];
+        while (picks.size() < count && passed > (picks.size() + 0.5) / count * sum)
+            picks.push_back(i);
+    }
+    return picks;
 }
 
 EscapeRays::NodeBox EscapeRays::bounding_box(const Medium& medium) {

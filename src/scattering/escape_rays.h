@@ -10,6 +10,9 @@ namespace brisance {
 // A direction uniform over the sphere, from two numbers in [0, 1).
 vec3 uniform_sphere_direction(double u, double v);
 
+// The index of each of `count` systematic picks in proportion to `density`, in order; none where it is zero everywhere.
+std::vector<std::size_t> systematic_picks(const std::vector<float>& density, std::size_t count);
+
 // Rays end at the edge of the medium or at a surface. Packed for the marching kernel.
 class EscapeRays {
 public:

@@ -90,8 +90,8 @@ Image mean_of_passes(const ScatteringMethod& method, const ScatteringMethodSetti
     return mean;
 }
 
-LightRays light_rays_by(const InScattering* estimator, const DirectLight* scene, bool emitters) {
-    if (!estimator && !emitters)
+LightRays light_rays_by(const InScattering* estimator, const DirectLight* scene, float emitters) {
+    if (!estimator && emitters == 0.0f)
         return {};
     return [=](const PixelRay& r, double end) {
         thread_local RayMedium seen;
@@ -101,8 +101,8 @@ LightRays light_rays_by(const InScattering* estimator, const DirectLight* scene,
         LightOnRay light;
         if (estimator)
             light.scattered = estimator->along_ray(seen, rng);
-        if (emitters)
-            light.emitters = emitters_along_ray(*scene, seen, r.ray, kEmitterPoints, rng);
+        if (emitters > 0.0f)
+            light.emitters = emitters * emitters_along_ray(*scene, seen, r.ray, kEmitterPoints, rng);
         return light;
     };
 }

@@ -24,8 +24,8 @@ Image mean_of_passes(const ScatteringMethod& method, const ScatteringMethodSetti
                      const DirectLight& scene, const Camera& camera, const DrawPass& draw, double& seconds,
                      Statistics& statistics, Progress& progress);
 
-// MM by the estimator, or null, and MA where `emitters` says so; empty where there is neither. Keeps references to
+// MM by the estimator, or null, and the share `emitters` of MA; empty where there is neither. Keeps references to
 // estimator and scene.
-LightRays light_rays_by(const InScattering* estimator, const DirectLight* scene, bool emitters);
+LightRays light_rays_by(const InScattering* estimator, const DirectLight* scene, float emitters);
 
 }  // namespace brisance

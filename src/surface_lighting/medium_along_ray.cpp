@@ -16,14 +16,14 @@ constexpr int kEmitterSamples = 4;
 
 RaySum MediumAlongRay::look(const Ray& ray, double end, Rng& rng) const {
     RaySum sum = integrate(field_, ray, parts_, end);
-    if (!in_scattering_ && !emitters_by_rays_)
+    if (!in_scattering_ && emitters_by_rays_ == 0.0f)
         return sum;
     thread_local RayMedium medium;
     medium.look(scene_.field(), ray, end);
     if (in_scattering_)
         sum.cells.at(Cell::MM) += in_scattering_->along_ray(medium, rng);
-    if (emitters_by_rays_)
-        sum.cells.at(Cell::MA) += emitters_along_ray(scene_, medium, ray, kEmitterSamples, rng);
+    if (emitters_by_rays_ > 0.0f)
+        sum.cells.at(Cell::MA) += emitters_by_rays_ * emitters_along_ray(scene_, medium, ray, kEmitterSamples, rng);
     return sum;
 }
 

@@ -12,9 +12,9 @@ namespace brisance {
 class MediumAlongRay {
 public:
     // Keeps references. `parts` is that of PictureSettings. `in_scattering` is null where it does not own MM.
-    // `emitters_by_rays`: MA is estimated along the ray, as the field does not hold it.
+    // `emitters_by_rays`: the share of MA that is estimated along the ray, as the field does not hold it.
     MediumAlongRay(const SourceField& field, const DirectLight& scene, int parts, const InScattering* in_scattering,
-                   bool emitters_by_rays)
+                   float emitters_by_rays)
         : field_(field),
           scene_(scene),
           parts_(parts),
@@ -29,7 +29,7 @@ private:
     const DirectLight& scene_;
     int parts_;
     const InScattering* in_scattering_;
-    bool emitters_by_rays_;
+    float emitters_by_rays_;
 };
 
 // The light of the row M.

@@ -37,7 +37,7 @@ struct SurfaceLightingInput {
     const MediumLighting* medium_lighting = nullptr;  // null: neither fire nor smoke emits light
     const VirtualLights* virtual_lights = nullptr;    // null: the shot uses none
     const InScattering* in_scattering = nullptr;      // null: it does not own SM
-    bool emitters_by_rays = false;                    // MA is estimated along rays (medium_along_ray.h)
+    float emitters_by_rays = 0.0f;                    // share of MA along rays (medium_along_ray.h)
     int parts = 2;                                    // that of PictureSettings
     int width = 0;                                    // of the picture, in pixels
     int samples = 1;                                  // rays of a pixel

@@ -1,5 +1,4 @@
-// Haze is lit by the same stages and looks the same, whether the shot calls it a box or a file has its voxels. Not
-// where abs(mean_cosine) is above 0.5: there the method of boxes is another one (plan.h).
+// Haze is lit by the same stages and looks the same, whether the shot calls it a box or a file has its voxels.
 #include <gtest/gtest.h>
 
 #include "make_vdb.h"
@@ -96,6 +95,10 @@ TEST(BoxAndFile, BesideALampAreTheSame) {
 
 TEST(BoxAndFile, OfForwardScatteringHazeAreTheSame) {
     expect_same_by_lamp(0.5f);
+}
+
+TEST(BoxAndFile, OfSharplyScatteringHazeAreTheSame) {
+    expect_same_by_lamp(0.8f);
 }
 
 }  // namespace

@@ -271,31 +271,30 @@ TEST_P(LightsInSmokePictures, NothingIsTracedForWhatIsNotThere) {
         EXPECT_EQ(stage.name.find(kind), std::string::npos);
 }
 
-// By the shot, not by what a frame holds.
-TEST(ScatteringMethods, AreChosenByTheShotAlone) {
+// By the phase function and by what escapes, whatever holds the smoke.
+TEST(ScatteringMethods, AreChosenByTheMedium) {
     std::string products;
     for (const ScatteringMethod& method : scattering_methods())
         products += (products.empty() ? "" : ", ") + method.product;
-    const auto chosen = [&](float mean_cosine, bool box, bool file, const std::string& method) {
+    const auto chosen = [&](float mean_cosine, float escape, const std::string& method) {
         Shot shot = small_shot(RenderMethod::LightingGrid, method);
-        if (box)
-            shot.volumes.emplace_back().volume.box = FogBox{{-1, -1, -1}, {1, 1, 1}, 0.1};
-        if (file)
-            shot.volume.file = "smoke.vdb";
+        shot.scattering.escape = escape;
         const Plan plan = plan_cells(shot, smoke(mean_cosine));
         EXPECT_EQ(plan.scattering_method != nullptr, plan.scattering_choice != kLightingGridMethod);
+        EXPECT_EQ(plan.share_of_method > 0.0f, plan.scattering_method != nullptr);
         EXPECT_EQ(skips(plan, products.c_str()), !plan.scattering_method);
+        EXPECT_EQ(skips(plan, "scattered hierarchies"), plan.scattering_method && !plan.mixed());
         return plan.scattering_choice;
     };
     const auto automatic = std::string(kAutomaticMethod), grid = std::string(kLightingGridMethod),
                rays = std::string(RayLightsMethod::kName), particles = std::string(VolumetricPhotonsMethod::kName);
-    EXPECT_EQ(chosen(0.8f, true, false, automatic), particles);
-    EXPECT_EQ(chosen(-0.8f, true, false, automatic), particles);
-    EXPECT_EQ(chosen(0.5f, true, false, automatic), grid);
-    EXPECT_EQ(chosen(0.8f, true, true, automatic), grid);
-    EXPECT_EQ(chosen(0.8f, false, true, automatic), grid);
-    EXPECT_EQ(chosen(0.8f, true, false, grid), grid);
-    EXPECT_EQ(chosen(0.0f, false, true, rays), rays);
+    EXPECT_EQ(chosen(0.8f, 1.0f, automatic), particles);
+    EXPECT_EQ(chosen(-0.8f, 1.0f, automatic), particles);
+    EXPECT_EQ(chosen(0.5f, 1.0f, automatic), particles);  // a half of it
+    EXPECT_EQ(chosen(0.4f, 1.0f, automatic), grid);
+    EXPECT_EQ(chosen(0.8f, 0.0f, automatic), grid);
+    EXPECT_EQ(chosen(0.8f, 1.0f, grid), grid);
+    EXPECT_EQ(chosen(0.0f, 0.0f, rays), rays);
 }
 
 }  // namespace

@@ -44,5 +44,27 @@ TEST(SequenceLevels, AreThoseOfTheGivenFrameAndWhatTheShotStatesStays) {
     EXPECT_FALSE(leaves_levels_open(shot));
 }
 
+TEST(SequenceLevels, HoldTheMeanEscapeProbabilityWhereItDecides) {
+    const TempFolder folder;
+    write_smoke(folder / "a.0001.vdb", 6);
+    Shot shot;
+    shot.volume.file = (folder / "a.####.vdb").string();
+    shot.lighting.levels = 3;
+    shot.lighting.lattice_level = shot.scattering.lattice_level = 0;
+    EXPECT_FALSE(leaves_levels_open(shot));
+    shot.medium.smoke.mean_cosine = 0.5f;
+    shot.medium.smoke.extinction_per_metre = 1.0f;
+    EXPECT_TRUE(leaves_levels_open(shot));
+    Listener listener;
+    const Shot kept = with_levels_of(shot, folder / "a.0001.vdb", 1, listener);
+    EXPECT_GT(kept.scattering.escape, 0.4f);
+    EXPECT_LT(kept.scattering.escape, 0.9f);
+    EXPECT_FALSE(leaves_levels_open(kept));
+    ASSERT_FALSE(listener.notices.empty());
+    EXPECT_NE(listener.notices.back().find("scattering.escape="), std::string::npos) << listener.notices.back();
+    shot.scattering.escape = 0.25f;
+    EXPECT_EQ(with_levels_of(shot, folder / "a.0001.vdb", 1, listener).scattering.escape, 0.25f);
+}
+
 }  // namespace
 }  // namespace brisance

@@ -91,6 +91,7 @@ std::vector<Shot> unusual_shots() {
                                              "lighting.shadows=none",
                                              "scattering.bounces=0",
                                              "scattering.lattice_level=0",
+                                             "scattering.escape=0.3",
                                              "output.exposure_stops=0",
                                              "output.layers.bounces=true",
                                              "output.frames_per_second=23.976"};

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "forecast/mean_escape.h"
+#include "forecast/scattering_choice.h"
 #include "medium_lighting/automatic_levels.h"
 #include "render/input/load_medium.h"
 
@@ -19,11 +21,36 @@ private:
     Progress& to_;
 };
 
+bool leaves_lattices_open(const Shot& shot) {
+    return shot.method != RenderMethod::Path &&
+           (shot.lighting.lattice_level < 0 || shot.lighting.levels <= 0 || shot.scattering.lattice_level < 0);
+}
+
+void choose_lattices(Shot& shot, const Medium& medium, const std::string& file, Progress& progress) {
+    const AutomaticLevels levels = automatic_levels_of(medium, shot.lighting);
+    if (shot.lighting.lattice_level < 0)
+        shot.lighting.lattice_level = levels.light;
+    if (shot.lighting.levels <= 0)
+        shot.lighting.levels = levels.lighting;
+    if (shot.scattering.lattice_level < 0)
+        shot.scattering.lattice_level = levels.scattering;
+    progress.notice(
+        fmt::format("lattices of all frames, by the largest file, {}: lighting.levels={}, lighting.lattice_level={}, "
+                    "scattering.lattice_level={}",
+                    file, shot.lighting.levels, shot.lighting.lattice_level, shot.scattering.lattice_level));
+}
+
+void choose_escape(Shot& shot, const Medium& medium, const std::string& file, Progress& progress) {
+    shot.scattering.escape = static_cast<float>(mean_escape(medium));
+    progress.notice(
+        fmt::format("mean escape probability of all frames, by the largest file, {}: scattering.escape={:.4g}", file,
+                    shot.scattering.escape));
+}
+
 }  // namespace
 
 bool leaves_levels_open(const Shot& shot) {
-    return shot.method != RenderMethod::Path &&
-           (shot.lighting.lattice_level < 0 || shot.lighting.levels <= 0 || shot.scattering.lattice_level < 0);
+    return leaves_lattices_open(shot) || leaves_escape_open(shot);
 }
 
 Shot with_levels_of(Shot shot, const std::filesystem::path& volume, int frame, Progress& progress) {
@@ -31,17 +58,12 @@ Shot with_levels_of(Shot shot, const std::filesystem::path& volume, int frame, P
         return shot;
     WarningsAlone quiet(progress);
     Statistics unused;
-    const AutomaticLevels levels = automatic_levels_of(load_medium(shot, volume, frame, unused, quiet), shot.lighting);
-    if (shot.lighting.lattice_level < 0)
-        shot.lighting.lattice_level = levels.light;
-    if (shot.lighting.levels <= 0)
-        shot.lighting.levels = levels.lighting;
-    if (shot.scattering.lattice_level < 0)
-        shot.scattering.lattice_level = levels.scattering;
-    progress.notice(fmt::format(
-        "lattices of all frames, by the largest file, {}: lighting.levels={}, lighting.lattice_level={}, "
-        "scattering.lattice_level={}",
-        volume.filename().string(), shot.lighting.levels, shot.lighting.lattice_level, shot.scattering.lattice_level));
+    const Medium medium = load_medium(shot, volume, frame, unused, quiet);
+    const std::string file = volume.filename().string();
+    if (leaves_lattices_open(shot))
+        choose_lattices(shot, medium, file, progress);
+    if (leaves_escape_open(shot))
+        choose_escape(shot, medium, file, progress);
     return shot;
 }
 

@@ -1,5 +1,6 @@
-// One choice of lattices for all frames of a sequence. A frame that chooses for itself may be solved on another lattice
-// than its neighbours, which shows as a jump of about a percent.
+// One choice of lattices for all frames of a sequence, and of the mean escape probability by which solutions of
+// scattered light are mixed. A frame that chooses for itself may be solved on another lattice than its neighbours,
+// which shows as a jump of about a percent.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +10,8 @@
 
 namespace brisance {
 
-// Whether the shot leaves lighting.levels, lighting.lattice_level or scattering.lattice_level open and its method looks
-// at them.
+// Whether the shot leaves lighting.levels, lighting.lattice_level, scattering.lattice_level or scattering.escape open
+// and its method looks at them.
 bool leaves_levels_open(const Shot& shot);
 
 // The shot with these as the medium of this frame has them; what the shot states stays. Reads the frame's files. Which

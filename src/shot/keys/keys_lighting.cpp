@@ -52,6 +52,11 @@ void add_lighting_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "scattering.alpha", "as lighting.alpha, for scattered light", real_float({1.0, 64.0}),
         [](Shot & s) -> auto& { return s.scattering.alpha; }));
+    keys.push_back(make_key(
+        "scattering.escape",
+        "probability that scattered light leaves the smoke without another collision, by which scattering.method=auto "
+        "and the light of lamps on smoke choose; auto: measured",
+        or_word(real_float({0.0, 1.0}), "auto", -1.0f), [](Shot & s) -> auto& { return s.scattering.escape; }));
     add_scattering_method_keys(keys);
 }
 

@@ -17,8 +17,8 @@ std::string method_help() {
     for (const ScatteringMethod& method : scattering_methods())
         help += method.name + ": " + method.help + "; ";
     return help + kAutomaticMethod + ": " + VolumetricPhotonsMethod::kName +
-           " where all media are homogeneous boxes whose phase function has a sharp peak, " + kLightingGridMethod +
-           " otherwise";
+           " for thin smoke whose phase function has a sharp peak, " + kLightingGridMethod +
+           " otherwise, and mixtures between";
 }
 
 // One key of a method's settings as a key of the shot.

@@ -28,6 +28,7 @@ std::string to_text(const KeptChoice& choice) {
                  {"lighting_levels", shot.lighting.levels},
                  {"lighting_lattice_level", shot.lighting.lattice_level},
                  {"lattice_level", shot.scattering.lattice_level},
+                 {"escape", shot.scattering.escape},
                  {"said", choice.said},
                  {"volumes", Json::array()}};
     if (choice.exposure_stops)
@@ -46,6 +47,7 @@ std::optional<KeptChoice> kept_choice(const std::string& text, const Shot& given
         shot.lighting.levels = json.at("lighting_levels").get<int>();
         shot.lighting.lattice_level = json.at("lighting_lattice_level").get<int>();
         shot.scattering.lattice_level = json.at("lattice_level").get<int>();
+        shot.scattering.escape = json.at("escape").get<float>();
         json.at("said").get_to(out.said);
         if (json.contains("exposure_stops"))
             out.exposure_stops = json.at("exposure_stops").get<float>();
