@@ -186,15 +186,15 @@ HWY_INLINE void accumulate(D d, float* to, V value) {
     hn::StoreU(hn::Add(hn::LoadU(d, to), value), d, to);
 }
 
-// Optical depth of a voxel ball's radius in the extinction at the receivers.
-V radius_depth(D d, const FarLights& l, const Receivers& r, std::size_t at) {
+// Optical depth of a ball's radius in the extinction at the receivers.
+V radius_depth(D d, const FarLights& l, float ball, const Receivers& r, std::size_t at) {
     const V p[3] = {hn::LoadU(d, &r.x[at]), hn::LoadU(d, &r.y[at]), hn::LoadU(d, &r.z[at])};
     V n[3];
     for (int a = 0; a < 3; ++a)
         n[a] = hn::MulAdd(hn::Set(d, l.index_from_local[0][a]), p[0],
                           hn::MulAdd(hn::Set(d, l.index_from_local[1][a]), p[1],
                                      hn::Mul(hn::Set(d, l.index_from_local[2][a]), p[2])));
-    return hn::Mul(sample_extinction(d, *l.extinction, n[0], n[1], n[2]), hn::Set(d, l.ball));
+    return hn::Mul(sample_extinction(d, *l.extinction, n[0], n[1], n[2]), hn::Set(d, ball));
 }
 
 // One light, one group of receivers.
@@ -212,7 +212,7 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Rece
     const V b = blend(d, l, distance);
     if (hn::AllTrue(d, hn::Eq(b, hn::Zero(d))))
         return;
-    V w = hn::Mul(b, l.bottom ? ball_kernel(d, l.ball, distance) : hn::Mul(inverse, inverse));
+    V w = hn::Mul(b, l.bottom ? ball_kernel(d, l.ball_of(i), distance) : hn::Mul(inverse, inverse));
     const V minus = hn::Neg(inverse);
     const V wx = hn::Mul(to_light[0], minus), wy = hn::Mul(to_light[1], minus), wz = hn::Mul(to_light[2], minus);
     if (l.shadow == FarLights::Shadow::Maps) {
@@ -221,7 +221,7 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Rece
     } else if (l.shadow == FarLights::Shadow::Exact) {
         V t = exact_transmittance(d, l, p, to_light, distance);
         if (l.bottom)
-            t = ball_transmittance(d, l.ball, distance, t, radius_depth(d, l, r, at));
+            t = ball_transmittance(d, l.ball_of(i), distance, t, radius_depth(d, l, l.ball_of(i), r, at));
         w = hn::Mul(w, t);
     }
 

@@ -22,6 +22,8 @@ struct FarLights {
     bool bottom;   // level 0: does not fade in; lights are balls of their voxel's volume
     bool top;      // the top level does not fade out
     float ball;    // radius of that ball [m]
+    const float* balls;  // of each light's own ball [m]; null: all have `ball`
+    float ball_of(std::uint32_t light) const { return balls ? balls[light] : ball; }
 
     enum class Shadow { Maps, Exact, None } shadow;
     const std::uint16_t* maps;  // of light list_base and the following ones

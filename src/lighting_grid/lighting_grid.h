@@ -27,6 +27,9 @@ struct GridLevel {
     // Degrees 1 and 2 of a directional intensity, 24 per light ([3 * m + colour], sh.h); empty: isotropic.
     std::vector<float> directional;
 
+    // Radius of the ball that each light stands for [m] (light_clusters.h); empty: that of a voxel of the level.
+    std::vector<float> radius;
+
     // For lights outside of the medium: light i represents the positions part[first_part[i] ... first_part[i + 1]),
     // local [m]. Empty where lights represent voxels.
     std::vector<vec3> part;
