@@ -5,6 +5,7 @@
 #include <span>
 
 #include "gathering/receivers.h"
+#include "lighting_grid/lighting_grid.h"
 #include "medium/lattice/extinction_pyramid.h"
 #include "shadows/shadow_maps.h"
 
@@ -22,8 +23,7 @@ struct FarLights {
     bool bottom;   // level 0: does not fade in; lights are balls of their voxel's volume
     bool top;      // the top level does not fade out
     float ball;    // radius of that ball [m]
-    const float* balls;  // of each light's own ball [m]; null: all have `ball`
-    float ball_of(std::uint32_t light) const { return balls ? balls[light] : ball; }
+    const LightBall* balls;  // of the lights, whose shadows begin at their surface; null: all have `ball`
 
     enum class Shadow { Maps, Exact, None } shadow;
     const std::uint16_t* maps;  // of light list_base and the following ones

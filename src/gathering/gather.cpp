@@ -144,7 +144,7 @@ private:
         lights.bottom = level.level == field_.bottom;
         lights.top = top;
         lights.ball = std::cbrt(3.0f / (4.0f * kPi)) * field_.pyramid->medium().spacing * float(1 << level.level);
-        lights.balls = level.radius.empty() ? nullptr : level.radius.data();
+        lights.balls = level.ball.empty() ? nullptr : level.ball.data();
         lights.shadow = field_.settings.shadows == ShadowMethod::None ? FarLights::Shadow::None
                         : has_maps(level)                             ? FarLights::Shadow::Maps
                                                                       : FarLights::Shadow::Exact;

@@ -26,6 +26,16 @@ float square_of_distance(const vec3& a, const vec3& b) {
     return glm::dot(d, d);
 }
 
+// That shines evenly. `extinction`: [1/m].
+LightBall homogeneous_ball(double radius, double extinction) {
+    const double t = radius * extinction;
+    // Below, the closed form loses its digits: the first terms of its series.
+    const double escape = t < 0.02 ? 1.0 - 0.75 * t + 0.4 * t * t
+                                   : 0.375 / (t * t * t) * (2.0 * t * t - 1.0 + (1.0 + 2.0 * t) * std::exp(-2.0 * t));
+    const double inside = t < 0.02 ? 1.0 - 8.0 / 15.0 * t : 4.0 / 3.0 * (1.0 - escape) / t;
+    return {float(radius), float(inside), float(escape)};
+}
+
 // Voxels that shine, brick by brick, and their clusters. Bricks whose voxels cannot change are left out by the bounds
 // of their voxels, so that the result is that of comparing all voxels with all centres.
 class Clusters {
@@ -83,7 +93,8 @@ public:
             level.vertex.push_back(vertex_of(lamp));
             level.position.emplace_back(lamp.centroid());
             level.intensity.emplace_back(lamp.intensity);
-            level.radius.push_back(float(std::sqrt(5.0 / 3.0 * lamp.variance() + voxel * voxel)));
+            const double radius = std::sqrt(5.0 / 3.0 * lamp.variance() + voxel * voxel);
+            level.ball.push_back(homogeneous_ball(radius, lamp.extinction / lamp.weight));
         }
         level.index_rows();
         return level;
@@ -100,6 +111,7 @@ private:
         double weight = 0.0;
         dvec3 intensity{0.0}, moment{0.0};
         double square = 0.0;  // of the distance to the local origin
+        double extinction = 0.0;
         dvec3 centroid() const { return moment / weight; }
         double variance() const { return std::max(0.0, square / weight - glm::dot(centroid(), centroid())); }
     };
@@ -205,6 +217,7 @@ private:
             lamp.intensity += dvec3(intensity_[node_[v]]);
             lamp.moment += w * p;
             lamp.square += w * glm::dot(p, p);
+            lamp.extinction += w * double(medium_.extinction[node_[v]]);
         }
         return sums;
     }
