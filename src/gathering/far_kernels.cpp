@@ -214,7 +214,8 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Rece
     const V b = blend(d, l, distance);
     if (hn::AllTrue(d, hn::Eq(b, hn::Zero(d))))
         return;
-    V w = hn::Mul(b, l.bottom ? ball_kernel(d, l.balls ? l.balls[i].radius : l.ball, distance) : hn::Mul(inverse, inverse));
+    V w = hn::Mul(
+        b, l.bottom ? ball_kernel(d, l.balls ? l.balls[i].radius : l.ball, distance) : hn::Mul(inverse, inverse));
     const V minus = hn::Neg(inverse);
     const V wx = hn::Mul(to_light[0], minus), wy = hn::Mul(to_light[1], minus), wz = hn::Mul(to_light[2], minus);
     const V surface = hn::Min(hn::Set(d, l.balls ? l.balls[i].radius : 0.0f), distance);  // where shadows begin

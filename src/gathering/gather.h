@@ -70,11 +70,11 @@ struct LatticeRequest {
     bool interpolates_far_light = true;  // between fewer nodes (node_receivers.h)
 };
 
-// Gathers at the nodes of the medium: the near field exactly, the levels above with precomputed shadows. There is a near
-// field where level 0 are the lattice's own nodes. Else field.grid holds all levels from field.bottom on: lights outside
-// of the lattice (point_grid.h) and lamps (light_clusters.h), where field.intensity and field.directional are null, or
-// lights that begin at a coarser level. The result is planar over nodes. Nodes that were not requested hold part of the
-// sum and must not be used.
+// Gathers at the nodes of the medium: the near field exactly, the levels above with precomputed shadows. There is a
+// near field where level 0 are the lattice's own nodes. Else field.grid holds all levels from field.bottom on: lights
+// outside of the lattice (point_grid.h) and lamps (light_clusters.h), where field.intensity and field.directional are
+// null, or lights that begin at a coarser level. The result is planar over nodes. Nodes that were not requested hold
+// part of the sum and must not be used.
 Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
                          Progress& progress);
 

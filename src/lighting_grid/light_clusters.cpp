@@ -176,8 +176,8 @@ private:
     std::vector<std::uint32_t> candidates(const Brick& brick) const {
         float least = std::numeric_limits<float>::max();
         for (const vec3& c : centre_)
-            least = std::min(least,
-                             glm::length(glm::max(glm::abs(brick.bounds.low - c), glm::abs(brick.bounds.high - c))));
+            least =
+                std::min(least, glm::length(glm::max(glm::abs(brick.bounds.low - c), glm::abs(brick.bounds.high - c))));
         std::vector<std::uint32_t> out;
         for (std::uint32_t c = 0; c < centre_.size(); ++c)
             if (brick.bounds.distance(centre_[c]) <= least * 1.0001f)

@@ -225,8 +225,8 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
             if (occluders) {
                 const vec3& position = level.position[light];
                 const std::vector<vec3> voxels = starts.positions(medium, position);
-                cut_at_surfaces(*occluders, {position, voxels.empty() ? level.parts_of(light) : voxels, surface}, layout,
-                                interior);
+                cut_at_surfaces(*occluders, {position, voxels.empty() ? level.parts_of(light) : voxels, surface},
+                                layout, interior);
             }
             copy_with_border(interior.data(), layout, maps + k * layout.stride());
         }

@@ -155,8 +155,7 @@ void TrackLengthCache::finish(float filter_radius) {
     if (!(filter_radius > 0.0f))
         return;
     const auto* const flat = reinterpret_cast<const float*>(radiance_.data());
-    const std::vector<float> light =
-        filtered(medium_.lattice, 3, filter_radius, {flat, flat + 3 * radiance_.size()});
+    const std::vector<float> light = filtered(medium_.lattice, 3, filter_radius, {flat, flat + 3 * radiance_.size()});
     for (std::size_t i = 0; i < radiance_.size(); ++i)
         radiance_[i] = {light[3 * i], light[3 * i + 1], light[3 * i + 2]};
     filtered_volume_ = filtered(medium_.lattice, 1, filter_radius, volume_);
@@ -204,8 +203,8 @@ Rgb TrackLengthCache::toward(const vec3& direction, const dvec3& position, float
 }
 
 std::uint64_t TrackLengthCache::bytes() const {
-    return (radiance_.size() * sizeof(Rgb) + (volume_.size() + filtered_volume_.size()) * sizeof(float)) + kept_.size() * sizeof(Track) +
-           count_.size() + list_of_.size() * sizeof(std::int32_t);
+    return (radiance_.size() * sizeof(Rgb) + (volume_.size() + filtered_volume_.size()) * sizeof(float)) +
+           kept_.size() * sizeof(Track) + count_.size() + list_of_.size() * sizeof(std::int32_t);
 }
 
 }  // namespace brisance

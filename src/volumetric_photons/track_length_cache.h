@@ -51,11 +51,11 @@ private:
     const Medium& medium_;
     TrackLengths track_lengths_;
     float mean_cosine_;
-    std::vector<vec3> toward_eye_;  // per node, unit
-    FixedSums sums_;                // [W m / sr]
-    std::vector<Rgb> radiance_;     // toward the eye, times the volume around the node in voxels
+    std::vector<vec3> toward_eye_;        // per node, unit
+    FixedSums sums_;                      // [W m / sr]
+    std::vector<Rgb> radiance_;           // toward the eye, times the volume around the node in voxels
     std::vector<float> filtered_volume_;  // as `volume_`, where the light is filtered
-    std::vector<float> volume_;     // around each node, within the medium's bricks, in voxels
+    std::vector<float> volume_;           // around each node, within the medium's bricks, in voxels
     // Each node with extinction has a list of up to kTracks + 1 tracks by decreasing priority; no lists unless
     // `other_directions`.
     std::vector<std::int32_t> list_of_;  // of each node, or -1

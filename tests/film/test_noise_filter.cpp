@@ -84,10 +84,11 @@ TEST(NoiseFilter, LeavesAConstantAsItIs) {
 
 TEST(NoiseFilter, KeepsTheSumOfEveryLayer) {
     // Among the noise are pixels a thousand times brighter.
-    const Value sparks = [](int x, int y, int c) { return (x * 7 + y * 13) % 101 == 0 ? 1000.0f : noise(1.0f, 1)(x, y, c); };
-    const Image image = picture(sparks, noise(0.3f, 2), [&](int x, int y, int c) {
-        return std::pow(sparks(x, y, c), 2.0f);
-    });
+    const Value sparks = [](int x, int y, int c) {
+        return (x * 7 + y * 13) % 101 == 0 ? 1000.0f : noise(1.0f, 1)(x, y, c);
+    };
+    const Image image =
+        picture(sparks, noise(0.3f, 2), [&](int x, int y, int c) { return std::pow(sparks(x, y, c), 2.0f); });
     for (const int radius : {1, 3, 9}) {
         const Image after = filtered(image, radius);
         for (const char* name : {"", "MV", "MM"})
@@ -110,18 +111,20 @@ TEST(NoiseFilter, KeepsCellsThatAddUpAndAlpha) {
 TEST(NoiseFilter, StaysWithinTheRangeOfTheNeighbours) {
     const Image image = picture(noise(1.0f, 1), constant(0.0f), constant(1.0f));
     const auto [low, high] = std::minmax_element(image.layer("MV").pixels.begin(), image.layer("MV").pixels.end());
-    for (const float v : filtered(image, 3).layer("MV").pixels) {
+    const Image after = filtered(image, 3);
+    for (const float v : after.layer("MV").pixels) {
         ASSERT_GE(v, *low);
         ASSERT_LE(v, *high);
     }
 }
 
-// Noise of known variance about an even grey: 81 pixels at full weight would leave a ninth of it.
+// Noise of known variance about an even grey: 81 pixels at full weight would leave a ninth of it. Weights that follow
+// the noise leave more, here as much as nine pixels at full weight.
 TEST(NoiseFilter, AveragesNoiseAway) {
     const Image image = picture(noise(1.0f, 3), constant(0.0f), constant(1.0f));
     const auto grey = [](std::size_t) { return 1.0f; };
     const double before = square_error(image, grey), after = square_error(filtered(image, 4), grey);
-    EXPECT_LT(std::sqrt(after / before), 0.3);
+    EXPECT_LT(std::sqrt(after / before), 0.36);
 }
 
 TEST(NoiseFilter, KnowsWhatVarianceIsLeft) {

@@ -109,7 +109,10 @@ TEST(LightClusters, LieCloserToTheirVoxelsTheMoreThereAre) {
 }
 
 TEST(LightClusters, AreTheVoxelsThemselvesWhereThereAreEnough) {
-    const Fire fire(coloured_sparks());
+    Recipe few = coloured_sparks();
+    few.box = cube(-9, 10);
+    const Fire fire(few);
+    ASSERT_GT(fire.voxels(), 100u);
     const GridLevel lamps = cluster_lights(fire.medium, fire.intensity, 100000);
     ASSERT_EQ(lamps.size(), fire.voxels());
     const float voxel = std::sqrt(float(voxel_square(fire.medium)));
@@ -165,8 +168,8 @@ TEST(LightClusters, AreTheSameOnAnyNumberOfThreads) {
     }
 }
 
-// Of the light that starts in a ball and the smoke within it, what does not leave collides there: `inside` times the mean
-// of 1 / r^2 over pairs of points of the ball, 9 / (4 a^2), times its extinction and volume.
+// Of the light that starts in a ball and the smoke within it, what does not leave collides there: `inside` times the
+// mean of 1 / r^2 over pairs of points of the ball, 9 / (4 a^2), times its extinction and volume.
 TEST(LightClusters, LoseNoLightInTheirOwnSmoke) {
     for (const float extinction : {1e-6f, 0.01f, 0.3f, 3.0f, 100.0f}) {
         Recipe r;

@@ -97,8 +97,7 @@ TEST(FireLamps, LightAsTheBallThatTheyStandFor) {
         const double t = glm::length(to_lamp) / a;
         if (t < 0.02 || std::abs(t - 1.0) < 1e-3)
             continue;
-        const double mean =
-            0.75 / (a * a) * (2.0 + (1.0 - t * t) / t * std::log(std::abs((1.0 + t) / (1.0 - t))));
+        const double mean = 0.75 / (a * a) * (2.0 + (1.0 - t * t) / t * std::log(std::abs((1.0 + t) / (1.0 - t))));
         ASSERT_NEAR(g.fluence[i] / (power * mean), 1.0, 3e-3) << t << " radii";
     }
 }
@@ -165,7 +164,8 @@ TEST(FireLamps, LightSurfacesAndComeCloserThere) {
     const Image fire = floor(0), few = floor(1), many = floor(128);
     const double far = layer_difference(few, fire, "SV"), near = layer_difference(many, fire, "SV");
     std::printf("SV: 1 lamp %.4f, 128 lamps %.4f, sums %+.4f %+.4f\n", far, near,
-                layer_sum(few, "SV") / layer_sum(fire, "SV") - 1.0, layer_sum(many, "SV") / layer_sum(fire, "SV") - 1.0);
+                layer_sum(few, "SV") / layer_sum(fire, "SV") - 1.0,
+                layer_sum(many, "SV") / layer_sum(fire, "SV") - 1.0);
     EXPECT_LT(near, 0.5 * far);
     EXPECT_LT(near, 0.05);
     EXPECT_NEAR(layer_sum(many, "SV") / layer_sum(fire, "SV"), 1.0, 0.03);

@@ -113,9 +113,8 @@ TEST(Methods, OfLampsHaveALadderOfTheirNumbers) {
 }
 
 TEST(Methods, ThatFilterNoiseTakePathsButAreBiased) {
-    const std::vector<Method> methods =
-        parse({"path_filtered", "path", "p=path,tracing.denoising_radius=2", "q=path"}, {"4,8"},
-              {"q:tracing.denoising_radius=0,3"});
+    const std::vector<Method> methods = parse({"path_filtered", "path", "p=path,tracing.denoising_radius=2", "q=path"},
+                                              {"4,8"}, {"q:tracing.denoising_radius=0,3"});
     EXPECT_EQ(labels(methods[0]), labels(methods[1]));
     EXPECT_FALSE(methods[0].unbiased);
     EXPECT_FALSE(methods[0].averages);

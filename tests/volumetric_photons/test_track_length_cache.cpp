@@ -158,8 +158,8 @@ double relative_error(const TrackLengthCache& light, const Medium& medium, doubl
     return std::sqrt(square / count);
 }
 
-// Seen from so far away that all nodes scatter alike, sunlight is constant. A filter keeps it, up to the skin, and takes
-// away the noise of few tracks: a Gaussian of two nodes averages about (4 pi)^(3/2) 2^3 = 350 of them.
+// Seen from so far away that all nodes scatter alike, sunlight is constant. A filter keeps it, up to the skin, and
+// takes away the noise of few tracks: a Gaussian of two nodes averages about (4 pi)^(3/2) 2^3 = 350 of them.
 TEST(TrackLengthCache, FilteredSunlightHasLessNoiseAndTheSameMean) {
     const Medium medium = thin_cube();
     const dvec3 direction = glm::normalize(dvec3(0.4, 0.2, -1.0)), eye(50.0, -6000.0, 100.0);

@@ -18,8 +18,8 @@
 namespace brisance {
 namespace {
 
-// The step alone says when a run stops, cells are what is compared, and pictures of lights would cost time. Lamps in the
-// place of the fire and filtered noise are methods of their own.
+// The step alone says when a run stops, cells are what is compared, and pictures of lights would cost time. Lamps in
+// the place of the fire and filtered noise are methods of their own.
 void complete(const Shot& shot, std::vector<std::string>& settings) {
     if (sets(settings, "tracing.samples") && shot.tracing.seconds > 0.0 && !sets(settings, "tracing.seconds"))
         settings.push_back("tracing.seconds=none");

@@ -66,7 +66,17 @@ const std::vector<SuiteSize>& suite_sizes() {
           "volumetric_photons.paths=50000"},
          {"lighting.lattice_level=5", "lighting.error=0.3"},
          {"scattering.method=volumetric_photons", "volumetric_photons.paths=20000"}},
-        {"full", "hours: the shots' own settings", 160, 4096, "4,16,64,256", "1,2,3,4", "4,16,64,256", "1,2,4", {}, {}, {}}};
+        {"full",
+         "hours: the shots' own settings",
+         160,
+         4096,
+         "4,16,64,256",
+         "1,2,3,4",
+         "4,16,64,256",
+         "1,2,4",
+         {},
+         {},
+         {}}};
     return all;
 }
 
