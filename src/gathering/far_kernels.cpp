@@ -121,8 +121,9 @@ HWY_INLINE V map_transmittance(D d, const ShadowMapLayout& layout, const std::ui
     return hn::Mul(transmittance, hn::Set(d, layout.range / 65535.0f));
 }
 
-// Numerical transmittance between the light and the receivers. `to_light` points from receiver to light [m].
-V exact_transmittance(D d, const FarLights& l, const vec3& light, const V to_light[3], V distance) {
+// Numerical transmittance between the light and the receivers, from the distance `begin` to it on. `to_light` points
+// from receiver to light [m].
+V exact_transmittance(D d, const FarLights& l, const vec3& light, const V to_light[3], V distance, V begin) {
     const vec3 origin = l.index_from_local * light;
     V nodes[3];
     V square = hn::Zero(d);
@@ -135,13 +136,14 @@ V exact_transmittance(D d, const FarLights& l, const vec3& light, const V to_lig
     const float longest = hn::GetLane(hn::MaxOfLanes(d, hn::Sqrt(square)));
     const int steps = 1 + static_cast<int>(longest / l.step_nodes);
     V sum = hn::Zero(d);
+    const V first = hn::Div(begin, hn::Max(distance, hn::Set(d, 1e-15f)));
     for (int s = 0; s < steps; ++s) {
-        const V t = hn::Set(d, (s + 0.5f) / steps);
+        const V t = hn::MulAdd(hn::Set(d, (s + 0.5f) / steps), hn::Sub(hn::Set(d, 1.0f), first), first);
         sum = hn::Add(sum, sample_extinction(d, *l.extinction, hn::MulAdd(t, nodes[0], hn::Set(d, origin.x)),
                                              hn::MulAdd(t, nodes[1], hn::Set(d, origin.y)),
                                              hn::MulAdd(t, nodes[2], hn::Set(d, origin.z))));
     }
-    return hn::Exp(d, hn::Neg(hn::Mul(sum, hn::Mul(distance, hn::Set(d, 1.0f / steps)))));
+    return hn::Exp(d, hn::Neg(hn::Mul(sum, hn::Mul(hn::Sub(distance, begin), hn::Set(d, 1.0f / steps)))));
 }
 
 // Mean of 1 / r^2 over a ball of radius a seen from distance x of its centre: 3/(4 a^3) (2a + (a^2 - x^2)/x
@@ -212,18 +214,24 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Rece
     const V b = blend(d, l, distance);
     if (hn::AllTrue(d, hn::Eq(b, hn::Zero(d))))
         return;
-    V w = hn::Mul(b, l.bottom ? ball_kernel(d, l.ball, distance) : hn::Mul(inverse, inverse));
+    V w = hn::Mul(
+        b, l.bottom ? ball_kernel(d, l.balls ? l.balls[i].radius : l.ball, distance) : hn::Mul(inverse, inverse));
     const V minus = hn::Neg(inverse);
     const V wx = hn::Mul(to_light[0], minus), wy = hn::Mul(to_light[1], minus), wz = hn::Mul(to_light[2], minus);
+    const V surface = hn::Min(hn::Set(d, l.balls ? l.balls[i].radius : 0.0f), distance);  // where shadows begin
     if (l.shadow == FarLights::Shadow::Maps) {
         const std::size_t map = l.map_of ? l.map_of[i] : i - l.list_base;
-        w = hn::Mul(w, map_transmittance(d, l.layout, l.maps + map * l.layout.stride(), wx, wy, wz, distance));
+        w = hn::Mul(w, map_transmittance(d, l.layout, l.maps + map * l.layout.stride(), wx, wy, wz,
+                                         hn::Sub(distance, surface)));
     } else if (l.shadow == FarLights::Shadow::Exact) {
-        V t = exact_transmittance(d, l, p, to_light, distance);
-        if (l.bottom)
+        V t = exact_transmittance(d, l, p, to_light, distance, surface);
+        if (l.bottom && !l.balls)
             t = ball_transmittance(d, l.ball, distance, t, radius_depth(d, l, r, at));
         w = hn::Mul(w, t);
     }
+    if (l.balls && l.shadow != FarLights::Shadow::None)
+        w = hn::Mul(w, hn::IfThenElse(hn::Lt(distance, hn::Set(d, l.balls[i].radius)), hn::Set(d, l.balls[i].inside),
+                                      hn::Set(d, l.balls[i].escape)));
 
     const bool moments = out.moments || l.directional;
     const Basis basis = moments ? basis_lanes(d, wx, wy, wz) : Basis{};

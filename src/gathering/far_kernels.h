@@ -5,6 +5,7 @@
 #include <span>
 
 #include "gathering/receivers.h"
+#include "lighting_grid/lighting_grid.h"
 #include "medium/lattice/extinction_pyramid.h"
 #include "shadows/shadow_maps.h"
 
@@ -18,10 +19,11 @@ struct FarLights {
     // Coefficients of degrees 1 and 2 of a directional intensity: 24 per light, [3 * m + c]; null: isotropic.
     const float* directional;
 
-    float radius;  // r_l = alpha h_l [m]
-    bool bottom;   // level 0: does not fade in; lights are balls of their voxel's volume
-    bool top;      // the top level does not fade out
-    float ball;    // radius of that ball [m]
+    float radius;            // r_l = alpha h_l [m]
+    bool bottom;             // level 0: does not fade in; lights are balls of their voxel's volume
+    bool top;                // the top level does not fade out
+    float ball;              // radius of that ball [m]
+    const LightBall* balls;  // of the lights, whose shadows begin at their surface; null: all have `ball`
 
     enum class Shadow { Maps, Exact, None } shadow;
     const std::uint16_t* maps;  // of light list_base and the following ones

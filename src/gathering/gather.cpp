@@ -144,6 +144,7 @@ private:
         lights.bottom = level.level == field_.bottom;
         lights.top = top;
         lights.ball = std::cbrt(3.0f / (4.0f * kPi)) * field_.pyramid->medium().spacing * float(1 << level.level);
+        lights.balls = level.ball.empty() ? nullptr : level.ball.data();
         lights.shadow = field_.settings.shadows == ShadowMethod::None ? FarLights::Shadow::None
                         : has_maps(level)                             ? FarLights::Shadow::Maps
                                                                       : FarLights::Shadow::Exact;
@@ -292,13 +293,11 @@ GridLevel bottom_level(const LightField& field) {
     return level;
 }
 
-Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
-                         Progress& progress) {
-    const Medium& medium = field.pyramid->medium();
-    const std::size_t nodes = medium.lattice.node_count();
-    Gathered out;
-    out.resize(nodes, request.eye.has_value(), request.moments);
+namespace {
 
+// Adds the light of level 0 at the nodes.
+LevelCost gather_near_field(const LightField& field, const LatticeRequest& request, Gathered& out) {
+    const Medium& medium = field.pyramid->medium();
     const Stopwatch watch;
     const NearField near(medium.local_from_index, field.alpha * medium.spacing,
                          field.settings.shadows != ShadowMethod::None);
@@ -309,16 +308,18 @@ Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request,
     bottom.lights =
         std::count_if(field.intensity->begin(), field.intensity->end(), [](const Rgb& i) { return i != Rgb(0.0f); });
     bottom.gather_seconds = watch.seconds();
-    bottom.evaluations = near.separations() * nodes;
-    costs.push_back(bottom);
-    gather_grid(field, request, out, costs, progress);
-    return out;
+    bottom.evaluations = near.separations() * medium.lattice.node_count();
+    return bottom;
 }
 
-Gathered gather_from_outside(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
-                             Progress& progress) {
+}  // namespace
+
+Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
+                         Progress& progress) {
     Gathered out;
     out.resize(field.pyramid->medium().lattice.node_count(), request.eye.has_value(), request.moments);
+    if (field.bottom == 0 && field.intensity)
+        costs.push_back(gather_near_field(field, request, out));
     gather_grid(field, request, out, costs, progress);
     return out;
 }

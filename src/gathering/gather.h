@@ -70,16 +70,13 @@ struct LatticeRequest {
     bool interpolates_far_light = true;  // between fewer nodes (node_receivers.h)
 };
 
-// Gathers at the nodes of the lights' own lattice: the near field exactly, the levels above with precomputed shadows.
-// The result is planar over nodes. Nodes that were not requested hold part of the sum and must not be used.
+// Gathers at the nodes of the medium: the near field exactly, the levels above with precomputed shadows. There is a
+// near field where level 0 are the lattice's own nodes. Else field.grid holds all levels from field.bottom on: lights
+// outside of the lattice (point_grid.h) and lamps (light_clusters.h), where field.intensity and field.directional are
+// null, or lights that begin at a coarser level. The result is planar over nodes. Nodes that were not requested hold
+// part of the sum and must not be used.
 Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
                          Progress& progress);
-
-// Gathers at the nodes of the medium from the lights in `field.grid` alone, which holds all levels from field.bottom
-// on. They are lights outside of its lattice (point_grid.h), where field.intensity and field.directional are null, or
-// lights that begin at a coarser level.
-Gathered gather_from_outside(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
-                             Progress& progress);
 
 // Returns the lit nodes as a level of lights for gather_at_points. Its vertices are the nodes.
 GridLevel bottom_level(const LightField& field);

@@ -17,6 +17,13 @@
 
 namespace brisance {
 
+// A ball of fire and smoke that a light stands for: shadows begin at its surface (light_clusters.h).
+struct LightBall {
+    float radius;  // [m]
+    float inside;  // transmittance to points of the ball, mean
+    float escape;  // transmittance out of the ball, mean
+};
+
 struct GridLevel {
     int level = 0;
     float spacing = 0.0f;        // h_l [m]
@@ -26,6 +33,8 @@ struct GridLevel {
 
     // Degrees 1 and 2 of a directional intensity, 24 per light ([3 * m + colour], sh.h); empty: isotropic.
     std::vector<float> directional;
+
+    std::vector<LightBall> ball;  // of each light; empty: that of a voxel of the level
 
     // For lights outside of the medium: light i represents the positions part[first_part[i] ... first_part[i + 1]),
     // local [m]. Empty where lights represent voxels.

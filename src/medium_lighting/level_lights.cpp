@@ -12,7 +12,7 @@ Gathered LevelLights::gather(const GatherTarget& target) const {
         return gather_at_nodes(lights.field(target.pyramid, alpha_, settings, cache), target.request, costs_,
                                progress_);
     };
-    if (target.level == 0)
+    if (target.level == 0 || lights_.of_lamps)
         return of(lights_);
     const Medium& medium = target.pyramid.medium();
     ScatteredLight coarse = restricted_to(target.level);

@@ -15,6 +15,7 @@
 #include "core/input_file.h"
 #include "core/parallel.h"
 #include "core/stopwatch.h"
+#include "film/noise_filter.h"
 #include "film/whole_file.h"
 #include "reference/develop_film.h"
 
@@ -281,6 +282,12 @@ TracedPicture trace_picture(const TracedScene& scene, const Checkpoint& checkpoi
     const auto picture = [&](int half) { return develop(film, half, sampled, scene.needed, scene.output); };
     TracedPicture out{picture(-1), {picture(0), picture(1)}, 2.0 * film.work.passes};
     statistics.stages.push_back({"alpha, depth and albedo", layers.seconds(), 0, {}});
+    if (const int radius = scene.tracing.denoising_radius; radius > 0) {
+        const Stopwatch filtering;
+        const std::array<Image*, 3> pictures = {&out.image, &out.halves[0], &out.halves[1]};
+        NoiseFilter(out.image, radius).apply(pictures);
+        statistics.stages.push_back({"noise filter", filtering.seconds(), 0, {{"radius", radius}}});
+    }
     return out;
 }
 

@@ -53,7 +53,8 @@ PathSum trace_sample(const PathTracer& tracer, const Camera& camera, std::size_t
 std::size_t moment_of_sample(int seed, std::size_t pixel, std::uint64_t sample, const MomentTracers& moments);
 
 // Continues from the checkpoint if there is one. The layers are those of render_picture, all 32 bit, and "variance":
-// the variance of each pixel's mean, from the spread of its paths. Stratification makes the true one smaller. Throws
+// the variance of each pixel's mean, from the spread of its paths. Stratification makes the true one smaller. With
+// tracing.denoising_radius all of them are filtered (film/noise_filter.h). Throws
 // Error BadData when the checkpoint does not belong to this render.
 TracedPicture trace_picture(const TracedScene& scene, const Checkpoint& checkpoint, Statistics& statistics,
                             Progress& progress);

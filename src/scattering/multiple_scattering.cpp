@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "core/stopwatch.h"
 #include "gathering/sh.h"
+#include "lighting_grid/light_clusters.h"
 #include "lighting_grid/voxel_lights.h"
 #include "medium/phase.h"
 #include "scattering/coarse_operator.h"
@@ -207,15 +208,21 @@ std::vector<ScatteredLight> solve_scattering(const ScatteringInput& input, Scatt
 
 LightField HierarchyLights::field(const ExtinctionPyramid& pyramid, float alpha, const LightingSettings& settings,
                                   ShadowMapCache* cache) const {
-    return {&pyramid,
-            &light.intensity,
-            light.directional.empty() ? nullptr : &light.directional,
-            &grid,
-            &weight,
-            alpha,
-            settings,
-            cache,
-            pyramid.occluders()};
+    LightField field{&pyramid,
+                     &light.intensity,
+                     light.directional.empty() ? nullptr : &light.directional,
+                     &grid,
+                     &weight,
+                     alpha,
+                     settings,
+                     cache,
+                     pyramid.occluders()};
+    if (of_lamps) {
+        field.intensity = nullptr;
+        field.directional = nullptr;
+        field.bottom = grid.levels.front().level;
+    }
+    return field;
 }
 
 HierarchyLights build_hierarchy(const Medium& medium, ScatteredLight light, int levels) {
@@ -227,6 +234,15 @@ HierarchyLights build_hierarchy(const Medium& medium, ScatteredLight light, int 
     h.grid = build_lighting_grid(medium, h.light.intensity, &h.weight, levels > 0 ? levels : automatic_levels(medium));
     if (!h.light.directional.empty())
         set_intensity(h.grid, medium.lattice, h.light.intensity, &h.light.directional);
+    return h;
+}
+
+HierarchyLights build_lamps(const Medium& medium, ScatteredLight light, int lamps) {
+    HierarchyLights h;
+    h.light = std::move(light);
+    h.weight.assign(h.light.intensity.size(), 0.0f);
+    h.grid.levels.push_back(cluster_lights(medium, h.light.intensity, lamps));
+    h.of_lamps = true;
     return h;
 }
 

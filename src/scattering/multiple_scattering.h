@@ -65,10 +65,13 @@ struct HierarchyLights {
     ScatteredLight light;
     std::vector<float> weight;
     LightingGrid grid;
+    bool of_lamps = false;  // the grid is one level of lamps (light_clusters.h): no node has a share in them
     LightField field(const ExtinctionPyramid& pyramid, float alpha, const LightingSettings& settings,
                      ShadowMapCache* cache) const;
 };
 HierarchyLights build_hierarchy(const Medium& medium, ScatteredLight light, int levels);
+// The same light, gathered from at most `lamps` lamps in its place.
+HierarchyLights build_lamps(const Medium& medium, ScatteredLight light, int lamps);
 
 // Node fluence as colour triples, 0 where `mask` is 0.
 std::vector<Rgb> fluence_at_nodes(const Gathered& gathered, const std::vector<std::uint8_t>& mask);

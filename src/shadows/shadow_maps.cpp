@@ -55,6 +55,21 @@ void add_steps(const ExtinctionPyramid& pyramid, const GridLevel& level, const S
         steps.back().store = store;
 }
 
+// Of the rays of a light whose shadows begin at the distance `start` of its centre [m].
+struct Steps {
+    std::vector<ShadowStep> near, far;
+    Steps() = default;
+    Steps(const ExtinctionPyramid& pyramid, const GridLevel& level, const ShadowMapLayout& layout, float start) {
+        add_steps(pyramid, level, layout, start, start + layout.near_distance, 0, near);
+        for (int k = 1; k < layout.distances; ++k) {
+            const auto at = [&](int i) {
+                return start + glm::mix(layout.near_distance, layout.far_distance, float(i) / (layout.distances - 1));
+            };
+            add_steps(pyramid, level, layout, at(k - 1), at(k), k, far);
+        }
+    }
+};
+
 // Rays in the order in which they are marched. They form square tiles, so that rays of one vector run through the same
 // smoke and become opaque in it, or leave it, at about the same distance.
 struct TexelTable {
@@ -174,13 +189,7 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
                        const NodeWeights* escape, const ShadowMapLayout& layout, std::span<const std::uint32_t> list,
                        std::uint16_t* maps, const Occluders* occluders) {
     const Medium& medium = pyramid.medium();
-    const float far = layout.far_distance;
-    std::vector<ShadowStep> near_steps, steps;
-    add_steps(pyramid, level, layout, 0.0f, layout.near_distance, 0, near_steps);
-    for (int k = 1; k < layout.distances; ++k) {
-        const auto at = [&](int i) { return glm::mix(layout.near_distance, far, float(i) / (layout.distances - 1)); };
-        add_steps(pyramid, level, layout, at(k - 1), at(k), k, steps);
-    }
+    const Steps from_centres(pyramid, level, layout, 0.0f);
     const TexelTable texels(medium, layout.resolution);
     std::vector<PackedExtinction> mips;
     mips.reserve(std::size_t(pyramid.level_count()));
@@ -204,17 +213,20 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
                                   starts.weight.data(),
                                   texels.rays};
             const vec3 centre = medium.index_from_local * level.position[light];
+            const float surface = level.ball.empty() ? 0.0f : level.ball[light].radius;
+            const Steps own = surface > 0.0f ? Steps(pyramid, level, layout, surface) : Steps();
+            const Steps& steps = surface > 0.0f ? own : from_centres;
             if (layout.for_outside)
-                march_parallel_rays(mips.data(), near_steps, steps, centre, rays, layout.distances,
+                march_parallel_rays(mips.data(), steps.near, steps.far, centre, rays, layout.distances,
                                     65535.0f / layout.range, marched.data(), even ? &strides : nullptr);
             else
-                march_shadow_rays(mips.data(), near_steps, steps, centre, rays, layout.distances, marched.data());
+                march_shadow_rays(mips.data(), steps.near, steps.far, centre, rays, layout.distances, marched.data());
             texels.put_in_rows(marched, layout.distances, interior.data());
             if (occluders) {
                 const vec3& position = level.position[light];
                 const std::vector<vec3> voxels = starts.positions(medium, position);
-                cut_at_surfaces(*occluders, {position, voxels.empty() ? level.parts_of(light) : voxels}, layout,
-                                interior);
+                cut_at_surfaces(*occluders, {position, voxels.empty() ? level.parts_of(light) : voxels, surface},
+                                layout, interior);
             }
             copy_with_border(interior.data(), layout, maps + k * layout.stride());
         }

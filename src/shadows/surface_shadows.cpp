@@ -25,7 +25,7 @@ float visible_share(const Occluders& occluders, const MappedLight& light, std::s
 
 // Radius around the light's centre within which all of its rays to surfaces lie.
 float reach_of(const MappedLight& light, const ShadowMapLayout& layout) {
-    float reach = layout.far_distance;
+    float reach = light.start + layout.far_distance;
     for (const vec3& part : light.parts)
         reach = std::max(reach, glm::length(part - light.centre));
     return reach;
@@ -45,7 +45,7 @@ void cut_at_surfaces(const Occluders& occluders, const MappedLight& light, const
             continue;
         const int u = i / r, v = i % r;
         const vec3 direction = octahedral_direction((2.0f * u + 1.0f) / r - 1.0f, (2.0f * v + 1.0f) / r - 1.0f);
-        const vec3 near = light.centre + layout.near_distance * direction;
+        const vec3 near = light.centre + (light.start + layout.near_distance) * direction;
         const float share = visible_share(occluders, light, i, near);
         const float beyond = layout.far_distance - layout.near_distance;
         const float hit = share > 0.0f ? occluders.first_hit(near, direction, beyond) : 0.0f;

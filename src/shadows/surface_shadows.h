@@ -14,6 +14,7 @@ namespace brisance {
 struct MappedLight {
     vec3 centre;                  // local [m]
     std::span<const vec3> parts;  // positions it represents; empty: the centre, and surfaces close to it do not hide it
+    float start = 0.0f;           // distance from the centre at which the map's distances begin [m]
 };
 
 // Clears what lies behind surfaces in one map without border, as march_shadow_rays writes it. Up to

@@ -143,7 +143,7 @@ Gathered ThinMedium::gather(const LightField& field, const GridLevel& bottom, co
     single.needed = &single_;
     Gathered out = gather_at_nodes(field, single, costs, progress);
     if (of_thin)
-        out.add(gather_from_outside(*of_thin, single, costs, progress));
+        out.add(gather_at_nodes(*of_thin, single, costs, progress));
     Receivers receivers;
     for (const std::uint32_t b : even_) {
         std::vector<vec3> points, directions;

@@ -28,6 +28,7 @@ struct TracingSettings {
     EmissionEstimator emission = EmissionEstimator::Line;
     bool light_sampling = true;  // lines toward the fire where smoke is thin, besides those of the phase function
     FreeFlight free_flight = FreeFlight::NullCollision;
+    int denoising_radius = 0;  // the finished picture is filtered over so many pixels, a biased baseline; 0: it is not
     TransmittanceEstimator transmittance = TransmittanceEstimator::Exact;  // where nothing burns along a segment
 };
 

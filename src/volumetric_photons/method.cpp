@@ -10,6 +10,11 @@ std::vector<SettingKey<VolumetricPhotonSettings>> VolumetricPhotonsMethod::keys(
         setting_key("paths", "particles that are followed through smoke and surfaces", whole(1, 1000000000), &S::paths),
         setting_key("neighbours", "photons around a point of a surface that estimate the light arriving there",
                     whole(1, 65536), &S::neighbours),
+        setting_key(
+            "filter_radius",
+            "for comparison: light in the medium is filtered by a Gaussian of this standard deviation [voxels], "
+            "which biases it; 0: not",
+            real_float({0.0, 8.0}), &S::filter_radius),
         setting_key("seed", "another number gives other particles", whole(0, 2147483647), &S::seed)};
 }
 

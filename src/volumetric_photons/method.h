@@ -16,7 +16,7 @@ struct VolumetricPhotonsMethod {
     static constexpr const char* kHelp = "photons counted along their tracks and where they land, blurred over a voxel";
     static constexpr bool kThinsLights = false;  // it has no lights
     static std::vector<SettingKey<Settings>> keys();
-    static std::vector<MethodPreset> presets() { return {{kName, {}}}; }
+    static std::vector<MethodPreset> presets() { return {{kName, {}}, {"photons_filtered", {"filter_radius=2"}}}; }
     static int passes(const Settings&) { return 1; }
     static MadeInScattering make(const InScatteringRequest& request, const Settings& settings);
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <tuple>
 
 #include "core/parallel.h"
@@ -98,7 +99,52 @@ void TrackLengthCache::keep(std::size_t list, const Track& track) {
     busy_[list].clear(std::memory_order_release);
 }
 
-void TrackLengthCache::finish() {
+namespace {
+
+// Filters node values along one axis (0 to 2) by `kernel`, from the node itself on outward.
+void filter_axis(const BrickLattice& lattice, int channels, int axis, const std::vector<float>& kernel,
+                 std::vector<float>& values) {
+    const std::vector<float> before = values;
+    const int reach = static_cast<int>(kernel.size()) - 1;
+    ivec3 margin(0);
+    margin[axis] = reach;
+    const ivec3 size = ivec3(BrickLattice::kSize) + 2 * margin;
+    const int plane = size.x * size.y * size.z, stride = axis == 0 ? size.y * size.z : (axis == 1 ? size.z : 1);
+    parallel_for(lattice.brick_count(), [&](std::size_t b) {
+        std::vector<float> box(std::size_t(plane) * channels);
+        copy_box(lattice, before, channels, lattice.first_node(b) - margin, size, box);
+        for (int n = 0; n < BrickLattice::kNodes; ++n) {
+            const ivec3 p = BrickLattice::node_in_brick(n) + margin;
+            const int at = (p.x * size.y + p.y) * size.z + p.z;
+            for (int c = 0; c < channels; ++c) {
+                const float* const centre = &box[std::size_t(c) * plane + at];
+                float sum = kernel[0] * *centre;
+                for (int k = 1; k <= reach; ++k)
+                    sum += kernel[k] * (centre[-k * stride] + centre[k * stride]);
+                values[(b * BrickLattice::kNodes + n) * channels + c] = sum;
+            }
+        }
+    });
+}
+
+// By a Gaussian, up to three standard deviations [nodes]. Nothing is beyond the lattice.
+std::vector<float> filtered(const BrickLattice& lattice, int channels, float radius, std::vector<float> values) {
+    std::vector<float> kernel;
+    float sum = 0.0f;
+    for (int k = 0; k <= static_cast<int>(std::ceil(3.0f * radius)); ++k) {
+        kernel.push_back(std::exp(-0.5f * float(k * k) / (radius * radius)));
+        sum += (k > 0 ? 2.0f : 1.0f) * kernel.back();
+    }
+    for (float& k : kernel)
+        k /= sum;
+    for (int axis = 0; axis < 3; ++axis)
+        filter_axis(lattice, channels, axis, kernel, values);
+    return values;
+}
+
+}  // namespace
+
+void TrackLengthCache::finish(float filter_radius) {
     radiance_.resize(toward_eye_.size());
     const double voxel = medium_.voxel_volume;
     parallel_for(
@@ -106,16 +152,24 @@ void TrackLengthCache::finish() {
     sums_ = FixedSums(0, 1.0);
     toward_eye_ = {};
     busy_.reset();
+    if (!(filter_radius > 0.0f))
+        return;
+    const auto* const flat = reinterpret_cast<const float*>(radiance_.data());
+    const std::vector<float> light = filtered(medium_.lattice, 3, filter_radius, {flat, flat + 3 * radiance_.size()});
+    for (std::size_t i = 0; i < radiance_.size(); ++i)
+        radiance_[i] = {light[3 * i], light[3 * i + 1], light[3 * i + 2]};
+    filtered_volume_ = filtered(medium_.lattice, 1, filter_radius, volume_);
 }
 
 Rgb TrackLengthCache::toward_eye(const dvec3& position) const {
     const Corners corners = corners_of(medium_.lattice, position);
+    const std::vector<float>& volumes = filtered_volume_.empty() ? volume_ : filtered_volume_;
     Rgb light(0.0f);
     float volume = 0.0f;
     for (int k = 0; k < 8; ++k)
         if (const std::int64_t node = corners.node[k]; node >= 0) {
             light += corners.weight[k] * radiance_[node];
-            volume += corners.weight[k] * volume_[node];
+            volume += corners.weight[k] * volumes[node];
         }
     return volume > 0.0f ? light / volume : Rgb(0.0f);
 }
@@ -149,8 +203,8 @@ Rgb TrackLengthCache::toward(const vec3& direction, const dvec3& position, float
 }
 
 std::uint64_t TrackLengthCache::bytes() const {
-    return (radiance_.size() * sizeof(Rgb) + volume_.size() * sizeof(float)) + kept_.size() * sizeof(Track) +
-           count_.size() + list_of_.size() * sizeof(std::int32_t);
+    return (radiance_.size() * sizeof(Rgb) + (volume_.size() + filtered_volume_.size()) * sizeof(float)) +
+           kept_.size() * sizeof(Track) + count_.size() + list_of_.size() * sizeof(std::int32_t);
 }
 
 }  // namespace brisance

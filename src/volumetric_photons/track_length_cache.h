@@ -25,8 +25,10 @@ public:
 
     // Deposits a track up to `end` [m] of a particle of that power [W]. Thread-safe; `rng` is the particle's own.
     void add(const Ray& ray, double end, const Rgb& power, Rng& rng);
-    // To be called after all deposits and before any query.
-    void finish();
+    // To be called after all deposits and before any query. `filter_radius`: standard deviation of a Gaussian by which
+    // the light toward the eye is filtered in three dimensions [voxels]; 0: it is not. The filter normalises by the
+    // volume around the nodes, so that it keeps what is constant, and does not see walls.
+    void finish(float filter_radius = 0.0f);
 
     // In-scattered radiance [W/(m^2 sr)] at a position in units of nodes. toward_eye() interpolates between the
     // surrounding nodes; toward() takes one of them, chosen by `xi`, for a direction (unit).
@@ -49,10 +51,11 @@ private:
     const Medium& medium_;
     TrackLengths track_lengths_;
     float mean_cosine_;
-    std::vector<vec3> toward_eye_;  // per node, unit
-    FixedSums sums_;                // [W m / sr]
-    std::vector<Rgb> radiance_;     // toward the eye, times the volume around the node in voxels
-    std::vector<float> volume_;     // around each node, within the medium's bricks, in voxels
+    std::vector<vec3> toward_eye_;        // per node, unit
+    FixedSums sums_;                      // [W m / sr]
+    std::vector<Rgb> radiance_;           // toward the eye, times the volume around the node in voxels
+    std::vector<float> filtered_volume_;  // as `volume_`, where the light is filtered
+    std::vector<float> volume_;           // around each node, within the medium's bricks, in voxels
     // Each node with extinction has a list of up to kTracks + 1 tracks by decreasing priority; no lists unless
     // `other_directions`.
     std::vector<std::int32_t> list_of_;  // of each node, or -1

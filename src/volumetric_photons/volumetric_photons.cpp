@@ -31,7 +31,7 @@ VolumetricPhotons::VolumetricPhotons(const DirectLight& scene, const VolumetricP
       eye_(eye),
       cache_(scene.field().medium(), eye, emitted_power(scene, ball_around(scene)), other_rays),
       photon_map_(follow(bounces < 0 ? -1 : bounces - 1)) {
-    cache_.finish();
+    cache_.finish(settings_.filter_radius);
     report_.surface_photons = photon_map_.size();
 }
 

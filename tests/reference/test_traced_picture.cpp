@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 #include "../volume/temp_folder.h"
@@ -136,6 +138,41 @@ TEST(TracedPicture, IsTheMeanOfItsHalves) {
     }
     EXPECT_EQ(p.samples_per_pixel, 16.0);
     EXPECT_FALSE(same_bits(p.halves[0], p.halves[1]));
+}
+
+// Filtered, scattered light is nearer to the truth; every layer has the same light, and the picture still is the mean
+// of its halves.
+TEST(TracedPicture, FilteredHasLessNoiseAndTheSameLight) {
+    const Medium medium = cloud();
+    Shot shot = shot_of(4);
+    const Image noisy = render(shot, medium).picture.image;
+    shot.tracing.denoising_radius = 4;
+    const TracedPicture filtered = render(shot, medium).picture;
+    Shot long_shot = shot_of(256);
+    long_shot.tracing.seed = 1;
+    const Image truth = render(long_shot, medium).picture.image;
+    const auto error = [&](const Image& image, const std::string& name) {
+        const std::vector<float> found = colour(image, name), expected = colour(truth, name);
+        double square = 0.0, norm = 0.0;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            square += std::pow(double(found[i]) - expected[i], 2);
+            norm += double(expected[i]) * expected[i];
+        }
+        return std::sqrt(square / norm);
+    };
+    for (const std::string name : {"", "V", "MV", "MM"})
+        std::printf("%s: %.4f, filtered %.4f\n", name.c_str(), error(noisy, name), error(filtered.image, name));
+    EXPECT_LT(error(filtered.image, "MV"), 0.9 * error(noisy, "MV"));
+    EXPECT_LT(error(filtered.image, "MM"), 0.8 * error(noisy, "MM"));
+    EXPECT_LT(error(filtered.image, ""), error(noisy, ""));
+    for (const std::string name : {"", "V", "MV", "MM", "bounce3"}) {
+        const std::vector<float> before = colour(noisy, name), after = colour(filtered.image, name);
+        const double sum = std::accumulate(before.begin(), before.end(), 0.0);
+        EXPECT_NEAR(std::accumulate(after.begin(), after.end(), 0.0) / sum, 1.0, 1e-5) << name;
+        const std::vector<float> a = colour(filtered.halves[0], name), b = colour(filtered.halves[1], name);
+        for (std::size_t i = 0; i < after.size(); ++i)
+            ASSERT_NEAR(after[i], 0.5 * (double(a[i]) + b[i]), 1e-5 * (after[i] + 1e-3)) << name;
+    }
 }
 
 TEST(TracedPicture, DoesNotKnowHowManyThreadsThereAre) {

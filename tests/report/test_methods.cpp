@@ -100,6 +100,30 @@ TEST(Methods, KeepTheirOwnSettingsAtEveryStepOfTheBuiltInLadder) {
     EXPECT_EQ(fixed.steps.size(), 1u);
 }
 
+TEST(Methods, OfLampsHaveALadderOfTheirNumbers) {
+    const std::vector<Method> methods =
+        parse({"fire_clusters", "few=fire_clusters,lighting.energy_balance=false"}, {"16", "few:2,8"});
+    EXPECT_EQ(labels(methods[0]), (Strings{"4 lamps", "16 lamps", "64 lamps", "256 lamps"}))
+        << "a budget of paths is not theirs";
+    EXPECT_EQ(labels(methods[1]), (Strings{"2 lamps", "8 lamps"}));
+    EXPECT_EQ(methods[1].steps[1].settings, (Strings{"lighting.clusters=8"}));
+    EXPECT_FALSE(methods[0].unbiased);
+    EXPECT_TRUE(owns(methods[0], "SV"));
+    EXPECT_FALSE(owns(methods[0], "V"));
+}
+
+TEST(Methods, ThatFilterNoiseTakePathsButAreBiased) {
+    const std::vector<Method> methods = parse({"path_filtered", "path", "p=path,tracing.denoising_radius=2", "q=path"},
+                                              {"4,8"}, {"q:tracing.denoising_radius=0,3"});
+    EXPECT_EQ(labels(methods[0]), labels(methods[1]));
+    EXPECT_FALSE(methods[0].unbiased);
+    EXPECT_FALSE(methods[0].averages);
+    EXPECT_TRUE(methods[1].unbiased);
+    EXPECT_FALSE(methods[2].unbiased);
+    EXPECT_FALSE(methods[2].averages);
+    EXPECT_FALSE(methods[3].unbiased);
+}
+
 TEST(Ladders, GoSideBySide) {
     const Method method =
         parse({"lighting_grid"}, {},
@@ -170,6 +194,20 @@ TEST(Runs, OfEveryBuiltInMethodAreShots) {
     EXPECT_EQ(plain.tracing.free_flight, FreeFlight::NullCollision);
     EXPECT_FALSE(plain.tracing.light_sampling);
     EXPECT_HAS(joined(planned[2].runs[1].settings), "tracing.seconds=none");
+}
+
+// Of a shot that has lamps and filters itself, other methods are run without.
+TEST(Runs, OfBaselinesAreTheirsAlone) {
+    Shot base = fire_shot();
+    base.lighting.clusters = 7;
+    base.tracing.denoising_radius = 9;
+    const std::vector<PlannedMethod> planned =
+        plan_runs(base, parse({"lighting_grid", "path", "fire_clusters", "path_filtered"}));
+    EXPECT_EQ(planned[0].runs[0].shot.lighting.clusters, 0);
+    EXPECT_EQ(planned[1].runs[0].shot.tracing.denoising_radius, 0);
+    EXPECT_EQ(planned[2].runs[1].shot.lighting.clusters, 16);
+    EXPECT_EQ(planned[3].runs[0].shot.tracing.denoising_radius, 5);
+    EXPECT_EQ(planned[3].runs[0].shot.method, RenderMethod::Path);
 }
 
 TEST(Runs, OfVirtualLightsChangeTheirChoicesAndTheSamples) {

@@ -177,8 +177,9 @@ Report small_report() {
     report.reference.noise[""] = 0.01;
     for (const bool averages : {false, true}) {
         MethodResult result;
-        result.method = {
-            averages ? "path" : "grid", averages ? "path" : "lighting_grid", {}, {}, averages, averages, {}};
+        result.method.label = averages ? "path" : "grid";
+        result.method.base = averages ? "path" : "lighting_grid";
+        result.method.unbiased = result.method.averages = averages;
         for (const double seconds : {1.0, 4.0, 16.0}) {
             MeasuredRun run;
             run.cost = {seconds, seconds};

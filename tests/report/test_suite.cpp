@@ -47,7 +47,7 @@ TEST(SuiteMethods, OfASceneFollowFromItsCells) {
     EXPECT_FALSE(free_fire.contains("vbnl"));
     EXPECT_FALSE(free_fire.contains("vpl"));
     const std::set<std::string> single = labels_of(owners_of(methods, {Cell::V, Cell::MV}));
-    EXPECT_EQ(single, (std::set<std::string>{"lighting_grid", "path", "path_plain"}));
+    EXPECT_EQ(single, (std::set<std::string>{"lighting_grid", "path", "path_plain", "path_filtered", "fire_clusters"}));
     const std::set<std::string> room = labels_of(owners_of(methods, {Cell::SS}));
     EXPECT_TRUE(room.contains("vbnl"));
     EXPECT_FALSE(room.contains("lighting_grid"));
@@ -64,6 +64,9 @@ TEST(SuiteMethods, HaveTheBudgetsOfTheSuite) {
     ASSERT_EQ(methods[2].steps.size(), 3u);
     EXPECT_EQ(methods[2].steps.back().settings.back(), "camera.samples_per_axis=4");
     EXPECT_THROW(suite_size("middling"), Error);
+    const std::vector<Method> baselines = suite_methods(suite_size("full"), {"fire_clusters", "path_filtered"});
+    EXPECT_EQ(baselines[0].steps.back().label, "256 lamps");
+    EXPECT_EQ(baselines[1].steps.back().label, "256 spp");
 }
 
 TEST(SuiteScenes, AreTheListThenMediaThenFurther) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -57,7 +58,7 @@ std::vector<Track> sunlight(const dvec3& direction, double irradiance, int side_
 }
 
 TrackLengthCache deposited(const Medium& medium, const dvec3& eye, const std::vector<Track>& tracks, bool others,
-                           std::uint64_t seed, bool backward = false) {
+                           std::uint64_t seed, bool backward = false, float filter_radius = 0.0f) {
     double power = 0.0;
     for (const Track& w : tracks)
         power += w.power.x;
@@ -67,7 +68,7 @@ TrackLengthCache deposited(const Medium& medium, const dvec3& eye, const std::ve
         Rng rng(Stream::StoredTrack, i, seed);
         light.add(tracks[i].ray, 1e30, tracks[i].power, rng);
     });
-    light.finish();
+    light.finish(filter_radius);
     return light;
 }
 
@@ -144,6 +145,61 @@ TEST(TrackLengthCache, FarAwayThereIsNone) {
     const TrackLengthCache light = deposited(medium, {0, -6, 0}, sunlight({0, 0, -1}, 1.0, 10), true, 1);
     EXPECT_EQ(light.toward_eye({1e6, 0, 0}), Rgb(0.0f));
     EXPECT_EQ(light.toward({0, 0, 1}, {1e6, 0, 0}, 0.5f), Rgb(0.0f));
+}
+
+// Root mean square of the relative error at points all over the cube, its corners included.
+double relative_error(const TrackLengthCache& light, const Medium& medium, double expected) {
+    double square = 0.0;
+    int count = 0;
+    for (float x = -1.0f; x <= 1.0f; x += 0.125f)
+        for (float y = -1.0f; y <= 1.0f; y += 0.125f)
+            for (float z = -1.0f; z <= 1.0f; z += 0.125f, ++count)
+                square += std::pow(light.toward_eye(node_at(medium, {x, y, z})).x / expected - 1.0, 2);
+    return std::sqrt(square / count);
+}
+
+// Seen from so far away that all nodes scatter alike, sunlight is constant. A filter keeps it, up to the skin, and
+// takes away the noise of few tracks: a Gaussian of two nodes averages about (4 pi)^(3/2) 2^3 = 350 of them.
+TEST(TrackLengthCache, FilteredSunlightHasLessNoiseAndTheSameMean) {
+    const Medium medium = thin_cube();
+    const dvec3 direction = glm::normalize(dvec3(0.4, 0.2, -1.0)), eye(50.0, -6000.0, 100.0);
+    const double expected = 3.0 * henyey_greenstein(float(glm::dot(direction, glm::normalize(eye))), kG);
+    const auto error = [&](int side_count, float filter_radius) {
+        const TrackLengthCache light =
+            deposited(medium, eye, sunlight(direction, 3.0, side_count), false, 1, false, filter_radius);
+        return relative_error(light, medium, expected);
+    };
+    EXPECT_LT(error(800, 2.0f), 0.005);
+    const double noisy = error(60, 0.0f), filtered = error(60, 2.0f);
+    std::printf("few tracks: %.4f, filtered %.4f\n", noisy, filtered);
+    EXPECT_GT(noisy, 0.1) << "there must be noise";
+    EXPECT_LT(filtered, 0.35 * noisy);
+}
+
+TEST(TrackLengthCache, AFilterSpreadsLightAndKeepsAllOfIt) {
+    const Medium medium = thin_cube();
+    const dvec3 eye(50.0, -6000.0, 100.0);
+    // One short track in the middle.
+    const std::vector<Track> tracks = {{{dvec3(0.02, 0.01, -0.03), dvec3(0.0, 0.0, 1.0)}, Rgb(1.0f)}};
+    const auto sum = [&](float filter_radius) {
+        TrackLengthCache light(medium, eye, 1.0, false);
+        Rng rng(Stream::StoredTrack, 0, 1);
+        light.add(tracks[0].ray, 0.05, tracks[0].power, rng);
+        light.finish(filter_radius);
+        double all = 0.0, most = 0.0;
+        for (int x = -9; x <= 9; ++x)
+            for (int y = -9; y <= 9; ++y)
+                for (int z = -9; z <= 9; ++z) {
+                    const double v = light.toward_eye(dvec3(x, y, z)).x;
+                    all += v;
+                    most = std::max(most, v);
+                }
+        return std::pair(all, most);
+    };
+    const auto [all, most] = sum(0.0f);
+    const auto [spread, less] = sum(1.5f);
+    EXPECT_NEAR(spread / all, 1.0, 1e-3);
+    EXPECT_LT(less, 0.2 * most);
 }
 
 }  // namespace

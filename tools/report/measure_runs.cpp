@@ -18,12 +18,17 @@
 namespace brisance {
 namespace {
 
-// The step alone says when a run stops, cells are what is compared, and pictures of lights would cost time.
+// The step alone says when a run stops, cells are what is compared, and pictures of lights would cost time. Lamps in
+// the place of the fire and filtered noise are methods of their own.
 void complete(const Shot& shot, std::vector<std::string>& settings) {
     if (sets(settings, "tracing.samples") && shot.tracing.seconds > 0.0 && !sets(settings, "tracing.seconds"))
         settings.push_back("tracing.seconds=none");
     if (sets(settings, "tracing.samples") && shot.tracing.error > 0.0 && !sets(settings, "tracing.error"))
         settings.push_back("tracing.error=none");
+    if (shot.lighting.clusters > 0 && !sets(settings, "lighting.clusters"))
+        settings.push_back("lighting.clusters=0");
+    if (shot.tracing.denoising_radius > 0 && !sets(settings, "tracing.denoising_radius"))
+        settings.push_back("tracing.denoising_radius=0");
     if (!shot.output.cell_layers)
         settings.push_back("output.layers.cells=true");
     if (shot.output.virtual_lights)

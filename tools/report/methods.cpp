@@ -17,20 +17,20 @@ namespace {
 
 using Settings = std::vector<std::string>;
 
-// What makes a method better, and dearer: the fineness of its grids, paths, or samples along a pixel's side.
-enum class StepsOf { Grid, Paths, Samples };
-
 struct BuiltIn {
     std::string name;
     Settings settings;
     StepsOf steps = StepsOf::Grid;
     CellSet cells;
+    bool unbiased = false;
 };
 
 const CellSet kAllCells = {Cell::V,  Cell::A,  Cell::MV, Cell::MM, Cell::MS,
                            Cell::MA, Cell::SV, Cell::SM, Cell::SS, Cell::SA};
 // All but the light that surfaces scatter, which virtual lights carry also where the grid has everything else.
 const CellSet kCellsOfGrid = {Cell::V, Cell::A, Cell::MV, Cell::MM, Cell::MA, Cell::SV, Cell::SM, Cell::SA};
+// Light that lamps in the place of the fire send out, or that began as theirs.
+const CellSet kCellsOfLamps = {Cell::MV, Cell::MM, Cell::SV, Cell::SM};
 const CellSet kCellsOfScatteringMethods = {Cell::MM, Cell::SM};
 const CellSet kCellsOfVirtualLights = {Cell::MS, Cell::SS};
 
@@ -59,12 +59,15 @@ void add_scattering_methods(std::vector<BuiltIn>& methods) {
 std::vector<BuiltIn> make_built_ins() {
     std::vector<BuiltIn> methods = {
         {"lighting_grid", {"method=lighting_grid", "scattering.method=lighting_grid"}, StepsOf::Grid, kCellsOfGrid},
-        {"path", {"method=path"}, StepsOf::Paths, kAllCells},
+        {"path", {"method=path"}, StepsOf::Paths, kAllCells, true},
         {"path_plain",
          {"method=path", "tracing.emission=collision", "tracing.light_sampling=false",
           "tracing.free_flight=null_collision"},
          StepsOf::Paths,
-         kAllCells}};
+         kAllCells,
+         true},
+        {"path_filtered", {"method=path", "tracing.denoising_radius=5"}, StepsOf::Paths, kAllCells},
+        {"fire_clusters", {"method=lighting_grid", "scattering.method=lighting_grid"}, StepsOf::Lamps, kCellsOfLamps}};
     add_scattering_methods(methods);
     return methods;
 }
@@ -88,6 +91,7 @@ const std::vector<Settings>& grid_ladder() {
     return all;
 }
 
+const std::vector<std::string> kNumbersOfLamps = {"4", "16", "64", "256"};
 const std::vector<std::string> kPathBudgets = {"4", "16", "64", "256"};
 const std::vector<std::string> kSidesOfSamples = {"1", "2", "4", "8"};
 
@@ -146,8 +150,8 @@ Method parse_method(const std::string& text) {
     const std::vector<std::string> parts = split(text);
     const bool named = parts[0].find('=') != std::string::npos;
     const BuiltIn& base = built_in(named ? value_of(parts[0]) : parts[0], text);
-    Method method{named ? key_of(parts[0]) : text, base.name, base.settings, {},
-                  base.steps == StepsOf::Paths,    false,     base.cells};
+    Method method{
+        named ? key_of(parts[0]) : text, base.name, base.settings, {}, base.steps, base.unbiased, false, base.cells};
     if (method.label.empty() || method.label.find(':') != std::string::npos)
         refuse(fmt::format("--methods {}: a label is not empty and holds no colon", text));
     for (std::size_t i = 1; i < parts.size(); ++i) {
@@ -218,6 +222,13 @@ std::vector<MethodStep> sample_steps(const std::vector<std::string>& sides) {
     std::vector<MethodStep> steps(sides.size());
     for (std::size_t i = 0; i < sides.size(); ++i)
         steps[i] = {fmt::format("{0} x {0} spp", sides[i]), {"camera.samples_per_axis=" + sides[i]}};
+    return steps;
+}
+
+std::vector<MethodStep> lamp_steps(const std::vector<std::string>& numbers) {
+    std::vector<MethodStep> steps(numbers.size());
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+        steps[i] = {numbers[i] + " lamps", {"lighting.clusters=" + numbers[i]}};
     return steps;
 }
 
@@ -309,11 +320,13 @@ void check_labels(const std::vector<Method>& methods, const Choices& choices) {
 }
 
 std::vector<MethodStep> built_in_steps(const std::optional<std::vector<std::string>>& budgets, const Method& method) {
-    switch (built_in(method.base, method.label).steps) {
+    switch (method.steps_of) {
         case StepsOf::Paths:
             return path_steps(budgets, method);
         case StepsOf::Samples:
             return sample_steps(budgets.value_or(kSidesOfSamples));
+        case StepsOf::Lamps:
+            return lamp_steps(budgets.value_or(kNumbersOfLamps));
         case StepsOf::Grid:
             break;
     }
@@ -326,12 +339,16 @@ void add_steps(Method& method, const Choices& choices) {
     std::optional<std::vector<std::string>> budgets;
     if (own != choices.budgets.end())
         budgets = own->second;
-    else if (common != choices.budgets.end() && method.unbiased && !stops(method.settings))
+    else if (common != choices.budgets.end() && method.steps_of == StepsOf::Paths && !stops(method.settings))
         budgets = common->second;
     if (ladder != choices.ladders.end())
         method.steps = ladder_steps(ladder->second, method);
     else
         method.steps = built_in_steps(budgets, method);
+    const auto filters = [](const Settings& settings) { return sets(settings, "tracing.denoising_radius"); };
+    method.unbiased = method.unbiased && !filters(method.settings) &&
+                      std::none_of(method.steps.begin(), method.steps.end(),
+                                   [&](const MethodStep& step) { return filters(step.settings); });
     // More samples, or more time, and nothing else that changes.
     method.averages = method.unbiased && (ladder == choices.ladders.end() ||
                                           std::all_of(ladder->second.begin(), ladder->second.end(),

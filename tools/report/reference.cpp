@@ -93,15 +93,25 @@ void check_given(const std::vector<GivenFile>& given, const Shot& shot, int fram
         throw Error(ExitCode::BadData, fmt::format("--reference: {}", fmt::join(lines, "; ")));
 }
 
-// Of a file that says it was path traced.
-std::optional<int> seed_of(const GivenFile& given) {
+// The settings of a file that says it was path traced; null for all others.
+nlohmann::json tracing_of(const GivenFile& given) {
     const auto stored = given.metadata.text.find(kShot);
     if (stored == given.metadata.text.end())
-        return std::nullopt;
+        return nullptr;
     const auto json = nlohmann::json::parse(stored->second, nullptr, false);
     if (!json.is_object() || json.value("method", "lighting_grid") != "path")
-        return std::nullopt;
-    return json.value("/tracing/seed"_json_pointer, 0);
+        return nullptr;
+    return json.value("tracing", nlohmann::json::object());
+}
+
+std::optional<int> seed_of(const GivenFile& given) {
+    const nlohmann::json tracing = tracing_of(given);
+    return tracing.is_object() ? std::optional(tracing.value("seed", 0)) : std::nullopt;
+}
+
+bool is_filtered(const GivenFile& given) {
+    const nlohmann::json tracing = tracing_of(given);
+    return tracing.is_object() && tracing.value("denoising_radius", 0) > 0;
 }
 
 void check_halves(const std::vector<GivenFile>& given, const ReportReference& reference) {
@@ -127,6 +137,10 @@ void notice_origin(const std::vector<GivenFile>& given, ReportReference& referen
                 "{} does not say of which shot it is: that it shows this one is taken on trust", file.file.string()));
             continue;
         }
+        if (is_filtered(file))
+            reference.summary.notices.push_back(
+                fmt::format("{} is filtered (tracing.denoising_radius): it is biased, and errors count its bias",
+                            file.file.string()));
         if (const std::optional<int> seed = seed_of(file))
             reference.seeds.insert(*seed);
         else

@@ -46,7 +46,8 @@ ExteriorLights::ExteriorLights(const LitLattice& lattice, HierarchyLights lights
         escape = estimate_escape(lattice.pyramid(), lights_.light.intensity, lights_.light.directional, escape_,
                                  kEscapeRays);
     const dvec3 power = total(lights_.light.intensity);
-    part_thin_medium(alpha);
+    if (!lights_.of_lamps)
+        part_thin_medium(alpha);
     keep_for_exterior(alpha);
     if (input.lighting.energy_balance)
         balance_escape(power, escape, statistics);
@@ -94,15 +95,18 @@ void ExteriorLights::keep_for_exterior(float alpha) {
         ratio_ = ratio_of(lights_.light.intensity);
     if (surfaces && thin_)
         thin_ratio_ = ratio_of(thin_->lights.light.intensity);
-    place_for_exterior(lights_, lattice_.medium(), escape_);
+    if (!lights_.of_lamps)
+        place_for_exterior(lights_, lattice_.medium(), escape_);
     if (surfaces && !lattice_.thin_medium().empty())
         for_thin_ = lights_.grid;
     if (surfaces)
         drop_coarse_levels(lights_.grid, kLeastLightsForSurfaces);
     maps_.on_demand = true;
     field_ = lights_.field(lattice_.pyramid(), alpha, lattice_.input().lighting, &maps_);
-    field_.escape = &escape_;
     field_.occluders = nullptr;  // surfaces draw positions on the lights themselves (visibility_ratio.h)
+    if (lights_.of_lamps)
+        return;
+    field_.escape = &escape_;
     bottom_ = bottom_level(field_);
 }
 

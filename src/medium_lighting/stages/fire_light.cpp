@@ -14,7 +14,10 @@ HierarchyLights build_fire_lights(const LitLattice& lattice, Statistics& statist
     progress.stage("fire to lights");
     const Stopwatch watch;
     const Medium& medium = lattice.medium();
-    HierarchyLights lights = build_hierarchy(medium, {lattice.fire_lights(), {}}, lattice.input().lighting.levels);
+    const LightingSettings& settings = lattice.input().lighting;
+    ScatteredLight fire{lattice.fire_lights(), {}};
+    HierarchyLights lights = settings.clusters > 0 ? build_lamps(medium, std::move(fire), settings.clusters)
+                                                   : build_hierarchy(medium, std::move(fire), settings.levels);
     const double emitted = luminance(Rgb(total(lights.light.intensity)));
     statistics.stages.push_back(
         {"lights and hierarchy",

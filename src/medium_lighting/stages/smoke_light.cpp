@@ -88,7 +88,7 @@ private:
             return light;
         LightField of_thin = thin->lights.field(lattice_.pyramid(), input.scattering.alpha, input.lighting, nullptr);
         of_thin.bottom = kFinestThinLights;
-        Gathered more = gather_from_outside(of_thin, lattice_.last_request(), costs, progress_);
+        Gathered more = gather_at_nodes(of_thin, lattice_.last_request(), costs, progress_);
         prepare_interpolation(lattice_.medium().lattice, lattice_.needed(), more);
         light.light.add(more);
         give_back(*thin, thin_bricks, lights.light);

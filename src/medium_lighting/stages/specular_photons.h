@@ -27,7 +27,7 @@ public:
     bool empty() const { return particles_ == 0; }
     std::size_t particles() const { return particles_; }
 
-    // Light at the needed nodes of the medium, planar over all nodes, as gather_from_outside(). Sums are integers, and
+    // Light at the needed nodes of the medium, planar over all nodes, as gather_at_nodes(). Sums are integers, and
     // so do not depend on the order. `medium`: the medium through which the light is traced, on the scene's own
     // lattice.
     Gathered on(const Medium& medium, const LatticeRequest& request) const;

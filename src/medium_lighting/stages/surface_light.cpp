@@ -23,7 +23,7 @@ void add_virtual_lights(const PointsOfSides& sides, const LitLattice& lattice, G
             continue;
         const LightField field{pyramid,  nullptr, nullptr,           &grid, &no_weight, settings.alpha,
                                settings, nullptr, lattice.surfaces()};
-        arriving.add(gather_from_outside(field, lattice.request(), costs, progress));
+        arriving.add(gather_at_nodes(field, lattice.request(), costs, progress));
         stage.bytes = std::max(stage.bytes, grid.bytes() + most_held(costs));
         lights += side.size();
     }

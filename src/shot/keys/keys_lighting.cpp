@@ -23,6 +23,10 @@ void add_lighting_keys(std::vector<Key>& keys) {
         "lighting.levels", "of the hierarchy above the voxels; auto: from the volume's extent",
         or_word(whole(1, 24), "auto", 0), [](Shot & s) -> auto& { return s.lighting.levels; }));
     keys.push_back(make_key(
+        "lighting.clusters",
+        "for comparison: at most so many lamps in the place of the fire's lights, by k-means; 0: none", whole(0, 65536),
+        [](Shot & s) -> auto& { return s.lighting.clusters; }));
+    keys.push_back(make_key(
         "lighting.shadows", "maps: precomputed; exact: per light and point, slow; none: for study",
         choice<ShadowMethod>(
             {{"maps", ShadowMethod::Maps}, {"exact", ShadowMethod::Exact}, {"none", ShadowMethod::None}}),

@@ -50,6 +50,11 @@ void add_tracing_keys(std::vector<Key>& keys) {
                                         {"ray_march", TransmittanceEstimator::RayMarch},
                                         {"ratio", TransmittanceEstimator::Ratio}}),
         [](Shot & s) -> auto& { return s.tracing.transmittance; }));
+    keys.push_back(make_key(
+        "tracing.denoising_radius",
+        "for comparison: the finished picture is filtered over so many pixels, as in compositing, which biases it; 0: "
+        "not",
+        whole(0, 64), [](Shot & s) -> auto& { return s.tracing.denoising_radius; }));
 }
 
 }  // namespace brisance

@@ -73,6 +73,7 @@ std::vector<std::string> reference_settings(const ReportOptions& options, const 
             options.reference_seconds > 0.0 ? fmt::format("tracing.seconds={}", options.reference_seconds)
                                             : "tracing.seconds=none",
             "tracing.error=none",
+            "tracing.denoising_radius=0",
             "output.layers.cells=true",
             "output.halves=true"};
 }

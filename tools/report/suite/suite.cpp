@@ -27,9 +27,17 @@ std::vector<SuiteScene> scenes_of_media(const fs::path& shots) {
 }
 
 std::string budget_of(const SuiteSize& size, const Method& method) {
-    if (method.unbiased)
-        return size.path_samples;
-    return method.base == "lighting_grid" ? size.grid_steps : size.sides;
+    switch (method.steps_of) {
+        case StepsOf::Paths:
+            return size.path_samples;
+        case StepsOf::Grid:
+            return size.grid_steps;
+        case StepsOf::Lamps:
+            return size.lamps;
+        case StepsOf::Samples:
+            break;
+    }
+    return size.sides;
 }
 
 // What a method says of itself stays so.
@@ -49,6 +57,7 @@ const std::vector<SuiteSize>& suite_sizes() {
          64,
          "4,16",
          "1,2",
+         "4,64",
          "1",
          {"camera.edge_refinement=1", "lighting.lattice_level=3", "lighting.error=0.1", "lighting.alpha=1",
           "scattering.lattice_level=3", "scattering.alpha=1", "virtual_lights.count=300",
@@ -57,7 +66,17 @@ const std::vector<SuiteSize>& suite_sizes() {
           "volumetric_photons.paths=50000"},
          {"lighting.lattice_level=5", "lighting.error=0.3"},
          {"scattering.method=volumetric_photons", "volumetric_photons.paths=20000"}},
-        {"full", "hours: the shots' own settings", 160, 4096, "4,16,64,256", "1,2,3,4", "1,2,4", {}, {}, {}}};
+        {"full",
+         "hours: the shots' own settings",
+         160,
+         4096,
+         "4,16,64,256",
+         "1,2,3,4",
+         "4,16,64,256",
+         "1,2,4",
+         {},
+         {},
+         {}}};
     return all;
 }
 
