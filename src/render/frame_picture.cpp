@@ -128,7 +128,7 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
     Image image = render_picture(lights.field(), camera, settings_, progress_,
                                  [&](const auto& samples, auto& light) { shader.shade(samples, light); });
     if (shared)
-        add_to_cell(image, Cell::SS, shared->pixels());
+        add_to_cell(image, Cell::SS, shared->take_pixels());
     return image;
 }
 

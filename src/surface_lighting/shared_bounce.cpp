@@ -59,9 +59,8 @@ void SharedBounce::add(const Sample& s) {
     p.samples += 1.0f;
 }
 
-std::vector<SharedBounce::Patch> SharedBounce::means() const {
-    std::vector<Patch> out = patches_;
-    for (Patch& p : out) {
+void SharedBounce::take_means() {
+    for (Patch& p : patches_) {
         const float each = 1.0f / p.samples;
         p.position *= each;
         p.normal = glm::normalize(p.normal);
@@ -69,7 +68,6 @@ std::vector<SharedBounce::Patch> SharedBounce::means() const {
         p.light *= each;
         p.closeness *= each;
     }
-    return out;
 }
 
 template <class Visit>
@@ -84,8 +82,8 @@ void SharedBounce::for_each_patch(const Visit& visit) const {
 }
 
 template <class Take>
-void SharedBounce::for_neighbours(const std::vector<Patch>& patches, std::size_t pixel, const Patch& patch,
-                                  float radius, int step, const Take& take) const {
+void SharedBounce::for_neighbours(std::size_t pixel, const Patch& patch, float radius, int step,
+                                  const Take& take) const {
     const int x = int(pixel % std::size_t(width_)), y = int(pixel / std::size_t(width_));
     const int reach = std::min(kReach, int(radius / (patch.pixel_size * float(step))) + 1);
     const float inverse = 1.0f / radius;
@@ -94,8 +92,8 @@ void SharedBounce::for_neighbours(const std::vector<Patch>& patches, std::size_t
             const int u = x + dx * step, v = y + dy * step;
             if (u < 0 || u >= width_ || v < 0 || v >= height_)
                 continue;
-            for (std::uint32_t k = first_[std::size_t(v) * width_ + u]; k != kNone; k = patches[k].next) {
-                const Patch& other = patches[k];
+            for (std::uint32_t k = first_[std::size_t(v) * width_ + u]; k != kNone; k = patches_[k].next) {
+                const Patch& other = patches_[k];
                 const vec3 offset = (other.position - patch.position) * inverse;
                 const float far = glm::dot(offset, offset), facing = glm::dot(other.normal, patch.normal);
                 const float off_plane = glm::dot(offset, patch.normal) / kOtherPlane;
@@ -107,14 +105,17 @@ void SharedBounce::for_neighbours(const std::vector<Patch>& patches, std::size_t
         }
 }
 
-// How far each patch shares [m]. Distances to surfaces around are noisy themselves and are averaged first.
-std::vector<float> SharedBounce::radii(const std::vector<Patch>& patches) const {
-    std::vector<float> radius(patches.size());
+// How far each patch shares [m]; 0 where the camera touches the surface. Distances to surfaces around are noisy
+// themselves and are averaged first.
+std::vector<float> SharedBounce::radii() const {
+    std::vector<float> radius(patches_.size(), 0.0f);
     for_each_patch([&](std::size_t pixel, std::uint32_t k) {
-        const Patch& p = patches[k];
+        const Patch& p = patches_[k];
+        if (!(p.pixel_size > 0.0f))
+            return;
         float closeness = 0.0f, weights = 0.0f;
-        for_neighbours(patches, pixel, p, kReach * p.pixel_size, 1, [&](std::uint32_t j, float w) {
-            closeness += w * patches[j].closeness;
+        for_neighbours(pixel, p, kReach * p.pixel_size, 1, [&](std::uint32_t j, float w) {
+            closeness += w * patches_[j].closeness;
             weights += w;
         });
         const float least = kLeastPixels * p.pixel_size, most = kMostPixels * p.pixel_size;
@@ -123,32 +124,35 @@ std::vector<float> SharedBounce::radii(const std::vector<Patch>& patches) const 
     return radius;
 }
 
-std::vector<Rgb> SharedBounce::pixels() const {
-    std::vector<Patch> patches = means();
-    const std::vector<float> radius = radii(patches);
-    std::vector<Rgb> light(patches.size());
-    for (const int step : kSteps) {
-        for_each_patch([&](std::size_t pixel, std::uint32_t k) {
-            const Patch& p = patches[k];
-            light[k] = p.light;
-            // What is nearer than a step has been shared by the step before.
-            if (step > 1 && radius[k] <= float(step) * p.pixel_size)
-                return;
-            Rgb sum(0.0f);
-            float weights = 0.0f;
-            for_neighbours(patches, pixel, p, std::min(radius[k], float(kReach * step) * p.pixel_size), step,
-                           [&](std::uint32_t j, float w) {
-                               sum += w * patches[j].light;
-                               weights += w;
-                           });
-            if (weights > 0.0f)
-                light[k] = sum / weights;
-        });
-        for (std::size_t k = 0; k < patches.size(); ++k)
-            patches[k].light = light[k];
-    }
+void SharedBounce::share(const std::vector<float>& radius, int step) {
+    std::vector<Rgb> light(patches_.size());
+    for_each_patch([&](std::size_t pixel, std::uint32_t k) {
+        const Patch& p = patches_[k];
+        light[k] = p.light;
+        // What is nearer than a step has been shared by the step before.
+        if (radius[k] <= (step > 1 ? float(step) * p.pixel_size : 0.0f))
+            return;
+        Rgb sum(0.0f);
+        float weights = 0.0f;
+        for_neighbours(pixel, p, std::min(radius[k], float(kReach * step) * p.pixel_size), step,
+                       [&](std::uint32_t j, float w) {
+                           sum += w * patches_[j].light;
+                           weights += w;
+                       });
+        if (weights > 0.0f)
+            light[k] = sum / weights;
+    });
+    for (std::size_t k = 0; k < patches_.size(); ++k)
+        patches_[k].light = light[k];
+}
+
+std::vector<Rgb> SharedBounce::take_pixels() {
+    take_means();
+    const std::vector<float> radius = radii();
+    for (const int step : kSteps)
+        share(radius, step);
     std::vector<Rgb> out(first_.size(), Rgb(0.0f));
-    for_each_patch([&](std::size_t pixel, std::uint32_t k) { out[pixel] += patches[k].weight * patches[k].light; });
+    for_each_patch([&](std::size_t pixel, std::uint32_t k) { out[pixel] += patches_[k].weight * patches_[k].light; });
     return out;
 }
 

@@ -39,11 +39,11 @@ public:
     // Samples of a pixel in any order that does not depend on threads. Not thread-safe.
     void add(const Sample& sample);
 
-    // Radiance of each pixel.
-    std::vector<Rgb> pixels() const;
+    // Radiance of each pixel. Uses up the samples.
+    std::vector<Rgb> take_pixels();
 
 private:
-    // The samples of a pixel that lie on one surface, as sums, until they are shared as means.
+    // The samples of a pixel that lie on one surface: sums, then their means, but for `weight`.
     struct Patch {
         vec3 position{0.0f}, normal{0.0f};
         float pixel_size = 0.0f;
@@ -54,12 +54,12 @@ private:
     };
     static constexpr std::uint32_t kNone = ~0u;
 
-    std::vector<Patch> means() const;
+    void take_means();
     // Calls take(neighbour, weight) for all patches within `radius` metres that lie `step` pixels apart.
     template <class Take>
-    void for_neighbours(const std::vector<Patch>& patches, std::size_t pixel, const Patch& patch, float radius,
-                        int step, const Take& take) const;
-    std::vector<float> radii(const std::vector<Patch>& patches) const;
+    void for_neighbours(std::size_t pixel, const Patch& patch, float radius, int step, const Take& take) const;
+    std::vector<float> radii() const;
+    void share(const std::vector<float>& radius, int step);
     template <class Visit>
     void for_each_patch(const Visit& visit) const;  // visit(pixel, patch), in parallel
 

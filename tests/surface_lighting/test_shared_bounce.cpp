@@ -55,13 +55,13 @@ void grain(Sample& s, Rng& rng) {
 
 TEST(SharedBounce, KeepsConstantLightOnAnyColour) {
     float colour = 0.0f;
-    const SharedBounce shared = wall(0.2, [&](Sample& s, Rng& rng) {
+    SharedBounce shared = wall(0.2, [&](Sample& s, Rng& rng) {
         colour = 0.1f + 0.8f * rng.next();
         s.light = Rgb(1.0f, 2.0f, 3.0f);
         s.weight *= colour;
     });
     Rgb mean(0.0f);
-    const std::vector<Rgb> pixels = shared.pixels();
+    const std::vector<Rgb> pixels = shared.take_pixels();
     for (const Rgb& p : pixels) {
         EXPECT_NEAR(p.y / p.x, 2.0f, 1e-4f);
         EXPECT_NEAR(p.z / p.x, 3.0f, 1e-4f);
@@ -73,32 +73,32 @@ TEST(SharedBounce, KeepsConstantLightOnAnyColour) {
 // The mean of grains has a standard error of 4.5 % here, the variance of single pixels is divided by the number of
 // pixels that share: more than fifty.
 TEST(SharedBounce, DividesNoiseAndKeepsEnergy) {
-    const Spread alone = spread(wall(0.0, grain).pixels()), shared = spread(wall(0.2, grain).pixels());
+    const Spread alone = spread(wall(0.0, grain).take_pixels()), shared = spread(wall(0.2, grain).take_pixels());
     EXPECT_LT(shared.variance, alone.variance / 50.0);
     EXPECT_NEAR(shared.mean, alone.mean, 0.03 * alone.mean);  // pixels at the border share with fewer
     EXPECT_NEAR(shared.mean, 1.0, 3.0 * 0.045);
 }
 
 TEST(SharedBounce, CrossesNoEdgeOfNormals) {
-    const SharedBounce shared = wall(0.2, [](Sample& s, Rng&) {
+    SharedBounce shared = wall(0.2, [](Sample& s, Rng&) {
         const bool right = s.pixel % kWidth >= kWidth / 2;
         s.light = Rgb(right ? 1.0f : 0.0f);
         s.normal = right ? vec3(1.0f, 0.0f, 0.0f) : vec3(0.0f, 0.0f, 1.0f);
     });
-    const std::vector<Rgb> pixels = shared.pixels();
+    const std::vector<Rgb> pixels = shared.take_pixels();
     for (std::size_t p = 0; p < pixels.size(); ++p)
         EXPECT_NEAR(pixels[p].x, p % kWidth >= kWidth / 2 ? 1.0f : 0.0f, 1e-5f) << p;
 }
 
 // A step in depth of ten pixels, within the radius, between walls that face the same way; half of the pixels see both.
 TEST(SharedBounce, CrossesNoStepInDepth) {
-    const SharedBounce shared = wall(0.2, [](Sample& s, Rng& rng) {
+    SharedBounce shared = wall(0.2, [](Sample& s, Rng& rng) {
         const bool behind = rng.next() < 0.5f;
         s.light = Rgb(behind ? 1.0f : 0.0f);
         s.position.z = behind ? -10.0f * kPixel : 0.0f;
         s.weight = behind ? Rgb(1.0f, 0.0f, 0.0f) : Rgb(0.0f, 1.0f, 0.0f);
     });
-    for (const Rgb& p : shared.pixels()) {
+    for (const Rgb& p : shared.take_pixels()) {
         EXPECT_NEAR(p.x, std::round(p.x), 1e-4f);  // a whole number of samples, each of light 1
         EXPECT_EQ(p.y, 0.0f);
     }
@@ -106,14 +106,25 @@ TEST(SharedBounce, CrossesNoStepInDepth) {
 
 // Light varies over a part of the distance to what sends it: beside a surface two pixels away it is not blurred.
 TEST(SharedBounce, StaysSharpBesideOtherSurfaces) {
-    const SharedBounce shared = wall(0.2, [](Sample& s, Rng&) {
+    SharedBounce shared = wall(0.2, [](Sample& s, Rng&) {
         s.light = Rgb(s.pixel % kWidth >= kWidth / 2 ? 1.0f : 0.0f);
         s.closeness = 1.0f / (2.0f * kPixel);
     });
-    const std::vector<Rgb> pixels = shared.pixels();
+    const std::vector<Rgb> pixels = shared.take_pixels();
     for (std::size_t p = 0; p < pixels.size(); ++p)
         if (const int from_edge = std::abs(int(p % kWidth) - kWidth / 2); from_edge > 3)
             EXPECT_NEAR(pixels[p].x, p % kWidth >= kWidth / 2 ? 1.0f : 0.0f, 1e-5f) << p;
+}
+
+// A camera that lies in the wall has pixels without size.
+TEST(SharedBounce, LeavesWhatTheCameraTouchesAsItIs) {
+    SharedBounce shared = wall(0.2, [](Sample& s, Rng& rng) {
+        s.light = Rgb(rng.next());
+        s.pixel_size = 0.0f;
+        s.position = vec3(0.0f);
+    });
+    for (const Rgb& p : shared.take_pixels())
+        EXPECT_TRUE(p.x > 0.0f && p.x < 1.0f);
 }
 
 // Consistent: with more rays of a pixel the blur of an edge of light gets narrower.
@@ -121,7 +132,7 @@ TEST(SharedBounce, BlursLessWithMoreRays) {
     const auto edge = [](Sample& s, Rng&) { s.light = Rgb(s.pixel % kWidth >= kWidth / 2 ? 1.0f : 0.0f); };
     const auto blurred = [&](int rays) {
         int count = 0;
-        for (const Rgb& p : wall(0.05, edge, rays).pixels())
+        for (const Rgb& p : wall(0.05, edge, rays).take_pixels())
             count += p.x > 0.01f && p.x < 0.99f;
         return count;
     };
