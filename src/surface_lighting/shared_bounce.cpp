@@ -99,8 +99,7 @@ void SharedBounce::for_neighbours(std::size_t pixel, const Patch& patch, float r
                 const float off_plane = glm::dot(offset, patch.normal) / kOtherPlane;
                 if (far >= 1.0f || facing <= kOtherNormal || off_plane * off_plane >= 1.0f)
                     continue;
-                take(k, other.samples * square(1.0f - far) * (1.0f - off_plane * off_plane) *
-                            (facing - kOtherNormal));
+                take(k, other.samples * square(1.0f - far) * (1.0f - off_plane * off_plane) * (facing - kOtherNormal));
             }
         }
 }

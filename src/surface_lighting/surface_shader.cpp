@@ -188,8 +188,8 @@ void SurfaceShader::reflect_scattered(const SurfacePoint& point, const dvec3& to
 }
 
 VirtualLights::Shading SurfaceShader::shading(ShadedPoint& at) const {
-    return {samples_through_panes() ? VirtualLights::Panes::Sampled : VirtualLights::Panes::Followed,
-            &smoke_of_paths_, walks_, &at.vertices};
+    return {samples_through_panes() ? VirtualLights::Panes::Sampled : VirtualLights::Panes::Followed, &smoke_of_paths_,
+            walks_, &at.vertices};
 }
 
 // What the sample itself shows; the base's part is left to all pixels, where they share it.

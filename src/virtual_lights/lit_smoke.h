@@ -1,9 +1,9 @@
 // The smoke's light as it is known before paths between surfaces are followed.
 #pragma once
 
-#include "core/vec.h"
 #include "core/ray.h"
 #include "core/rng.h"
+#include "core/vec.h"
 
 namespace brisance {
 

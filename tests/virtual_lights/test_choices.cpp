@@ -142,8 +142,7 @@ INSTANTIATE_TEST_SUITE_P(OfVirtualLights, Ranges,
                                            "candidates_per_pixel", "neighbours", "radius_factor", "photons",
                                            "profile_resolution", "resampling_candidates", "n_min", "n_max",
                                            "importance_floor", "light_samples", "resampling_rays", "lightcuts_error",
-                                           "lightcuts_most", "stochastic_cut_size",
-                                           "sharing_radius"));
+                                           "lightcuts_most", "stochastic_cut_size", "sharing_radius"));
 
 // Every key with numbers is in the list above, but for the seed, of which the renderer takes any.
 TEST(AllRanges, AreTested) {
