@@ -10,17 +10,25 @@ namespace brisance {
 namespace {
 
 constexpr int kUsualRays = 16;
-constexpr float kLeastPixels = 1.5f;  // of the radius
+constexpr float kLeastPixels = 1.5f;  // of a base's radius
 constexpr int kReach = 4;             // neighbours to each side, in steps
 constexpr int kSteps[] = {1, 4, 16};  // [pixels]
 constexpr float kMostPixels = float(kReach * 16);
+constexpr int kMostPatches = 4;  // of a pixel
 
 // A sample belongs to a patch whose normal has at least this cosine to its own, and whose plane is nearer than this
 // many pixels.
 constexpr float kSameNormal = 0.9f, kSamePlane = 2.0f;
 
-// Neighbours whose normals have this cosine share nothing, and those whose planes lie apart by this part of the radius.
-constexpr float kOtherNormal = 0.8f, kOtherPlane = 0.1f;
+// Neighbours share nothing where their normals have one less this cosine, for a lobe of width 1, where their planes lie
+// apart by this part of the radius, or where the widths of their lobes differ by this part.
+constexpr float kOtherNormal = 0.2f, kOtherPlane = 0.1f, kOtherLobe = 0.2f;
+
+// 1 for lobes of the same width, 0 for others.
+float alike(float lobe, float other) {
+    const float apart = (lobe - other) / (kOtherLobe * std::max(lobe, other));
+    return std::max(0.0f, 1.0f - apart * apart);
+}
 
 float square(float x) {
     return x * x;
@@ -34,14 +42,17 @@ SharedBounce::SharedBounce(int width, int height, double radius, int rays)
       radius_(float(radius * std::pow(double(kUsualRays) / std::max(rays, 1), 1.0 / 6.0))),
       first_(std::size_t(width) * height, kNone) {}
 
-void SharedBounce::add(const Sample& s) {
+bool SharedBounce::add(const Sample& s) {
     std::uint32_t* at = &first_[s.pixel];
-    while (*at != kNone) {
+    for (int patches = 0; *at != kNone; ++patches) {
         const Patch& p = patches_[*at];
         const vec3 normal = glm::normalize(p.normal);
         const float off_plane = std::abs(glm::dot(s.position - p.position / p.samples, normal));
-        if (glm::dot(s.normal, normal) > kSameNormal && off_plane < kSamePlane * s.pixel_size)
+        if (glm::dot(s.normal, normal) > kSameNormal && off_plane < kSamePlane * s.pixel_size &&
+            alike(s.lobe, p.lobe / p.samples) > 0.0f)
             break;
+        if (patches + 1 == kMostPatches)
+            return false;
         at = &patches_[*at].next;
     }
     const std::size_t found = *at == kNone ? patches_.size() : *at;
@@ -53,10 +64,12 @@ void SharedBounce::add(const Sample& s) {
     p.position += s.position;
     p.normal += s.normal;
     p.pixel_size += s.pixel_size;
+    p.lobe += s.lobe;
     p.light += s.light;
     p.weight += s.weight;
     p.closeness += s.closeness;
     p.samples += 1.0f;
+    return true;
 }
 
 void SharedBounce::take_means() {
@@ -65,6 +78,7 @@ void SharedBounce::take_means() {
         p.position *= each;
         p.normal = glm::normalize(p.normal);
         p.pixel_size *= each;
+        p.lobe *= each;
         p.light *= each;
         p.closeness *= each;
     }
@@ -86,7 +100,7 @@ void SharedBounce::for_neighbours(std::size_t pixel, const Patch& patch, float r
                                   const Take& take) const {
     const int x = int(pixel % std::size_t(width_)), y = int(pixel / std::size_t(width_));
     const int reach = std::min(kReach, int(radius / (patch.pixel_size * float(step))) + 1);
-    const float inverse = 1.0f / radius;
+    const float inverse = 1.0f / radius, least_facing = 1.0f - kOtherNormal * square(patch.lobe);
     for (int dy = -reach; dy <= reach; ++dy)
         for (int dx = -reach; dx <= reach; ++dx) {
             const int u = x + dx * step, v = y + dy * step;
@@ -97,9 +111,11 @@ void SharedBounce::for_neighbours(std::size_t pixel, const Patch& patch, float r
                 const vec3 offset = (other.position - patch.position) * inverse;
                 const float far = glm::dot(offset, offset), facing = glm::dot(other.normal, patch.normal);
                 const float off_plane = glm::dot(offset, patch.normal) / kOtherPlane;
-                if (far >= 1.0f || facing <= kOtherNormal || off_plane * off_plane >= 1.0f)
+                if (far >= 1.0f || facing <= least_facing || off_plane * off_plane >= 1.0f)
                     continue;
-                take(k, other.samples * square(1.0f - far) * (1.0f - off_plane * off_plane) * (facing - kOtherNormal));
+                if (const float same_lobe = alike(patch.lobe, other.lobe); same_lobe > 0.0f)
+                    take(k, other.samples * square(1.0f - far) * (1.0f - off_plane * off_plane) * same_lobe *
+                                (facing - least_facing));
             }
         }
 }
@@ -117,8 +133,8 @@ std::vector<float> SharedBounce::radii() const {
             closeness += w * patches_[j].closeness;
             weights += w;
         });
-        const float least = kLeastPixels * p.pixel_size, most = kMostPixels * p.pixel_size;
-        radius[k] = closeness > 0.0f ? std::clamp(radius_ * weights / closeness, least, most) : most;
+        const float least = p.lobe == 1.0f ? kLeastPixels * p.pixel_size : 0.0f, most = kMostPixels * p.pixel_size;
+        radius[k] = closeness > 0.0f ? std::clamp(radius_ * p.lobe * weights / closeness, least, most) : most;
     });
     return radius;
 }

@@ -1,11 +1,14 @@
-// Light between surfaces (SS) that Lambert bases reflect, shared among the pixels of a picture.
+// Light between surfaces (SS) that Lambert bases and rough lobes reflect, shared among the pixels of a picture.
 //
 // A pixel has few paths and much noise, while the light that arrives at a matt surface from others changes slowly: over
 // a distance that is a part of the distance to the surfaces around (G. Ward, F. Rubinstein, R. Clear, A Ray Tracing
 // Solution for Diffuse Interreflection, SIGGRAPH 1988, on the split sphere). So each pixel takes the mean of what its
-// neighbours found on the same surface, without the colour of the base, weighted by distance, by normals, and by how
-// far they lie off the plane. Weights depend on the surfaces alone, never on the light: the mean keeps its energy but
-// for what crosses edges, and a bright grain is divided among as many pixels as any other sample.
+// neighbours found on the same surface, without its colour, weighted by distance, by normals, and by how far they lie
+// off the plane. Weights depend on the surfaces alone, never on the light: the mean keeps its energy but for what
+// crosses edges, and a bright grain is divided among as many pixels as any other sample.
+//
+// A glossy lobe sees less of the surroundings: the distances over which its light changes are shorter by its width, and
+// so are the differences of normals. Where the lobe is narrower than pixels, nothing is shared.
 //
 // The radius shrinks with the sixth root of the rays of a pixel, so that bias and noise go to zero together. Where
 // surfaces are close, as in corners, it ends at about a pixel. Steps of 1, 4 and 16 pixels reach far with few
@@ -28,7 +31,8 @@ public:
         vec3 position{0.0f};     // local [m]
         vec3 normal{0.0f};       // unit, the shading normal
         float pixel_size = 0.0;  // of the picture at the point [m]
-        Rgb light{0.0f};         // radiance that the base reflects, over its albedo [W/(m^2 sr)]
+        float lobe = 1.0f;       // width of the lobe: 1 for a base, less for others
+        Rgb light{0.0f};         // radiance that the lobe reflects, over its colour [W/(m^2 sr)]
         Rgb weight{0.0f};        // the pixel shows light times weight
         float closeness = 0.0f;  // inverse distance of the surface that the path met first; 0: none [1/m]
     };
@@ -36,17 +40,18 @@ public:
     // `radius`: over the distance to surrounding surfaces, for 16 rays per pixel. `rays`: of a pixel.
     SharedBounce(int width, int height, double radius, int rays);
 
-    // Samples of a pixel in any order that does not depend on threads. Not thread-safe.
-    void add(const Sample& sample);
+    // Samples of a pixel in any order that does not depend on threads. Not thread-safe. False: the pixel has samples of
+    // too many surfaces already, and this one is not taken.
+    bool add(const Sample& sample);
 
     // Radiance of each pixel. Uses up the samples.
     std::vector<Rgb> take_pixels();
 
 private:
-    // The samples of a pixel that lie on one surface: sums, then their means, but for `weight`.
+    // The samples of a pixel that lie on one surface, of lobes of one width: sums, then their means, but for `weight`.
     struct Patch {
         vec3 position{0.0f}, normal{0.0f};
-        float pixel_size = 0.0f;
+        float pixel_size = 0.0f, lobe = 0.0f;
         Rgb light{0.0f}, weight{0.0f};
         float closeness = 0.0f;
         float samples = 0.0f;

@@ -21,6 +21,10 @@ bool has_specular(const SurfaceMaterial& m) {
     return needs_energy_tables(m);
 }
 
+// The width of the glossy lobes of a surface as rough as can be, over that of a base: less, so that pixels keep them
+// apart.
+constexpr float kWidestGloss = 0.7f;
+
 // Voxels of a segment of a path between surfaces are not cut: the path is one of many.
 constexpr int kPartsForPaths = 1;
 
@@ -53,7 +57,7 @@ struct SurfaceShader::ShadedPoint {
     BehindMirrors seen;
     Rng ray_rng;  // for rays through the medium
     int vertices;
-    std::optional<SharedBounce::Sample> shared = std::nullopt;
+    std::optional<SharedBounce::Sample> base = std::nullopt, gloss = std::nullopt;  // left to all pixels
 };
 
 // The samples of a pixel divide the emitters among themselves: a sequence of evenly spread choices runs through them
@@ -192,38 +196,50 @@ VirtualLights::Shading SurfaceShader::shading(ShadedPoint& at) const {
             walks_, &at.vertices};
 }
 
-// What the sample itself shows; the base's part is left to all pixels, where they share it.
+// What the sample itself shows; the rest is left to all pixels, where they share it.
 Rgb SurfaceShader::from_virtual_lights(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng,
                                        ShadedPoint& at) const {
     const SurfacePoint& point = at.seen.point;
-    const bool shares = input_.shared && at.seen.mirrors == 0 && has_base(point.material);
-    if (!shares)
+    if (!input_.shared || at.seen.mirrors > 0)
         return input_.virtual_lights->shade(vertex, rng, shading(at));
-    const Bsdf base(point.material, point.frame, Lobes::Base);
-    if (const Rgb albedo = base.base_albedo(-at.seen.arriving); albedo != Rgb(0.0f))
-        at.shared = shared_base(sample, base, albedo, rng, at);
+    if (has_base(point.material)) {
+        const Bsdf base(point.material, point.frame, Lobes::Base);
+        if (const Rgb albedo = base.base_albedo(-at.seen.arriving); albedo != Rgb(0.0f))
+            at.base = shared_sample(sample, base, albedo, 1.0f, rng, at);
+    }
     if (!has_specular(point.material))
         return Rgb(0.0f);
     const Bsdf others(point.material, point.frame, Lobes::Specular);
-    return input_.virtual_lights->shade(PathVertex(point, others, at.seen.arriving), rng, shading(at));
+    if (point.material.transmission > 0.0f || !has_wide_lobes(point.material))
+        return input_.virtual_lights->shade(PathVertex(point, others, at.seen.arriving), rng, shading(at));
+    const Rgb colour = glm::mix(Rgb(1.0f), point.material.base_colour, point.material.metallic);
+    at.gloss = shared_sample(sample, others, colour, kWidestGloss * point.material.roughness * point.material.roughness,
+                             rng, at);
+    return Rgb(0.0f);
 }
 
-SharedBounce::Sample SurfaceShader::shared_base(const SurfaceSample& sample, const Bsdf& base, const Rgb& albedo,
-                                                Rng& rng, ShadedPoint& at) const {
+// Of some lobes of the sample's surface. `colour`: of them; `lobe`: their width.
+SharedBounce::Sample SurfaceShader::shared_sample(const SurfaceSample& sample, const Bsdf& lobes, const Rgb& colour,
+                                                  float lobe, Rng& rng, ShadedPoint& at) const {
     const SurfacePoint& point = at.seen.point;
     VirtualLights::Shading how = shading(at);
     double distance = std::numeric_limits<double>::infinity();
     how.distance = &distance;
-    const Rgb light = input_.virtual_lights->shade(PathVertex(point, base, at.seen.arriving), rng, how);
+    const Rgb light = input_.virtual_lights->shade(PathVertex(point, lobes, at.seen.arriving), rng, how);
+    const double from_eye = glm::distance(point.position, sample.ray.origin);
     SharedBounce::Sample out;
     out.pixel = sample.pixel;
     out.position = vec3(point.position);
     out.normal = vec3(point.frame.normal);
-    out.pixel_size = float(input_.pixel_angle * glm::distance(point.position, sample.ray.origin));
+    out.pixel_size = float(input_.pixel_angle * from_eye);
+    out.lobe = lobe;
     for (int c = 0; c < 3; ++c)
-        out.light[c] = albedo[c] > 0.0f ? light[c] / albedo[c] : 0.0f;
-    out.weight = sample.share * albedo;
+        out.light[c] = colour[c] > 0.0f ? light[c] / colour[c] : 0.0f;
+    out.weight = sample.share * colour;
     out.closeness = float(1.0 / distance);
+    // Along a glossy surface the direction to the eye changes, too.
+    if (lobe < 1.0f)
+        out.closeness += float(1.0 / from_eye);
     return out;
 }
 
@@ -271,9 +287,10 @@ void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector
         kSamplesAtOnce);
     for (std::size_t i = 0; input_.lengths && i < samples.size(); ++i)
         input_.lengths->add(samples[i].pixel, points[i].vertices);
-    for (const ShadedPoint& point : points)
-        if (point.shared)
-            input_.shared->add(*point.shared);
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        for (const std::optional<SharedBounce::Sample>& s : {points[i].base, points[i].gloss})
+            if (s && samples[i].share > 0.0f && !input_.shared->add(*s))
+                light[i].at(Cell::SS) += s->light * s->weight / samples[i].share;
 }
 
 }  // namespace brisance

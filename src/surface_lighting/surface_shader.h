@@ -42,7 +42,7 @@ struct SurfaceLightingInput {
     int width = 0;                                    // of the picture, in pixels
     int samples = 1;                                  // rays of a pixel
     PathLengths* lengths = nullptr;                   // counts the paths of virtual lights; null: not counted
-    SharedBounce* shared = nullptr;                   // gets what bases reflect of SS; null: the samples keep it
+    SharedBounce* shared = nullptr;                   // gets SS of bases and rough lobes; null: samples keep it
     double pixel_angle = 0.0;                         // [rad], for `shared`
 };
 
@@ -61,8 +61,8 @@ private:
                                        const std::vector<ShadedPoint>& points) const;
     void shade_point(const SurfaceSample& sample, const BaseLight& base, ShadedPoint& at, CellSum& light) const;
     Rgb from_virtual_lights(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng, ShadedPoint& at) const;
-    SharedBounce::Sample shared_base(const SurfaceSample& sample, const Bsdf& base, const Rgb& albedo, Rng& rng,
-                                     ShadedPoint& at) const;
+    SharedBounce::Sample shared_sample(const SurfaceSample& sample, const Bsdf& lobes, const Rgb& colour, float lobe,
+                                       Rng& rng, ShadedPoint& at) const;
     VirtualLights::Shading shading(ShadedPoint& at) const;
     Rgb from_emitters(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng) const;
     Rgb from_chosen_emitters(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng) const;

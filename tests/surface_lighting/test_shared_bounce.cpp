@@ -127,6 +127,54 @@ TEST(SharedBounce, LeavesWhatTheCameraTouchesAsItIs) {
         EXPECT_TRUE(p.x > 0.0f && p.x < 1.0f);
 }
 
+// Base and lobes of other widths at the same place have other light, and share none of it.
+TEST(SharedBounce, KeepsLobesApart) {
+    SharedBounce shared = wall(0.2, [](Sample& s, Rng& rng) {
+        const int kind = int(rng.next() * 3.0f);
+        s.lobe = kind == 0 ? 1.0f : kind == 1 ? 0.7f : 0.3f;
+        s.light = s.weight = Rgb(0.0f);
+        s.light[kind] = s.weight[kind] = 1.0f;
+    });
+    for (const Rgb& p : shared.take_pixels()) {
+        EXPECT_NEAR(p.x + p.y + p.z, float(kRays), 1e-4f);
+        EXPECT_NEAR(p.x, std::round(p.x), 1e-4f);
+        EXPECT_NEAR(p.y, std::round(p.y), 1e-4f);
+    }
+}
+
+// A lobe sees a part of the surroundings: with its width the blur of an edge of light falls to nothing.
+TEST(SharedBounce, BlursLessOnGlossierSurfaces) {
+    const auto blurred = [](float lobe) {
+        int count = 0;
+        SharedBounce shared = wall(0.2, [&](Sample& s, Rng&) {
+            s.light = Rgb(s.pixel % kWidth >= kWidth / 2 ? 1.0f : 0.0f);
+            s.lobe = lobe;
+        });
+        for (const Rgb& p : shared.take_pixels())
+            count += p.x > 0.01f && p.x < 0.99f;
+        return count;
+    };
+    EXPECT_LT(blurred(0.2f), 0.6 * blurred(0.6f));
+    EXPECT_EQ(blurred(0.01f), 0);
+}
+
+// What finds no place in a crowded pixel is left to the caller.
+TEST(SharedBounce, RefusesPixelsOfManySurfaces) {
+    SharedBounce shared(1, 1, 0.2, 16);
+    int taken = 0;
+    for (int k = 0; k < 16; ++k) {
+        Sample s;
+        s.position = vec3(0.0f, 0.0f, float(k));
+        s.normal = vec3(0.0f, 0.0f, 1.0f);
+        s.pixel_size = kPixel;
+        s.light = s.weight = Rgb(1.0f);
+        taken += shared.add(s);
+    }
+    EXPECT_GE(taken, 1);
+    EXPECT_LT(taken, 16);
+    EXPECT_NEAR(shared.take_pixels()[0].x, float(taken), 1e-5f);
+}
+
 // Consistent: with more rays of a pixel the blur of an edge of light gets narrower.
 TEST(SharedBounce, BlursLessWithMoreRays) {
     const auto edge = [](Sample& s, Rng&) { s.light = Rgb(s.pixel % kWidth >= kWidth / 2 ? 1.0f : 0.0f); };
