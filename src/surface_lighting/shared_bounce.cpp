@@ -64,10 +64,12 @@ bool SharedBounce::add(const Sample& s) {
     p.position += s.position;
     p.normal += s.normal;
     p.pixel_size += s.pixel_size;
+    p.area += s.area;
     p.lobe += s.lobe;
     p.light += s.light;
     p.weight += s.weight;
     p.closeness += s.closeness;
+    p.met += s.closeness > 0.0f ? 1.0f : 0.0f;
     p.samples += 1.0f;
     return true;
 }
@@ -78,9 +80,11 @@ void SharedBounce::take_means() {
         p.position *= each;
         p.normal = glm::normalize(p.normal);
         p.pixel_size *= each;
+        p.area *= each;
         p.lobe *= each;
         p.light *= each;
         p.closeness *= each;
+        p.met *= each;
     }
 }
 
@@ -114,27 +118,27 @@ void SharedBounce::for_neighbours(std::size_t pixel, const Patch& patch, float r
                 if (far >= 1.0f || facing <= least_facing || off_plane * off_plane >= 1.0f)
                     continue;
                 if (const float same_lobe = alike(patch.lobe, other.lobe); same_lobe > 0.0f)
-                    take(k, other.samples * square(1.0f - far) * (1.0f - off_plane * off_plane) * same_lobe *
-                                (facing - least_facing));
+                    take(k, other.area * other.samples * square(1.0f - far) * (1.0f - off_plane * off_plane) *
+                                same_lobe * (facing - least_facing));
             }
         }
 }
 
 // How far each patch shares [m]; 0 where the camera touches the surface. Distances to surfaces around are noisy
-// themselves and are averaged first.
+// themselves and are averaged first. Rays that meet none bring no light, and say nothing of how it changes.
 std::vector<float> SharedBounce::radii() const {
     std::vector<float> radius(patches_.size(), 0.0f);
     for_each_patch([&](std::size_t pixel, std::uint32_t k) {
         const Patch& p = patches_[k];
         if (!(p.pixel_size > 0.0f))
             return;
-        float closeness = 0.0f, weights = 0.0f;
+        float closeness = 0.0f, met = 0.0f;
         for_neighbours(pixel, p, kReach * p.pixel_size, 1, [&](std::uint32_t j, float w) {
             closeness += w * patches_[j].closeness;
-            weights += w;
+            met += w * patches_[j].met;
         });
         const float least = p.lobe == 1.0f ? kLeastPixels * p.pixel_size : 0.0f, most = kMostPixels * p.pixel_size;
-        radius[k] = closeness > 0.0f ? std::clamp(radius_ * p.lobe * weights / closeness, least, most) : most;
+        radius[k] = closeness > 0.0f ? std::clamp(radius_ * p.lobe * met / closeness, least, most) : most;
     });
     return radius;
 }

@@ -3,9 +3,9 @@
 // A pixel has few paths and much noise, while the light that arrives at a matt surface from others changes slowly: over
 // a distance that is a part of the distance to the surfaces around (G. Ward, F. Rubinstein, R. Clear, A Ray Tracing
 // Solution for Diffuse Interreflection, SIGGRAPH 1988, on the split sphere). So each pixel takes the mean of what its
-// neighbours found on the same surface, without its colour, weighted by distance, by normals, and by how far they lie
-// off the plane. Weights depend on the surfaces alone, never on the light: the mean keeps its energy but for what
-// crosses edges, and a bright grain is divided among as many pixels as any other sample.
+// neighbours found on the same surface, without its colour, weighted by area, by distance, by normals, and by how far
+// they lie off the plane. Weights depend on the surfaces alone, never on the light: the mean keeps its energy but for
+// what crosses edges, and a bright grain is divided among as many pixels as any other sample.
 //
 // A glossy lobe sees less of the surroundings: the distances over which its light changes are shorter by its width, and
 // so are the differences of normals. Where the lobe is narrower than pixels, nothing is shared.
@@ -31,6 +31,7 @@ public:
         vec3 position{0.0f};     // local [m]
         vec3 normal{0.0f};       // unit, the shading normal
         float pixel_size = 0.0;  // of the picture at the point [m]
+        float area = 0.0f;       // of the surface that the pixel shows, as far as it shows this one [m^2]
         float lobe = 1.0f;       // width of the lobe: 1 for a base, less for others
         Rgb light{0.0f};         // radiance that the lobe reflects, over its colour [W/(m^2 sr)]
         Rgb weight{0.0f};        // the pixel shows light times weight
@@ -51,9 +52,9 @@ private:
     // The samples of a pixel that lie on one surface, of lobes of one width: sums, then their means, but for `weight`.
     struct Patch {
         vec3 position{0.0f}, normal{0.0f};
-        float pixel_size = 0.0f, lobe = 0.0f;
+        float pixel_size = 0.0f, area = 0.0f, lobe = 0.0f;
         Rgb light{0.0f}, weight{0.0f};
-        float closeness = 0.0f;
+        float closeness = 0.0f, met = 0.0f;  // and how many samples met a surface
         float samples = 0.0f;
         std::uint32_t next = kNone;  // of the pixel
     };

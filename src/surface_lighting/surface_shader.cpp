@@ -25,6 +25,9 @@ bool has_specular(const SurfaceMaterial& m) {
 // apart.
 constexpr float kWidestGloss = 0.7f;
 
+// The cosine below which the area that a pixel shows counts as if it were this.
+constexpr double kGrazing = 0.02;
+
 // Voxels of a segment of a path between surfaces are not cut: the path is one of many.
 constexpr int kPartsForPaths = 1;
 
@@ -232,13 +235,15 @@ SharedBounce::Sample SurfaceShader::shared_sample(const SurfaceSample& sample, c
     out.position = vec3(point.position);
     out.normal = vec3(point.frame.normal);
     out.pixel_size = float(input_.pixel_angle * from_eye);
+    const double facing = std::abs(glm::dot(point.geometric_normal, at.seen.arriving));
+    out.area = float(double(out.pixel_size) * out.pixel_size / std::max(facing, kGrazing));
     out.lobe = lobe;
     for (int c = 0; c < 3; ++c)
         out.light[c] = colour[c] > 0.0f ? light[c] / colour[c] : 0.0f;
     out.weight = sample.share * colour;
     out.closeness = float(1.0 / distance);
     // Along a glossy surface the direction to the eye changes, too.
-    if (lobe < 1.0f)
+    if (lobe < 1.0f && out.closeness > 0.0f)
         out.closeness += float(1.0 / from_eye);
     return out;
 }

@@ -27,6 +27,7 @@ SharedBounce wall(double radius, const std::function<void(Sample&, Rng&)>& finis
                 s.position = vec3(float(x) + rng.next(), float(y) + rng.next(), 0.0f) * kPixel;
                 s.normal = vec3(0.0f, 0.0f, 1.0f);
                 s.pixel_size = kPixel;
+                s.area = kPixel * kPixel;
                 s.weight = Rgb(1.0f / float(rays));
                 s.closeness = 0.5f;
                 finish(s, rng);
@@ -167,12 +168,37 @@ TEST(SharedBounce, RefusesPixelsOfManySurfaces) {
         s.position = vec3(0.0f, 0.0f, float(k));
         s.normal = vec3(0.0f, 0.0f, 1.0f);
         s.pixel_size = kPixel;
+        s.area = kPixel * kPixel;
         s.light = s.weight = Rgb(1.0f);
         taken += shared.add(s);
     }
     EXPECT_GE(taken, 1);
     EXPECT_LT(taken, 16);
     EXPECT_NEAR(shared.take_pixels()[0].x, float(taken), 1e-5f);
+}
+
+// A floor toward the horizon: pixels show more of it, and more pixels lie on what is far. Light that falls evenly from
+// near to far stays what it is, away from the ends.
+TEST(SharedBounce, KeepsAGradientInPerspective) {
+    SharedBounce shared(kWidth, kHeight, 0.2, 1);
+    const auto distance = [](int y) { return 1.0f / (0.1f + 0.01f * float(y)); };  // [m], 10 to 1.4
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x) {
+            Sample s;
+            s.pixel = std::uint32_t(y * kWidth + x);
+            const float z = distance(y);
+            s.position = vec3(0.01f * float(x) * z, z, 0.0f);
+            s.normal = vec3(0.0f, 0.0f, 1.0f);
+            s.pixel_size = 0.01f * z;
+            s.area = 0.01f * z * (distance(y) - distance(y + 1));
+            s.light = Rgb(z);
+            s.weight = Rgb(1.0f);
+            s.closeness = 1.0f / 3.0f;
+            shared.add(s);
+        }
+    const std::vector<Rgb> pixels = shared.take_pixels();
+    for (int y = 12; y < 29; ++y)
+        EXPECT_NEAR(pixels[std::size_t(y) * kWidth + kWidth / 2].x, distance(y), 0.02f * distance(y)) << y;
 }
 
 // Consistent: with more rays of a pixel the blur of an edge of light gets narrower.
