@@ -155,6 +155,12 @@ void SharedBounce::share(const std::vector<float>& radius, int step) {
         float weights = 0.0f;
         for_neighbours(pixel, p, std::min(radius[k], float(kReach * step) * p.pixel_size), step,
                        [&](std::uint32_t j, float w) {
+                           // Nor farther than the neighbour shares: beside things its light changes quickly.
+                           const vec3 offset = patches_[j].position - p.position;
+                           const float within = 1.0f - glm::dot(offset, offset) / square(radius[j]);
+                           if (j != k && !(within > 0.0f))
+                               return;
+                           w *= j == k ? 1.0f : square(within);
                            sum += w * patches_[j].light;
                            weights += w;
                        });

@@ -201,6 +201,20 @@ TEST(SharedBounce, KeepsAGradientInPerspective) {
         EXPECT_NEAR(pixels[std::size_t(y) * kWidth + kWidth / 2].x, distance(y), 0.02f * distance(y)) << y;
 }
 
+// Half of the wall is bright by a surface two pixels away, half is dark with nothing near: the dark half reaches far,
+// but the bright one does not give.
+TEST(SharedBounce, GivesNoFartherThanItsOwnLightIsSmooth) {
+    SharedBounce shared = wall(0.2, [](Sample& s, Rng&) {
+        const bool bright = s.pixel % kWidth >= kWidth / 2;
+        s.light = Rgb(bright ? 1.0f : 0.0f);
+        s.closeness = bright ? 1.0f / (2.0f * kPixel) : 0.5f;
+    });
+    const std::vector<Rgb> pixels = shared.take_pixels();
+    for (std::size_t p = 0; p < pixels.size(); ++p)
+        if (p % kWidth < kWidth / 2 - 8)
+            EXPECT_LT(pixels[p].x, 0.02f) << p;
+}
+
 // Consistent: with more rays of a pixel the blur of an edge of light gets narrower.
 TEST(SharedBounce, BlursLessWithMoreRays) {
     const auto edge = [](Sample& s, Rng&) { s.light = Rgb(s.pixel % kWidth >= kWidth / 2 ? 1.0f : 0.0f); };
