@@ -25,6 +25,9 @@ bool has_specular(const SurfaceMaterial& m) {
 // apart.
 constexpr float kWidestGloss = 0.7f;
 
+// Glossy lobes reflect at grazing angles what the colour of their metal does not hold: light is divided by no less.
+constexpr float kLeastColour = 0.04f;
+
 // The cosine below which the area that a pixel shows counts as if it were this.
 constexpr double kGrazing = 0.02;
 
@@ -215,7 +218,8 @@ Rgb SurfaceShader::from_virtual_lights(const SurfaceSample& sample, const PathVe
     const Bsdf others(point.material, point.frame, Lobes::Specular);
     if (point.material.transmission > 0.0f || !has_wide_lobes(point.material))
         return input_.virtual_lights->shade(PathVertex(point, others, at.seen.arriving), rng, shading(at));
-    const Rgb colour = glm::mix(Rgb(1.0f), point.material.base_colour, point.material.metallic);
+    const Rgb colour =
+        glm::max(glm::mix(Rgb(1.0f), point.material.base_colour, point.material.metallic), Rgb(kLeastColour));
     at.gloss = shared_sample(sample, others, colour, kWidestGloss * point.material.roughness * point.material.roughness,
                              rng, at);
     return Rgb(0.0f);
