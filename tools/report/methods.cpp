@@ -8,79 +8,13 @@
 #include <optional>
 #include <set>
 
+#include "built_in_methods.h"
 #include "core/error.h"
-#include "scattering_methods/methods.h"
-#include "virtual_lights/choices.h"
 
 namespace brisance {
 namespace {
 
 using Settings = std::vector<std::string>;
-
-struct BuiltIn {
-    std::string name;
-    Settings settings;
-    StepsOf steps = StepsOf::Grid;
-    CellSet cells;
-    bool unbiased = false;
-};
-
-const CellSet kAllCells = {Cell::V,  Cell::A,  Cell::MV, Cell::MM, Cell::MS,
-                           Cell::MA, Cell::SV, Cell::SM, Cell::SS, Cell::SA};
-// All but the light that surfaces scatter, which virtual lights carry also where the grid has everything else.
-const CellSet kCellsOfGrid = {Cell::V, Cell::A, Cell::MV, Cell::MM, Cell::MA, Cell::SV, Cell::SM, Cell::SA};
-// Light that lamps in the place of the fire send out, or that began as theirs.
-const CellSet kCellsOfLamps = {Cell::MV, Cell::MM, Cell::SV, Cell::SM};
-const CellSet kCellsOfScatteringMethods = {Cell::MM, Cell::SM};
-const CellSet kCellsOfVirtualLights = {Cell::MS, Cell::SS};
-
-// Virtual lights by the settings of a preset.
-BuiltIn by_virtual_lights(const TechniquePreset& preset) {
-    BuiltIn method{preset.name, {"method=lighting_grid"}, StepsOf::Samples, kCellsOfVirtualLights};
-    for (const auto& [key, value] : preset.settings)
-        method.settings.push_back("virtual_lights." + key + "=" + value);
-    return method;
-}
-
-// The presets of all scattering methods.
-void add_scattering_methods(std::vector<BuiltIn>& methods) {
-    for (const ScatteringMethod& method : scattering_methods())
-        for (const MethodPreset& preset : method.presets) {
-            BuiltIn built_in{preset.label,
-                             {"method=lighting_grid", "scattering.method=" + method.name},
-                             StepsOf::Samples,
-                             kCellsOfScatteringMethods};
-            for (const std::string& setting : preset.settings)
-                built_in.settings.push_back(method.name + "." + setting);
-            methods.push_back(std::move(built_in));
-        }
-}
-
-std::vector<BuiltIn> make_built_ins() {
-    std::vector<BuiltIn> methods = {
-        {"lighting_grid", {"method=lighting_grid", "scattering.method=lighting_grid"}, StepsOf::Grid, kCellsOfGrid},
-        {"path", {"method=path"}, StepsOf::Paths, kAllCells, true},
-        {"path_plain",
-         {"method=path", "tracing.emission=collision", "tracing.light_sampling=false",
-          "tracing.free_flight=null_collision"},
-         StepsOf::Paths,
-         kAllCells,
-         true},
-        {"path_filtered", {"method=path", "tracing.denoising_radius=5"}, StepsOf::Paths, kAllCells},
-        {"fire_clusters", {"method=lighting_grid", "scattering.method=lighting_grid"}, StepsOf::Lamps, kCellsOfLamps}};
-    add_scattering_methods(methods);
-    return methods;
-}
-
-const std::vector<BuiltIn>& built_ins() {
-    static const std::vector<BuiltIn> all = [] {
-        std::vector<BuiltIn> out = make_built_ins();
-        for (const TechniquePreset& preset : light_presets())
-            out.push_back(by_virtual_lights(preset));
-        return out;
-    }();
-    return all;
-}
 
 // From coarse to finer than the default, which is the third.
 const std::vector<Settings>& grid_ladder() {

@@ -1,0 +1,22 @@
+// The table of methods that a report knows by name (methods.h).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "methods.h"
+
+namespace brisance {
+
+struct BuiltIn {
+    std::string name;
+    std::vector<std::string> settings;  // of a shot: KEY=VALUE
+    StepsOf steps = StepsOf::Grid;
+    CellSet cells;
+    bool unbiased = false;
+};
+
+// Virtual lights come last.
+const std::vector<BuiltIn>& built_ins();
+
+}  // namespace brisance
