@@ -114,7 +114,8 @@ private:
                 if (!l.needed[i] || !(allowed > 0.0f))
                     return;
                 const float part = l.importance[i] * largest_around(l, error, i) / allowed;
-                weight[i] = beside_surface(l, i) ? 1.0f : glm::smoothstep(0.5f, 1.0f, part);
+                const bool beside = l.importance[i] > 0.0f && beside_surface(l, i);
+                weight[i] = beside ? 1.0f : glm::smoothstep(0.5f, 1.0f, part);
             },
             4096);
         return weight;

@@ -51,13 +51,14 @@ LitLattice::LitLattice(const MediumLightingInput& input, int level)
             pyramid_.set_occluders(surfaces_.get());
     }
     if (input.single || input.multiple)
-        thin_medium_ = ThinMedium(medium(), depths_, needed_, {input.eye, input.directional}, input.lighting.error);
+        thin_medium_ = ThinMedium(medium(), depths_, needed_, {input.eye, input.directional}, input.lighting.error,
+                                  pyramid_.occluders());
     if (!thin_medium_.empty())
         pyramid_.set_homogeneous_bricks(&thin_medium_.homogeneous_bricks());
     const auto nodes = std::count_if(needed_.begin(), needed_.end(), [](std::uint8_t n) { return n != 0; });
     interpolation_error_ = tolerated_interpolation(input.lighting, std::size_t(nodes));
     if (interpolation_error_ > 0.0f)
-        levels_ = make_lit_levels(pyramid_, needed_, {input.eye, input.pixel_angle}, kLitLevels);
+        levels_ = make_lit_levels(pyramid_, needed_, thin_medium_.rest(), {input.eye, input.pixel_angle}, kLitLevels);
 }
 
 LatticeRequest LitLattice::request() const {

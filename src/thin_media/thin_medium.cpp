@@ -15,6 +15,12 @@ namespace {
 constexpr float kHollow = 0.02f, kOpen = 0.1f;
 // Distance from the camera, in bricks, below which the direction to it turns too fast to be interpolated.
 constexpr float kAroundCamera = 4.0f;
+// Of a brick's diagonal, in its edges.
+constexpr float kHalfDiagonal = 0.8660254f;
+
+// Largest optical depth across a brick of which light does not change much from one side to the other, as long as what
+// lights it is not beside it.
+constexpr float kThinAcross = 0.2f;
 
 // Points `kIntervals` + 1 along each side of a brick, shared with the next; between them values are trilinear.
 template <int kIntervals>
@@ -58,15 +64,38 @@ std::vector<float> thinness(const Medium& medium, const PointDepths& depths, con
     return thin;
 }
 
+struct ThinBricks {
+    std::vector<std::uint8_t> wholly, in_part;  // per brick; `in_part`: whether light there is to be replaced
+};
+
+ThinBricks thin_bricks(const Medium& medium, const std::vector<float>& thin) {
+    const float fullest = *std::max_element(thin.begin(), thin.end());
+    const float most = kThinAcross / (BrickLattice::kSize * medium.spacing);
+    const std::size_t count = medium.lattice.brick_count();
+    ThinBricks out{std::vector<std::uint8_t>(count), std::vector<std::uint8_t>(count)};
+    parallel_for(
+        count,
+        [&](std::size_t b) {
+            const std::size_t first = b * BrickLattice::kNodes;
+            out.wholly[b] = true;
+            for (std::size_t i = first; i < first + BrickLattice::kNodes; ++i) {
+                out.wholly[b] &= thin[i] == fullest || medium.extinction[i] <= most;
+                out.in_part[b] |= thin[i] > 0.0f;
+            }
+        },
+        64);
+    return out;
+}
+
 }  // namespace
 
 ThinMedium::ThinMedium(const Medium& medium, const PointDepths& depths, const std::vector<std::uint8_t>& needed,
-                       const Viewer& viewer, float error)
+                       const Viewer& viewer, float error, const Occluders* surfaces)
     : viewer_(viewer) {
     const std::vector<float> thin = thinness(medium, depths, needed, viewer.eye, error);
     if (thin.empty())
         return;
-    find_even_bricks(medium, thin);
+    find_even_bricks(medium, thin, surfaces);
     look_outside(medium, depths, thin);
     weight_.resize(thin.size());
     nodes_.resize(thin.size());
@@ -80,27 +109,29 @@ ThinMedium::ThinMedium(const Medium& medium, const PointDepths& depths, const st
 }
 
 // Finds the bricks that contain no dense smoke and have none around them.
-void ThinMedium::find_even_bricks(const Medium& medium, const std::vector<float>& thin) {
+void ThinMedium::find_even_bricks(const Medium& medium, const std::vector<float>& thin, const Occluders* surfaces) {
     const BrickLattice& lattice = medium.lattice;
-    const float fullest = *std::max_element(thin.begin(), thin.end());
-    std::vector<std::uint8_t> wholly(lattice.brick_count());
-    parallel_for(
-        wholly.size(),
-        [&](std::size_t b) {
-            const std::size_t first = b * BrickLattice::kNodes;
-            wholly[b] = true;
-            for (std::size_t i = first; i < first + BrickLattice::kNodes; ++i)
-                wholly[b] &= thin[i] == fullest || medium.extinction[i] == 0.0f;
-        },
-        64);
+    const auto [wholly, in_part] = thin_bricks(medium, thin);
     homogeneous_bricks_ = HomogeneousBricks(lattice, medium.reference_node, wholly);
-    const float brick = BrickLattice::kSize * medium.spacing;
-    for (std::uint32_t b = 0; b < wholly.size(); ++b) {
-        const vec3 middle = medium.local_of_node(lattice.first_node(b) + BrickLattice::kSize / 2);
-        const bool slow = !viewer_.directional || glm::distance(viewer_.eye, middle) > kAroundCamera * brick;
-        if (slow && homogeneous_bricks_.at(lattice.brick(b) - (medium.reference_node >> 3)))
+    const float edge = BrickLattice::kSize * medium.spacing;
+    std::vector<std::optional<BrickPart>> smoke(lattice.brick_count());  // of even bricks
+    parallel_for(
+        smoke.size(),
+        [&, &in_part = in_part](std::size_t b) {
+            const vec3 middle = medium.local_of_node(lattice.first_node(b) + BrickLattice::kSize / 2);
+            const bool slow = !viewer_.directional || glm::distance(viewer_.eye, middle) > kAroundCamera * edge;
+            if (!in_part[b] || !slow || !homogeneous_bricks_.at(lattice.brick(b) - (medium.reference_node >> 3)))
+                return;
+            // Points beyond a wall would bring its other side's light to the smoke before it.
+            const bool beside = surfaces && surfaces->any_within(middle, kHalfDiagonal * edge);
+            smoke[b] = beside ? unparted_smoke(*surfaces, medium, b) : BrickPart{};
+        },
+        16);
+    for (std::uint32_t b = 0; b < smoke.size(); ++b)
+        if (smoke[b]) {
             even_.push_back(b);
-    }
+            even_smoke_.push_back(*smoke[b]);
+        }
 }
 
 void ThinMedium::look_outside(const Medium& medium, const PointDepths& depths, const std::vector<float>& thin) {
@@ -127,6 +158,12 @@ void ThinMedium::look_outside(const Medium& medium, const PointDepths& depths, c
         4);
 }
 
+std::vector<float> ThinMedium::rest() const {
+    std::vector<float> rest(weight_.size());
+    std::transform(weight_.begin(), weight_.end(), rest.begin(), [](float w) { return 1.0f - w; });
+    return rest;
+}
+
 std::size_t ThinMedium::node_count() const {
     return static_cast<std::size_t>(std::count(nodes_.begin(), nodes_.end(), std::uint8_t{1}));
 }
@@ -145,10 +182,11 @@ Gathered ThinMedium::gather(const LightField& field, const GridLevel& bottom, co
     if (of_thin)
         out.add(gather_at_nodes(*of_thin, single, costs, progress));
     Receivers receivers;
-    for (const std::uint32_t b : even_) {
+    for (std::size_t k = 0; k < even_.size(); ++k) {
         std::vector<vec3> points, directions;
         for (int p = 0; p < LightPoints::kCount; ++p) {
-            points.push_back(medium.local_of_node(medium.lattice.first_node(b) + LightPoints::node(p)));
+            const ivec3 node = glm::clamp(LightPoints::node(p), even_smoke_[k].low, even_smoke_[k].high);
+            points.push_back(medium.local_of_node(medium.lattice.first_node(even_[k]) + node));
             if (request.eye)
                 directions.push_back(direction_toward(*request.eye, points.back()));
         }

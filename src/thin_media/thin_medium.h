@@ -18,6 +18,7 @@
 #include "gathering/gather.h"
 #include "gathering/point_depths.h"
 #include "medium/lattice/homogeneous_bricks.h"
+#include "thin_media/smoke_in_brick.h"
 
 namespace brisance {
 
@@ -30,9 +31,10 @@ public:
         bool directional = false;
     };
     // Classifies the nodes `needed`. `error`: that the picture may have, relative. Nodes that could change the picture
-    // by less than half of it are not treated; the treatment fades in up to twice that.
+    // by less than half of it are not treated; the treatment fades in up to twice that. `surfaces`: that part light;
+    // null: none do.
     ThinMedium(const Medium& medium, const PointDepths& depths, const std::vector<std::uint8_t>& needed,
-               const Viewer& viewer, float error);
+               const Viewer& viewer, float error, const Occluders* surfaces = nullptr);
 
     bool empty() const { return weight_.empty(); }
     std::size_t node_count() const;   // nodes that are thin, wholly or in part
@@ -40,9 +42,10 @@ public:
     // Mean transmittance from thin nodes to the outside (gathering/escape_probability.h); below 0 for other nodes.
     const std::vector<float>& open() const { return open_; }
 
-    // Bricks that contain no dense smoke and have none around them, and are far from the camera.
+    // Bricks that contain no dense smoke and have none around them, are far from the camera, and are not parted by
+    // surfaces.
     const std::vector<std::uint32_t>& even_bricks() const { return even_; }
-    // The same bricks, whatever the distance from the camera.
+    // The same bricks, whatever the distance from the camera and from surfaces.
     const HomogeneousBricks& homogeneous_bricks() const { return homogeneous_bricks_; }
 
     // Light that arrives at thin nodes from the lights for exterior receivers; as gather_at_nodes(), unsharpened.
@@ -52,17 +55,20 @@ public:
     // Blends `of_thin` into `all` by weight; both planar over the nodes.
     void mix(const Gathered& of_thin, Gathered& all) const;
     const std::vector<std::uint8_t>& nodes() const { return nodes_; }
+    // Per node: the part of other light that mix() leaves; empty where there is no thin medium.
+    std::vector<float> rest() const;
 
 private:
-    void find_even_bricks(const Medium& medium, const std::vector<float>& thin);
+    void find_even_bricks(const Medium& medium, const std::vector<float>& thin, const Occluders* surfaces);
     void look_outside(const Medium& medium, const PointDepths& depths, const std::vector<float>& thin);
 
     Viewer viewer_;
     std::vector<float> weight_;  // per node: 1 in thin, 0 in dense smoke
     std::vector<float> open_;
-    std::vector<std::uint8_t> nodes_;   // with a weight above zero
-    std::vector<std::uint8_t> single_;  // those among them that gather themselves
-    std::vector<std::uint32_t> even_;   // bricks that gather at a few points
+    std::vector<std::uint8_t> nodes_;    // with a weight above zero
+    std::vector<std::uint8_t> single_;   // those among them that gather themselves
+    std::vector<std::uint32_t> even_;    // bricks that gather at a few points
+    std::vector<BrickPart> even_smoke_;  // of each of them: where these points lie
     HomogeneousBricks homogeneous_bricks_;
 };
 

@@ -1,6 +1,7 @@
 #include "thin_media/thin_medium_lights.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "thin_media/exterior_hierarchy.h"
 
@@ -11,13 +12,14 @@ namespace {
 // Largest optical depth across the finest lights; above it the light of their neighbourhood is more than a correction.
 constexpr float kMostAcross = 0.1f;
 
-bool thin_enough(const Medium& medium, const std::vector<std::uint32_t>& bricks) {
-    float most = 0.0f;
-    for (const std::uint32_t b : bricks) {
+std::vector<std::uint32_t> thin_enough(const Medium& medium, const std::vector<std::uint32_t>& bricks) {
+    const float most = kMostAcross / (medium.spacing * float(1 << kFinestThinLights));
+    std::vector<std::uint32_t> thin;
+    std::copy_if(bricks.begin(), bricks.end(), std::back_inserter(thin), [&](std::uint32_t b) {
         const auto first = medium.extinction.begin() + std::ptrdiff_t(b) * BrickLattice::kNodes;
-        most = std::max(most, *std::max_element(first, first + BrickLattice::kNodes));
-    }
-    return most * medium.spacing * float(1 << kFinestThinLights) <= kMostAcross;
+        return *std::max_element(first, first + BrickLattice::kNodes) <= most;
+    });
+    return thin;
 }
 
 // `width` values per node.
@@ -41,12 +43,12 @@ std::vector<T> take_bricks(const std::vector<std::uint32_t>& bricks, std::vector
 
 }  // namespace
 
-std::unique_ptr<ThinMediumLights> take_thin_medium_lights(const Medium& medium,
-                                                          const std::vector<std::uint32_t>& bricks,
+std::unique_ptr<ThinMediumLights> take_thin_medium_lights(const Medium& medium, const std::vector<std::uint32_t>& even,
                                                           HierarchyLights& from) {
     const int levels = static_cast<int>(from.grid.levels.size());
-    if (levels <= kFinestThinLights || !thin_enough(medium, bricks))
+    if (levels <= kFinestThinLights)
         return nullptr;
+    std::vector<std::uint32_t> bricks = thin_enough(medium, even);
     const bool dark = std::none_of(bricks.begin(), bricks.end(), [&](std::uint32_t b) {
         const auto first = from.weight.begin() + std::ptrdiff_t(b) * BrickLattice::kNodes;
         return std::any_of(first, first + BrickLattice::kNodes, [](float w) { return w > 0.0f; });
@@ -59,12 +61,13 @@ std::unique_ptr<ThinMediumLights> take_thin_medium_lights(const Medium& medium,
     thin->lights = build_hierarchy(medium, std::move(taken), levels);
     auto& grid = thin->lights.grid.levels;
     grid.erase(grid.begin(), grid.begin() + kFinestThinLights - 1);
+    thin->bricks = std::move(bricks);
     return thin;
 }
 
-void give_back(const ThinMediumLights& taken, const std::vector<std::uint32_t>& bricks, ScatteredLight& light) {
-    copy_bricks(bricks, taken.lights.light.intensity, light.intensity, 1);
-    copy_bricks(bricks, taken.lights.light.directional, light.directional, 24);
+void give_back(const ThinMediumLights& taken, ScatteredLight& light) {
+    copy_bricks(taken.bricks, taken.lights.light.intensity, light.intensity, 1);
+    copy_bricks(taken.bricks, taken.lights.light.directional, light.directional, 24);
 }
 
 }  // namespace brisance

@@ -20,18 +20,18 @@ namespace brisance {
 constexpr int kFinestThinLights = 2;
 
 struct ThinMediumLights {
+    std::vector<std::uint32_t> bricks;  // whose light it is
     HierarchyLights lights;
     LightField field;
     ShadowMapCache maps{{}, true};
 };
 
-// Moves the light of `bricks` out of `from`, which becomes the hierarchy of the remaining light. Returns null and
-// leaves `from` unchanged if the bricks send no light or are too dense.
-std::unique_ptr<ThinMediumLights> take_thin_medium_lights(const Medium& medium,
-                                                          const std::vector<std::uint32_t>& bricks,
+// Moves the light of those of the `even` bricks that are thin enough out of `from`, which becomes the hierarchy of the
+// remaining light. Returns null and leaves `from` unchanged if they send no light.
+std::unique_ptr<ThinMediumLights> take_thin_medium_lights(const Medium& medium, const std::vector<std::uint32_t>& even,
                                                           HierarchyLights& from);
 
 // Adds the light that was taken back to `light`.
-void give_back(const ThinMediumLights& taken, const std::vector<std::uint32_t>& bricks, ScatteredLight& light);
+void give_back(const ThinMediumLights& taken, ScatteredLight& light);
 
 }  // namespace brisance

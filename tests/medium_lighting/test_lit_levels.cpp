@@ -1,6 +1,7 @@
 // What the picture shows of the nodes of coarser lattices.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "fixtures/media.h"
@@ -29,7 +30,7 @@ TEST(LitLevels, LinesThroughNodesSeeTheSourceFunction) {
     const Medium medium = cube_of_smoke(1.5f);
     const ExtinctionPyramid pyramid(medium, ExtinctionPyramid::kMaxLevels);
     const vec3 eye(0.0f, -50.0f, 0.0f);
-    const std::vector<LitLevel> levels = make_lit_levels(pyramid, nodes_beside_extinction(medium), {eye, 1e-3f}, 1);
+    const std::vector<LitLevel> levels = make_lit_levels(pyramid, nodes_beside_extinction(medium), {}, {eye, 1e-3f}, 1);
     ASSERT_EQ(levels.size(), 1u);
     const LitLevel& level = levels.front();
     const std::vector<float> radiance =
@@ -55,12 +56,36 @@ TEST(LitLevels, LinesSeeTheMediumsEmission) {
     const ExtinctionPyramid pyramid(medium, ExtinctionPyramid::kMaxLevels);
     const vec3 eye(0.0f, 0.0f, 30.0f);
     const LitLevel level =
-        std::move(make_lit_levels(pyramid, nodes_beside_extinction(medium), {eye, 1e-3f}, 1).front());
+        std::move(make_lit_levels(pyramid, nodes_beside_extinction(medium), {}, {eye, 1e-3f}, 1).front());
     const std::vector<float> radiance =
         radiance_through_nodes(level, std::vector<float>(level.needed.size(), 0.0f), eye);
     const std::int64_t middle = level.medium.lattice.find_node(level.medium.reference_node);
     ASSERT_GE(middle, 0);
     EXPECT_NEAR(radiance[std::size_t(middle)] / (2.0f * -std::expm1(-1.5f * 49.0f * 0.05f)), 1.0f, 0.03f);
+}
+
+// Where other light replaces all of it, light at the nodes does not change the picture; where it leaves some at one
+// node, the coarser nodes around count in full.
+TEST(LitLevels, NodesWhoseLightIsReplacedDoNotCount) {
+    const Medium medium = cube_of_smoke(1.5f);
+    const ExtinctionPyramid pyramid(medium, ExtinctionPyramid::kMaxLevels);
+    const vec3 eye(0.0f, -50.0f, 0.0f);
+    const std::vector<std::uint8_t> needed = nodes_beside_extinction(medium);
+    std::vector<float> kept(needed.size(), 0.0f);
+    const ivec3 one = medium.reference_node + ivec3(4, -20, 6);
+    kept[std::size_t(medium.lattice.find_node(one))] = 1.0f;
+    const auto all = make_lit_levels(pyramid, needed, {}, {eye, 1e-3f}, 3);
+    const auto some = make_lit_levels(pyramid, needed, kept, {eye, 1e-3f}, 3);
+    for (std::size_t l = 0; l < all.size(); ++l) {
+        const int counted = int(std::count_if(some[l].importance.begin(), some[l].importance.end(),
+                                              [](float importance) { return importance > 0.0f; }));
+        EXPECT_GE(counted, 1) << l;
+        EXPECT_LE(counted, 8) << l;
+        for (std::size_t i = 0; i < some[l].importance.size(); ++i)
+            if (some[l].importance[i] > 0.0f) {
+                EXPECT_EQ(some[l].importance[i], all[l].importance[i]) << l;
+            }
+    }
 }
 
 }  // namespace

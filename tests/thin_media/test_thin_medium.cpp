@@ -20,7 +20,7 @@ using namespace testing;
 constexpr int kWidth = 32, kHeight = 24, kRadius = 12;
 
 // A ragged ball that burns inside, in a box of smoke `thin` times as dense.
-Medium burst_in_haze(float thin, float mean_cosine = 0.0f) {
+Medium burst_in_haze(float thin, float mean_cosine = 0.0f, float extinction = 30.0f) {
     Recipe recipe;
     recipe.box = cube(-28, 28);
     recipe.world_from_index = cubic(0.05);
@@ -30,7 +30,7 @@ Medium burst_in_haze(float thin, float mean_cosine = 0.0f) {
     };
     recipe.flame = [](const ivec3& n) { return ball(n, dvec3(0.0), kRadius - 3) * noise(n >> 1, 3); };
     recipe.settings = black_smoke();
-    recipe.settings.smoke.extinction_per_metre = 30.0f;
+    recipe.settings.smoke.extinction_per_metre = extinction;
     recipe.settings.smoke.albedo = Rgb(0.8f);
     recipe.settings.smoke.mean_cosine = mean_cosine;
     return make_medium(recipe);
@@ -134,6 +134,34 @@ TEST(ThinMedium, AsksAtFewerPointsThanItHasNodes) {
     const ThinMedium haze = Around(medium).haze(medium);
     EXPECT_GT(haze.node_count(), std::size_t{100000});
     EXPECT_LT(haze.point_count(), haze.node_count() / 2);
+}
+
+// Haze counts as such more or less, by how opaque the burst is that it sees. Its light changes slowly all the same.
+TEST(ThinMedium, AsksAtFewPointsWhereItsTreatmentFades) {
+    const Medium medium = burst_in_haze(0.002f, 0.0f, 8.0f);
+    const ThinMedium haze = Around(medium).haze(medium);
+    ASSERT_FALSE(haze.empty());
+    std::size_t fading = 0;
+    for (const float rest : haze.rest())
+        fading += rest > 0.02f && rest < 0.98f;
+    EXPECT_GT(fading, haze.node_count() / 2);
+    EXPECT_LT(haze.point_count(), haze.node_count() / 2);
+}
+
+// What mix() replaces and what it leaves are one.
+TEST(ThinMedium, LeavesTheRest) {
+    const Medium medium = burst_in_haze(0.002f);
+    const ThinMedium haze = Around(medium).haze(medium);
+    const std::size_t n = medium.lattice.node_count();
+    Gathered dark, light;
+    dark.resize(n, false, false);
+    light.resize(n, false, false);
+    std::fill(light.fluence.begin(), light.fluence.end(), 1.0f);
+    haze.mix(dark, light);
+    const std::vector<float> rest = haze.rest();
+    ASSERT_EQ(rest.size(), n);
+    for (std::size_t i = 0; i < n; ++i)
+        ASSERT_FLOAT_EQ(light.fluence[i], rest[i]) << i;
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ TEST(ThinMediumLights, AreGivenBack) {
     const auto taken = take_thin_medium_lights(medium, bricks, lights);
     ASSERT_TRUE(taken);
     EXPECT_NE(lights.light.intensity, before);
-    give_back(*taken, bricks, lights.light);
+    give_back(*taken, lights.light);
     EXPECT_EQ(lights.light.intensity, before);
 }
 
@@ -103,8 +103,31 @@ TEST(ThinMediumLights, AreNoneOfDenseSmoke) {
     const Medium medium = haze(10.0f);
     HierarchyLights lights = lit_haze(medium);
     const std::vector<Rgb> before = lights.light.intensity;
-    EXPECT_FALSE(take_thin_medium_lights(medium, all_bricks(medium), lights));
+    std::vector<std::uint32_t> dense = all_bricks(medium);
+    std::erase_if(dense,
+                  [&](std::uint32_t b) { return medium.extinction[b * std::size_t(BrickLattice::kNodes)] == 0.0f; });
+    ASSERT_FALSE(dense.empty());
+    EXPECT_FALSE(take_thin_medium_lights(medium, dense, lights));
     EXPECT_EQ(lights.light.intensity, before);
+}
+
+// One dense brick does not keep the others' light from having lights of its own.
+TEST(ThinMediumLights, AreOfTheThinBricksAlone) {
+    Recipe recipe;
+    recipe.box = cube(-32, 32);
+    recipe.world_from_index = cubic(0.05);
+    recipe.density = [](const ivec3& n) { return glm::all(glm::lessThan(glm::abs(n - 12), ivec3(3))) ? 100.0f : 1.0f; };
+    recipe.settings = black_smoke();
+    recipe.settings.smoke.extinction_per_metre = 0.1f;
+    const Medium medium = make_medium(recipe);
+    HierarchyLights lights = lit_haze(medium);
+    const auto taken = take_thin_medium_lights(medium, all_bricks(medium), lights);
+    ASSERT_TRUE(taken);
+    EXPECT_EQ(taken->bricks.size() + 1, medium.lattice.brick_count());
+    for (std::size_t i = 0; i < lights.light.intensity.size(); ++i)
+        if (medium.lattice.first_node(i / BrickLattice::kNodes) != medium.reference_node + 8) {
+            ASSERT_EQ(lights.light.intensity[i], Rgb(0.0f)) << i;
+        }
 }
 
 }  // namespace

@@ -82,6 +82,19 @@ void weigh_by_camera(LitLevel& level, const PointDepths& depths, const LightingC
         4096);
 }
 
+// Raises `kept` to the lattice twice as coarse. A node counts in full as soon as one that is interpolated from it does.
+void weigh_by_what_is_kept(const BrickLattice& fine, std::vector<float>& kept, LitLevel& level) {
+    constexpr float kLeastShare = 1.0f / 64.0f;  // of a node in the mean around the coarser one
+    BrickLattice lattice;
+    std::vector<float> coarse;
+    coarsen(fine, kept, 1, lattice, coarse);
+    for (std::size_t i = 0; i < coarse.size(); ++i) {
+        coarse[i] = std::min(1.0f, coarse[i] / kLeastShare);
+        level.importance[i] *= coarse[i];
+    }
+    kept = std::move(coarse);
+}
+
 // Averages the emission to the lattice twice as coarse, and makes it the source functions of a level.
 std::vector<float> coarser_emission(const BrickLattice& fine, std::vector<float>& emission,
                                     const std::vector<float>& extinction) {
@@ -164,11 +177,12 @@ std::vector<float> radiance_through_nodes(const LitLevel& level, const std::vect
 }
 
 std::vector<LitLevel> make_lit_levels(const ExtinctionPyramid& pyramid, const std::vector<std::uint8_t>& needed,
-                                      const LightingCamera& camera, int count) {
+                                      const std::vector<float>& kept, const LightingCamera& camera, int count) {
     std::vector<LitLevel> levels;
     const PointDepths depths(pyramid, kCameraRayLevel);
     const bool emits = pyramid.medium().emits();
     std::vector<float> emission = emits ? emission_luminance(pyramid.medium()) : std::vector<float>{};
+    std::vector<float> kept_above = kept;
     for (int l = 1; l <= std::min(count, pyramid.level_count() - 1); ++l) {
         LitLevel level;
         level.level = l;
@@ -177,6 +191,8 @@ std::vector<LitLevel> make_lit_levels(const ExtinctionPyramid& pyramid, const st
         level.needed = parents(pyramid.lattice(l - 1), l == 1 ? needed : levels.back().needed, lattice);
         assert(level.needed.size() == level.medium.lattice.node_count());
         weigh_by_camera(level, depths, camera);
+        if (!kept.empty())
+            weigh_by_what_is_kept(pyramid.lattice(l - 1), kept_above, level);
         if (emits)
             level.emitted = coarser_emission(pyramid.lattice(l - 1), emission, level.medium.extinction);
         levels.push_back(std::move(level));

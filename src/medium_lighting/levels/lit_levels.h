@@ -21,7 +21,7 @@ struct LitLevel {
     std::unique_ptr<ExtinctionPyramid> pyramid;  // of `medium`
     std::vector<std::uint8_t> needed;            // per node: whether finer nodes are interpolated from it
     // Per node: how much of a pixel's radiance a change of the source function there changes, transmittance to the
-    // camera times opacity times the part of a pixel that a voxel covers. In [0, 1].
+    // camera times opacity times the part of a pixel that a voxel covers, as far as the light is kept. In [0, 1].
     std::vector<float> importance;
     // Per node: transmittance to the camera times opacity times solid angle, to average over what is seen [sr].
     std::vector<float> visible;
@@ -29,9 +29,10 @@ struct LitLevel {
     std::vector<float> emitted;
 };
 
-// Levels 1 to `count`, fewer where the pyramid has fewer. `needed`: nodes of the medium where light is needed;
+// Levels 1 to `count`, fewer where the pyramid has fewer. `needed`: nodes of the medium where light is needed; `kept`:
+// the part of it, in [0, 1], that no other light will replace there; empty: all.
 std::vector<LitLevel> make_lit_levels(const ExtinctionPyramid& pyramid, const std::vector<std::uint8_t>& needed,
-                                      const LightingCamera& camera, int count);
+                                      const std::vector<float>& kept, const LightingCamera& camera, int count);
 
 // Per node, 0 where it is not needed: the radiance along the line from the eye through the node to the far end of the
 // medium, luminance [W/(m^2 sr)]. `scattered`: source function of scattered light per node, luminance.

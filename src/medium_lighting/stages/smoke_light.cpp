@@ -79,8 +79,7 @@ public:
 private:
     // Lights of thin media apart from the rest.
     AdaptiveLight gather_unbalanced(HierarchyLights& lights, std::vector<LevelCost>& costs) {
-        const std::vector<std::uint32_t>& thin_bricks = lattice_.thin_medium().even_bricks();
-        const auto thin = take_thin_medium_lights(lattice_.medium(), thin_bricks, lights);
+        const auto thin = take_thin_medium_lights(lattice_.medium(), lattice_.thin_medium().even_bricks(), lights);
         const MediumLightingInput& input = lattice_.input();
         AdaptiveLight light = gather_adaptively(
             lattice_, false, LevelLights(lattice_, lights, input.scattering.alpha, costs, progress_), detail_);
@@ -91,7 +90,7 @@ private:
         Gathered more = gather_at_nodes(of_thin, lattice_.last_request(), costs, progress_);
         prepare_interpolation(lattice_.medium().lattice, lattice_.needed(), more);
         light.light.add(more);
-        give_back(*thin, thin_bricks, lights.light);
+        give_back(*thin, lights.light);
         return light;
     }
 
