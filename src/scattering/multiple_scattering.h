@@ -39,6 +39,7 @@ struct ScatteringCosts {
     double operator_seconds = 0.0;  // escape probabilities and balance factors
     double series_seconds = 0.0;
     std::vector<LevelCost> levels;         // of the first bounce
+    std::optional<CascadeCounts> cascades;  // none: the solver is another
     std::optional<BounceBalance> balance;  // of all flights together; none: not measured
     int bounces = 0;                       // computed one by one
     double tail_ratio = 0.0;               // of successive bounces' power at the end, the largest of the colours'
