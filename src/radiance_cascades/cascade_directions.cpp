@@ -7,6 +7,9 @@ namespace brisance {
 
 namespace {
 
+// Below this part of a moment, texels are too wide to know it: those of 2 x 2 directions know no z^2.
+constexpr double kLeastKept = 1e-3;
+
 // A square texel of the map by its middle.
 struct Texel {
     double u, v;
@@ -67,6 +70,14 @@ CascadeDirections::CascadeDirections(int side, const std::vector<bool>& divided)
         }
         add();
     }
+    // Even light has no moments, whatever the quadrature makes of them.
+    for (int m = 0; m < kShMoments; ++m) {
+        double even = 0.0;
+        for (const Basis& b : mean_)
+            even += b[m] / double(mean_.size());
+        for (Basis& b : mean_)
+            b[m] -= static_cast<float>(even);
+    }
     std::array<double, kShMoments> kept{};
     for (const Basis& b : mean_)
         for (int m = 0; m < kShMoments; ++m)
@@ -74,7 +85,7 @@ CascadeDirections::CascadeDirections(int side, const std::vector<bool>& divided)
     moment_ = mean_;
     for (Basis& b : moment_)
         for (int m = 0; m < kShMoments; ++m)
-            b[m] = kept[m] > 0.0 ? static_cast<float>(b[m] / kept[m]) : 0.0f;
+            b[m] = kept[m] > kLeastKept ? static_cast<float>(b[m] / kept[m]) : 0.0f;
 }
 
 }  // namespace brisance

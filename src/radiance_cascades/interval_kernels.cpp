@@ -15,8 +15,6 @@ namespace brisance {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr std::uint8_t kUnhidden = 255;
-
 // The four values at each probe's sample, interleaved. All probes' samples lie alike between their nodes, so that the
 // eight weights are the same for all.
 HWY_INLINE void sample_probes(const IntervalMarch& m, int sample, float* HWY_RESTRICT values) {

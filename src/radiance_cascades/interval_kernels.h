@@ -6,6 +6,7 @@
 namespace brisance {
 
 constexpr int kProbesAtOnce = 64;
+constexpr std::uint8_t kUnhidden = 255;  // no surface on the way
 
 // What a medium gives along an interval: radiance toward the probe and transmittance, planar.
 struct Intervals {
@@ -23,7 +24,7 @@ struct IntervalMarch {
     float first[3], step[3];       // from a probe to the first sample, and between samples, in nodes
     int samples;                   // in the middle of segments of equal length
     float length;                  // of a segment [m]
-    const std::uint8_t* unhidden;  // per probe: samples before a surface, 255: there is none; null: nowhere any
+    const std::uint8_t* unhidden;  // per probe: samples before a surface, or kUnhidden; null: no surfaces
 };
 
 // Samples source function and extinction trilinearly; each segment is integrated exactly as if they were constant:

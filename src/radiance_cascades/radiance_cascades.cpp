@@ -84,11 +84,12 @@ private:
                    (origin + to) * cascade_.stride + ivec3(glm::floor(high)) + 1);
     }
 
-    // Marches the same segment from all probes of a class. Without extinction on its way, nothing happens.
+    // Marches the same segment from all probes of a class. Without extinction on its way, nothing happens. A segment that
+    // leads to a probe beside the ray counts as long as the ray's: on average over the probes around, it is longer.
     void march(const FieldBlock& block, Task& task, const ProbeClass& c, const Segment& s, bool occluded, bool make,
                std::size_t& cursor, Intervals& out) const {
         const vec3 way = s.end - s.begin;
-        const float nodes = glm::length(way), length = glm::length(local_from_index_ * way);
+        const float nodes = glm::length(way);
         const int samples = std::clamp(static_cast<int>(std::ceil(nodes / kLongestStep)), 1, 250);
         const vec3 step = way / float(samples), first = s.begin + 0.5f * step;
         const int count = static_cast<int>(c.nodes.size());
@@ -104,7 +105,7 @@ private:
         const std::uint8_t* unhidden = nullptr;
         if (occluded) {
             if (make)
-                look_for_surfaces(task, c, s, samples, length);
+                look_for_surfaces(task, c, s, samples);
             unhidden = task.unhidden.data() + cursor;
             cursor += count;
         }
@@ -117,31 +118,54 @@ private:
                          {first.x, first.y, first.z},
                          {step.x, step.y, step.z},
                          empty ? 0 : samples,
-                         length / float(samples),
+                         (cascade_.end - cascade_.begin) / float(samples),
                          unhidden},
                         out);
     }
 
+    // Adds the next cascade's light from one corner, seen through the interval, to `sum`, and its weights to `seen`.
+    // `unhidden`: per probe, 0 where a surface stands between the ends of the ray and of the corner's; null: nowhere.
+    void add_corner(const ProbeClass& c, int d, int corner, const Intervals& intervals, const std::uint8_t* unhidden,
+                    Rgb* sum, float* seen) const {
+        const int directions = all_.directions_->count(index_);
+        for (int p = 0; p < c.count; ++p) {
+            if (unhidden && unhidden[p] == 0)
+                continue;
+            const std::size_t row = std::size_t(c.following[corner][p]) * directions + d;
+            sum[p] += intervals.transmittance[p] * Rgb(far_[row * 3], far_[row * 3 + 1], far_[row * 3 + 2]);
+            seen[p] += 1.0f;
+        }
+    }
+
     void merge_class(const FieldBlock& block, Task& task, const ProbeClass& c, int d, bool occluded, bool make,
                      std::size_t& cursor) const {
-        Rgb sum[kProbesAtOnce] = {};
+        Rgb sum[kProbesAtOnce] = {}, far[kProbesAtOnce] = {};
+        float seen[kProbesAtOnce] = {};
         Intervals intervals;
-        const int corners = last_ ? 1 : corner_count(c.axes);
         const bool meets = !last_ && all_.settings_.meets_probes;
-        for (int k = 0; k < corners; ++k) {
-            if (k == 0 || meets)
-                march(block, task, c, segment(d, meets ? corner_offset(c.axes, k) : ivec3(0)), occluded, make, cursor,
-                      intervals);
-            const float weight = 1.0f / float(corners);
-            for (int p = 0; p < c.count; ++p) {
-                Rgb light(intervals.red[p], intervals.green[p], intervals.blue[p]);
-                if (!last_) {
-                    const std::size_t row = std::size_t(c.following[k][p]) * all_.directions_->count(index_) + d;
-                    light += intervals.transmittance[p] * Rgb(far_[row * 3], far_[row * 3 + 1], far_[row * 3 + 2]);
-                }
-                sum[p] += weight * light;
+        const int corners = last_ ? 0 : corner_count(c.axes), marches = meets ? corners : 1;
+        for (int k = 0; k < std::max(corners, 1); ++k) {
+            const Segment to_corner = segment(d, corner_offset(c.axes, k));
+            if (k < marches) {
+                march(block, task, c, meets ? to_corner : segment(d, ivec3(0)), occluded, make, cursor, intervals);
+                for (int p = 0; p < c.count; ++p)
+                    sum[p] += Rgb(intervals.red[p], intervals.green[p], intervals.blue[p]) / float(marches);
             }
+            if (k >= corners)
+                continue;
+            const std::uint8_t* unhidden = nullptr;
+            if (occluded && !meets && c.axes != 0) {
+                if (make)
+                    look_for_surfaces(task, c, {segment(d, ivec3(0)).end, to_corner.end}, 0);
+                unhidden = task.unhidden.data() + cursor;
+                cursor += c.nodes.size();
+            }
+            add_corner(c, d, k, intervals, unhidden, far, seen);
         }
+        // Corners behind a surface leave their weight to the others.
+        for (int p = 0; p < c.count; ++p)
+            if (seen[p] > 0.0f)
+                sum[p] += far[p] / seen[p];
         if (index_ == 0)
             add_to_nodes(task, c, d, sum);
         else
@@ -190,18 +214,19 @@ private:
         return all_.pyramid_.occluders()->any_within(middle, radius + cascade_.end + 2.0f * diagonal);
     }
 
-    // Appends what the surfaces leave of each probe's interval.
-    void look_for_surfaces(Task& task, const ProbeClass& c, const Segment& s, int samples, float length) const {
+    // Appends how many of the samples along a segment from each probe lie before a surface, or kUnhidden.
+    void look_for_surfaces(Task& task, const ProbeClass& c, const Segment& s, int samples) const {
         const Medium& medium = all_.pyramid_.medium();
         const ivec3 origin = cascade_.probes.lattice.first_node(task.brick);
         const vec3 begin = local_from_index_ * s.begin, way = local_from_index_ * (s.end - s.begin);
+        const float length = glm::length(way);
         for (const int n : c.nodes) {
             const vec3 probe = medium.local_of_node((origin + BrickLattice::node_in_brick(n)) * (1 << index_));
             const float hit =
                 length > 0.0f ? all_.pyramid_.occluders()->first_hit(probe + begin, way / length, length) : length;
-            const float open = hit / length * float(samples);
-            task.unhidden.push_back(hit < length ? static_cast<std::uint8_t>(std::clamp(open + 0.5f, 0.0f, 254.0f))
-                                                 : std::uint8_t{255});
+            task.unhidden.push_back(
+                hit < length ? static_cast<std::uint8_t>(std::min(hit / length * float(samples) + 0.5f, 254.0f))
+                             : kUnhidden);
         }
     }
 
@@ -252,8 +277,10 @@ void RadianceCascades::add_cascade(std::vector<std::uint8_t> needed, BrickLattic
     const int i = static_cast<int>(cascades_.size());
     const float unit = settings_.near * pyramid_.medium().spacing;
     const int level = std::clamp(i - settings_.finer, 0, pyramid_.level_count() - 1);
-    cascades_.push_back({CascadeProbes(std::move(lattice), needed), unit * (float(1 << i) - 1.0f),
-                         unit * (float(2 << i) - 1.0f), level, 1 << (i - level), {}});
+    // Only a single cascade can reach much farther than the medium does.
+    const float end = std::min(unit * (float(2 << i) - 1.0f), 2.0f * local_bounds(pyramid_.medium()).diagonal() + (i > 0 ? unit : 0.0f));
+    cascades_.push_back({CascadeProbes(std::move(lattice), needed), unit * (float(1 << i) - 1.0f), end, level,
+                         1 << (i - level), {}});
 }
 
 void RadianceCascades::add_tasks(Cascade& cascade, int index) const {

@@ -9,9 +9,12 @@
 // light arriving at a node is the sum of L_0 over its directions.
 //
 // What differs from the source: the world is a medium, so that intervals hold a source function and an extinction that
-// are marched, and probes lie on its lattice, only around its extinction. Coarser cascades march coarser averages of
-// the medium, whose voxels all cascades see under the same angle: directions stop dividing where they resolve them.
-// Intervals end where those that continue them begin (settings.h), which moves their samples with q.
+// are marched, and probes lie on its lattice, only around its extinction. Coarser cascades march coarser averages of the
+// medium, whose voxels all cascades see under the same angle: directions stop dividing where they resolve them.
+// Surfaces cut intervals, and a probe q behind a surface leaves its weight to the others.
+//
+// Known error: the interval of q begins beside the end of that of p, by up to a spacing of the probes per axis. Longer
+// first intervals make the angle of this parallax smaller (settings.h).
 #pragma once
 
 #include <memory>
