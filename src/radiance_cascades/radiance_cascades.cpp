@@ -84,8 +84,9 @@ private:
                    (origin + to) * cascade_.stride + ivec3(glm::floor(high)) + 1);
     }
 
-    // Marches the same segment from all probes of a class. Without extinction on its way, nothing happens. A segment that
-    // leads to a probe beside the ray counts as long as the ray's: on average over the probes around, it is longer.
+    // Marches the same segment from all probes of a class. Without extinction on its way, nothing happens. A segment
+    // that leads to a probe beside the ray counts as long as the ray's: on average over the probes around, it is
+    // longer.
     void march(const FieldBlock& block, Task& task, const ProbeClass& c, const Segment& s, bool occluded, bool make,
                std::size_t& cursor, Intervals& out) const {
         const vec3 way = s.end - s.begin;
@@ -207,9 +208,8 @@ private:
         float radius = 0.0f;
         for (int k = 0; k < 8; ++k)
             radius = std::max(
-                radius, glm::distance(middle, medium.local_of_node(
-                                                  first + ((BrickLattice::kSize - 1) << index_) *
-                                                              ivec3(k & 1, k >> 1 & 1, k >> 2 & 1))));
+                radius, glm::distance(middle, medium.local_of_node(first + ((BrickLattice::kSize - 1) << index_) *
+                                                                               ivec3(k & 1, k >> 1 & 1, k >> 2 & 1))));
         const float diagonal = glm::length(medium.local_from_index * vec3(spacing));
         return all_.pyramid_.occluders()->any_within(middle, radius + cascade_.end + 2.0f * diagonal);
     }
@@ -278,9 +278,10 @@ void RadianceCascades::add_cascade(std::vector<std::uint8_t> needed, BrickLattic
     const float unit = settings_.near * pyramid_.medium().spacing;
     const int level = std::clamp(i - settings_.finer, 0, pyramid_.level_count() - 1);
     // Only a single cascade can reach much farther than the medium does.
-    const float end = std::min(unit * (float(2 << i) - 1.0f), 2.0f * local_bounds(pyramid_.medium()).diagonal() + (i > 0 ? unit : 0.0f));
-    cascades_.push_back({CascadeProbes(std::move(lattice), needed), unit * (float(1 << i) - 1.0f), end, level,
-                         1 << (i - level), {}});
+    const float end = std::min(unit * (float(2 << i) - 1.0f),
+                               2.0f * local_bounds(pyramid_.medium()).diagonal() + (i > 0 ? unit : 0.0f));
+    cascades_.push_back(
+        {CascadeProbes(std::move(lattice), needed), unit * (float(1 << i) - 1.0f), end, level, 1 << (i - level), {}});
 }
 
 void RadianceCascades::add_tasks(Cascade& cascade, int index) const {

@@ -9,8 +9,8 @@
 // light arriving at a node is the sum of L_0 over its directions.
 //
 // What differs from the source: the world is a medium, so that intervals hold a source function and an extinction that
-// are marched, and probes lie on its lattice, only around its extinction. Coarser cascades march coarser averages of the
-// medium, whose voxels all cascades see under the same angle: directions stop dividing where they resolve them.
+// are marched, and probes lie on its lattice, only around its extinction. Coarser cascades march coarser averages of
+// the medium, whose voxels all cascades see under the same angle: directions stop dividing where they resolve them.
 // Surfaces cut intervals, and a probe q behind a surface leaves its weight to the others.
 //
 // Known error: the interval of q begins beside the end of that of p, by up to a spacing of the probes per axis. Longer
@@ -38,13 +38,14 @@ struct CascadeCounts {
 
 class RadianceCascades {
 public:
-    // Light is wanted at the pyramid's nodes with `needed`. Keeps a reference to the pyramid, whose surfaces stop light.
+    // Light is wanted at the pyramid's nodes with `needed`. Keeps a reference to the pyramid, whose surfaces stop
+    // light.
     RadianceCascades(const ExtinctionPyramid& pyramid, const std::vector<std::uint8_t>& needed,
                      const CascadeSettings& settings);
 
     // Light from a source function at the pyramid's nodes [W/(m^2 sr)]: interleaved colours, or 27 values of which the
-    // last 24 are the degrees 1 and 2 of the light that leaves (sh.h, channel 3 m + c). Fluence at the needed nodes, and
-    // with 27 values moments.
+    // last 24 are the degrees 1 and 2 of the light that leaves (sh.h, channel 3 m + c). Fluence at the needed nodes,
+    // and with 27 values moments.
     Gathered gather(std::span<const float> source, int channels);
 
     const CascadeCounts& counts() const { return counts_; }
@@ -59,9 +60,9 @@ private:
     };
     struct Cascade {
         CascadeProbes probes;
-        float begin, end;  // [m]
-        int level;         // of the pyramid, for the march
-        int stride;        // nodes of that level from probe to probe
+        float begin, end;                      // [m]
+        int level;                             // of the pyramid, for the march
+        int stride;                            // nodes of that level from probe to probe
         std::vector<std::vector<Task>> tasks;  // per group of directions with one field
     };
     struct Level {  // of the pyramid

@@ -205,9 +205,9 @@ std::vector<float> CoarseOperator::source_of(const Gathered& arriving) const {
             if (!mask_[i])
                 return;
             for (int c = 0; c < channels; ++c) {
-                const float light = c < 3 ? arriving.fluence[c * n + i] / (4.0f * kPi)
-                                          : arriving.moments[(c - 3) * n + i] *
-                                                sh_phase_factor(c / 3 - 1, medium_.mean_cosine);
+                const float light =
+                    c < 3 ? arriving.fluence[c * n + i] / (4.0f * kPi)
+                          : arriving.moments[(c - 3) * n + i] * sh_phase_factor(c / 3 - 1, medium_.mean_cosine);
                 source[i * channels + c] = medium_.albedo_at(i)[c % 3] * light;
             }
         },

@@ -12,10 +12,10 @@ namespace brisance {
 
 // Light leaving the nodes of a lattice after a scattering.
 struct ScatteredLight {
-    std::vector<Rgb> intensity;                                // mean over directions [W/sr]
-    std::vector<float> directional;                            // degrees 1 and 2, 24 per node (sh.h); empty: isotropic
-    // What the intensity is the projection of, per extinction: 3 values per node, or 27, interleaved [W/(m^2 sr)]. Empty
-    // where nobody asks for it.
+    std::vector<Rgb> intensity;      // mean over directions [W/sr]
+    std::vector<float> directional;  // degrees 1 and 2, 24 per node (sh.h); empty: isotropic
+    // What the intensity is the projection of, per extinction: 3 values per node, or 27, interleaved [W/(m^2 sr)].
+    // Empty where nobody asks for it.
     std::vector<float> source = {};
     void add(const ScatteredLight& other, const Rgb& factor);  // a factor per colour
     // sharpen_lights; the directional part keeps its proportion to the mean at every node.

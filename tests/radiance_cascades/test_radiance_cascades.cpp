@@ -153,8 +153,8 @@ TEST(RadianceCascades, LongerFirstIntervalsHaveLessParallax) {
             settings.meets_probes = meets;
             settings.near = float(1 << k);
             errors[meets][k] = difference(lump.lit, by_cascades(lump.lit, lump.source, settings), truth);
-            std::printf("first intervals of %g spacings, %s: error %.4f\n", settings.near, meets ? "skewed" : "straight",
-                        errors[meets][k]);
+            std::printf("first intervals of %g spacings, %s: error %.4f\n", settings.near,
+                        meets ? "skewed" : "straight", errors[meets][k]);
         }
     for (const auto& e : errors) {
         EXPECT_LT(e[1], 0.7 * e[0]);
@@ -197,7 +197,8 @@ TEST(RadianceCascades, WhatIsFarAndThinChangesNothing) {
         r.box.high.x = 150;
         r.density = [=](const ivec3& n) { return n.x > 146 && n.y == 0 && n.z == 0 ? grain : density(n); };
         const Lit lit(make_medium(r));
-        const Gathered g = by_cascades(lit, source_of(lit.medium, [](const ivec3& n) { return Rgb(n.x < 20 ? 1.0f : 0.0f); }));
+        const Gathered g =
+            by_cascades(lit, source_of(lit.medium, [](const ivec3& n) { return Rgb(n.x < 20 ? 1.0f : 0.0f); }));
         std::vector<float> at;
         for (int x = -8; x <= 8; ++x)
             at.push_back(g.fluence[lit.medium.lattice.find_node({x, 1, -2})]);
@@ -257,8 +258,7 @@ struct Wall : Occluders {
 
 TEST(RadianceCascades, WallsStopLight) {
     Lit lit(make_medium(glowing_ball(10, 1.0f)));
-    const auto source =
-        source_of(lit.medium, [](const ivec3& n) { return Rgb(ball(n, dvec3(6, 0, 0), 2.0)); });
+    const auto source = source_of(lit.medium, [](const ivec3& n) { return Rgb(ball(n, dvec3(6, 0, 0), 2.0)); });
     const Gathered open = by_cascades(lit, source);
     const Wall wall(0.05f);
     lit.pyramid.set_occluders(&wall);

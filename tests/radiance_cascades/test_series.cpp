@@ -85,11 +85,10 @@ TEST_P(SeriesByCascades, LosesAsMuchAsPathsDo) {
     const double emitted = emitted_power(fire.lit.medium).x;
     for (const bool balance : {true, false}) {
         ScatteringCosts costs;
-        const double scattered =
-            4.0 * kPi64 * total(fire.solved(by_cascades(), costs, balance).front().intensity).x;
+        const double scattered = 4.0 * kPi64 * total(fire.solved(by_cascades(), costs, balance).front().intensity).x;
         const double escaped = 1.0 - scattered * (1.0 - albedo) / albedo / emitted;
-        std::printf("radius %g albedo %g g %g, %s: escaped %.4f, by paths %.4f +- %.4f, %d bounces\n", radius, albedo, g,
-                    balance ? "balanced" : "as gathered", escaped, paths.mean[0], paths.error[0], costs.bounces);
+        std::printf("radius %g albedo %g g %g, %s: escaped %.4f, by paths %.4f +- %.4f, %d bounces\n", radius, albedo,
+                    g, balance ? "balanced" : "as gathered", escaped, paths.mean[0], paths.error[0], costs.bounces);
         EXPECT_NEAR(escaped, paths.mean[0], kSigmas * paths.error[0] + (balance ? 0.006 : 0.03));
     }
 }
