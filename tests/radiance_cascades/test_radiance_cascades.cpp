@@ -107,12 +107,12 @@ struct Lump {
 // A source function of 1 gives 4 pi (1 - escape), by Kirchhoff's law and reciprocity; rays say what escapes.
 TEST(RadianceCascades, IsothermalSmokeIsAsBrightAsItCollides) {
     for (const float radius : {0.5f, 2.0f, 8.0f}) {
-        const Lit lit(make_medium(glowing_ball(8, radius)));
+        const Lit lit(make_medium(glowing_ball(10, radius)));
         const Errors e =
             errors_against_rays(lit, by_cascades(lit, source_of(lit.medium, [](const ivec3&) { return Rgb(1.0f); })));
         std::printf("optical radius %g: mean error %+.4f, root mean square %.4f\n", radius, e.mean, e.root_mean_square);
-        EXPECT_NEAR(e.mean, 0.0, 0.015) << radius;
-        EXPECT_LT(e.root_mean_square, 0.025) << radius;
+        EXPECT_NEAR(e.mean, 0.0, 0.012) << radius;
+        EXPECT_LT(e.root_mean_square, 0.02) << radius;
     }
 }
 
@@ -265,15 +265,15 @@ TEST(RadianceCascades, WallsStopLight) {
     RadianceCascades cascades(lit.pyramid, smoke_nodes(lit.medium), {});
     const Gathered closed = cascades.gather(source, 3);
     EXPECT_TRUE(same_bits(closed, cascades.gather(source, 3))) << "the second time walls are remembered";
-    double leak = 0.0, behind = 0.0;
+    double leak = 0.0, behind = 0.0, change = 0.0;
     for (std::size_t i = 0; i < lit.medium.extinction.size(); ++i) {
         const ivec3 n = lit.medium.lattice.node(i);
         if (n.x < 0)
             leak += closed.fluence[i], behind += open.fluence[i];
-        if (n.x > 3 && lit.medium.extinction[i] > 0.0f) {
-            EXPECT_NEAR(closed.fluence[i] / open.fluence[i], 1.0f, 1e-3f);
-        }
+        if (n.x > 3 && lit.medium.extinction[i] > 0.0f)
+            change = std::max(change, std::abs(double(closed.fluence[i]) / open.fluence[i] - 1.0));
     }
+    EXPECT_LT(change, 0.005) << "before the wall";
     std::printf("behind the wall: %.4f of the light without it\n", leak / behind);
     // Coarser averages of the medium know no wall; without any, all of it would be there.
     EXPECT_LT(leak / behind, 0.06);
