@@ -36,6 +36,8 @@ void ScatteredLight::add(const ScatteredLight& other, const Rgb& factor) {
         intensity[i] += factor * other.intensity[i];
     for (std::size_t i = 0; i < directional.size(); ++i)
         directional[i] += factor[int(i % 3)] * other.directional[i];
+    for (std::size_t i = 0; i < source.size(); ++i)
+        source[i] += factor[int(i % 3)] * other.source[i];
 }
 
 void ScatteredLight::sharpen(const BrickLattice& lattice) {
@@ -76,8 +78,9 @@ ScatteredLight scattered_light(const Medium& medium, const Gathered& arriving, c
     return light;
 }
 
-CoarseOperator::CoarseOperator(const ExtinctionPyramid& fine, int level, const LightingSettings& lighting, float alpha)
-    : level_(level), medium_(coarse_medium(fine, level)), lighting_(lighting), alpha_(alpha) {
+CoarseOperator::CoarseOperator(const ExtinctionPyramid& fine, int level, const LightingSettings& lighting,
+                               const ScatteringSettings& scattering)
+    : level_(level), medium_(coarse_medium(fine, level)), lighting_(lighting), alpha_(scattering.alpha) {
     pyramid_ = std::make_unique<ExtinctionPyramid>(medium_, ExtinctionPyramid::kMaxLevels);
     pyramid_->set_occluders(fine.occluders());
     unit_ = project_extinction_times(medium_, std::vector<Rgb>(medium_.extinction.size(), Rgb(1.0f)));
@@ -91,7 +94,13 @@ CoarseOperator::CoarseOperator(const ExtinctionPyramid& fine, int level, const L
     sharpen_lights(medium_.lattice, unit_);
     for (std::size_t i = 0; i < unit_.size(); ++i)
         weight_[i] = unit_[i].x;
-    grid_ = build_lighting_grid(medium_, unit_, &weight_, automatic_levels(medium_));
+    if (scattering.solver == ScatteringSolver::RadianceCascades) {
+        CascadeSettings settings;
+        settings.side = scattering.cascade_side;
+        cascades_ = std::make_unique<RadianceCascades>(*pyramid_, mask_, settings);
+    } else {
+        grid_ = build_lighting_grid(medium_, unit_, &weight_, automatic_levels(medium_));
+    }
     factor_.assign(weight_.size(), 1.0f);
     if (lighting_.energy_balance)
         balance_nodes(fine);
@@ -102,7 +111,7 @@ std::uint64_t CoarseOperator::bytes() const {
         medium_.bytes() + pyramid_->bytes() + grid_.bytes() + weight_.size() * 13 + collision_.size() * 4;
     for (const auto& m : maps_.levels)
         sum += m.maps.size() * 2;
-    return sum;
+    return sum + (cascades_ ? cascades_->bytes() : 0);
 }
 
 void CoarseOperator::balance_nodes(const ExtinctionPyramid& fine) {
@@ -125,6 +134,9 @@ void CoarseOperator::balance_nodes(const ExtinctionPyramid& fine) {
     Progress silent;
     ScatteredLight unit;
     unit.intensity = unit_;
+    if (cascades_)
+        for (const std::uint8_t m : mask_)
+            unit.source.insert(unit.source.end(), 3, m ? 1.0f : 0.0f);
     for (int sweep = 0; sweep < kBalanceSweeps; ++sweep) {
         const Gathered gathered = gather(unit, costs, silent);
         for (std::size_t i : nodes) {
@@ -137,6 +149,18 @@ void CoarseOperator::balance_nodes(const ExtinctionPyramid& fine) {
 }
 
 Gathered CoarseOperator::gather(const ScatteredLight& lights, std::vector<LevelCost>& costs, Progress& progress) {
+    Gathered out = cascades_ ? gather_by_cascades(lights) : gather_from_hierarchy(lights, costs, progress);
+    const std::size_t n = factor_.size();
+    for (auto* f : {&out.fluence, &out.moments})
+        parallel_for(f->size() / n, [&](std::size_t plane) {
+            for (std::size_t i = 0; i < n; ++i)
+                (*f)[plane * n + i] *= mask_[i] ? factor_[i] : 0.0f;
+        });
+    return out;
+}
+
+Gathered CoarseOperator::gather_from_hierarchy(const ScatteredLight& lights, std::vector<LevelCost>& costs,
+                                               Progress& progress) {
     ScatteredLight scaled = lights;
     for (std::size_t i = 0; i < factor_.size(); ++i) {
         scaled.intensity[i] *= factor_[i];
@@ -160,13 +184,35 @@ Gathered CoarseOperator::gather(const ScatteredLight& lights, std::vector<LevelC
     Gathered out = gather_at_nodes(field, request, these, progress);
     if (costs.empty())
         costs = these;
-    const std::size_t n = factor_.size();
-    for (auto* f : {&out.fluence, &out.moments})
-        parallel_for(f->size() / n, [&](std::size_t plane) {
-            for (std::size_t i = 0; i < n; ++i)
-                (*f)[plane * n + i] *= mask_[i] ? factor_[i] : 0.0f;
-        });
     return out;
+}
+
+Gathered CoarseOperator::gather_by_cascades(const ScatteredLight& lights) {
+    const int channels = lights.directional.empty() ? 3 : 27;
+    std::vector<float> source = lights.source;
+    for (std::size_t i = 0; i < source.size(); ++i)
+        source[i] *= factor_[i / channels];
+    return cascades_->gather(source, channels);
+}
+
+std::vector<float> CoarseOperator::source_of(const Gathered& arriving) const {
+    const std::size_t n = mask_.size();
+    const int channels = arriving.moments.empty() ? 3 : 27;
+    std::vector<float> source(n * channels, 0.0f);
+    parallel_for(
+        n,
+        [&](std::size_t i) {
+            if (!mask_[i])
+                return;
+            for (int c = 0; c < channels; ++c) {
+                const float light =
+                    c < 3 ? arriving.fluence[c * n + i] / (4.0f * kPi)
+                          : arriving.moments[(c - 3) * n + i] * sh_phase_factor(c / 3 - 1, medium_.mean_cosine);
+                source[i * channels + c] = medium_.albedo_at(i)[c % 3] * light;
+            }
+        },
+        4096);
+    return source;
 }
 
 ScatteredLight restricted(const ScatteredLight& fine, const BrickLattice& fine_lattice, int levels) {
@@ -179,6 +225,14 @@ ScatteredLight restricted(const ScatteredLight& fine, const BrickLattice& fine_l
 
 ScatteredLight CoarseOperator::restricted(const ScatteredLight& fine, const BrickLattice& fine_lattice) const {
     ScatteredLight coarse = brisance::restricted(fine, fine_lattice, level_);
+    if (cascades_) {
+        const int channels = coarse.directional.empty() ? 3 : 27;
+        coarse.source.assign(mask_.size() * channels, 0.0f);
+        for (std::size_t i = 0; i < mask_.size(); ++i)
+            for (int c = 0; c < channels && mask_[i]; ++c)
+                coarse.source[i * channels + c] =
+                    (c < 3 ? coarse.intensity[i][c] : coarse.directional[i * 24 + c - 3]) * kEmptied / least_weight_[i];
+    }
     coarse.sharpen(medium_.lattice);
     return coarse;
 }
@@ -210,6 +264,8 @@ ScatteredLight CoarseOperator::bounce(const ScatteredLight& lights, FlightPower&
     }
     ScatteredLight next = scattered_light(medium_, arriving, mask_);
     next.sharpen(medium_.lattice);
+    if (cascades_)
+        next.source = source_of(arriving);
     return next;
 }
 
@@ -230,8 +286,12 @@ ScatteredLight CoarseOperator::spread_to_fine(const ScatteredLight& coarse, cons
                 sampler.at(fine.lattice.first_node(b) + BrickLattice::node_in_brick(k), [&](std::size_t q, float w) {
                     if (!mask_[q])
                         return;
-                    const float per_mass = w / std::max(weight_[q], least_weight_[q]);
                     mass += w;
+                    for (int c = 0; c < channels && !coarse.source.empty(); ++c)
+                        sum[c] += w * coarse.source[q * channels + c];
+                    if (!coarse.source.empty())
+                        return;
+                    const float per_mass = w / std::max(weight_[q], least_weight_[q]);
                     for (int c = 0; c < 3; ++c)
                         sum[c] += per_mass * coarse.intensity[q][c];
                     for (int c = 0; c < channels - 3; ++c)

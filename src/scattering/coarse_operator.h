@@ -5,13 +5,18 @@
 #include <vector>
 
 #include "gathering/gather.h"
+#include "radiance_cascades/radiance_cascades.h"
+#include "scattering/settings.h"
 
 namespace brisance {
 
 // Light leaving the nodes of a lattice after a scattering.
 struct ScatteredLight {
-    std::vector<Rgb> intensity;                                // mean over directions [W/sr]
-    std::vector<float> directional;                            // degrees 1 and 2, 24 per node (sh.h); empty: isotropic
+    std::vector<Rgb> intensity;      // mean over directions [W/sr]
+    std::vector<float> directional;  // degrees 1 and 2, 24 per node (sh.h); empty: isotropic
+    // What the intensity is the projection of, per extinction: 3 values per node, or 27, interleaved [W/(m^2 sr)].
+    // Empty where nobody asks for it.
+    std::vector<float> source = {};
     void add(const ScatteredLight& other, const Rgb& factor);  // a factor per colour
     // sharpen_lights; the directional part keeps its proportion to the mean at every node.
     void sharpen(const BrickLattice& lattice);
@@ -32,10 +37,12 @@ struct FlightPower {
 
 class CoarseOperator {
 public:
-    CoarseOperator(const ExtinctionPyramid& fine, int level, const LightingSettings& lighting, float alpha);
+    CoarseOperator(const ExtinctionPyramid& fine, int level, const LightingSettings& lighting,
+                   const ScatteringSettings& scattering);
 
     std::size_t active_nodes() const { return active_; }
     std::uint64_t bytes() const;
+    const RadianceCascades* cascades() const { return cascades_.get(); }  // null: the solver is another
 
     // Lights of the fine lattice splatted to the coarse nodes.
     ScatteredLight restricted(const ScatteredLight& fine, const BrickLattice& fine_lattice) const;
@@ -49,7 +56,11 @@ public:
     ScatteredLight spread_to_fine(const ScatteredLight& coarse, const Medium& fine) const;
 
 private:
+    // Light at the nodes, with the balance factors.
     Gathered gather(const ScatteredLight& lights, std::vector<LevelCost>& costs, Progress& progress);
+    Gathered gather_from_hierarchy(const ScatteredLight& scaled, std::vector<LevelCost>& costs, Progress& progress);
+    Gathered gather_by_cascades(const ScatteredLight& lights);
+    std::vector<float> source_of(const Gathered& arriving) const;
     void balance_nodes(const ExtinctionPyramid& fine);
     dvec3 expected_collisions(const ScatteredLight& lights) const;  // power over 4 pi
 
@@ -68,6 +79,7 @@ private:
     std::vector<float> factor_;        // D
     LightingGrid grid_;
     ShadowMapCache maps_;
+    std::unique_ptr<RadianceCascades> cascades_;
 };
 
 }  // namespace brisance

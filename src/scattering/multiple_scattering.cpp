@@ -114,9 +114,11 @@ std::vector<ScatteredLight> solve_series(const ScatteringInput& input, const Sca
     const ExtinctionPyramid& pyramid = *input.pyramid;
     const Medium& medium = pyramid.medium();
     Stopwatch watch;
-    CoarseOperator op(pyramid, level, input.lighting, input.settings.alpha);
+    CoarseOperator op(pyramid, level, input.lighting, input.settings);
     costs.lattice_level = level;
     costs.coarse_nodes = op.active_nodes();
+    if (op.cascades())
+        costs.cascades = op.cascades()->counts();
     costs.operator_seconds = watch.seconds();
 
     watch = Stopwatch();

@@ -38,12 +38,13 @@ struct ScatteringCosts {
     std::size_t coarse_nodes = 0;   // of lattice_level
     double operator_seconds = 0.0;  // escape probabilities and balance factors
     double series_seconds = 0.0;
-    std::vector<LevelCost> levels;         // of the first bounce
-    std::optional<BounceBalance> balance;  // of all flights together; none: not measured
-    int bounces = 0;                       // computed one by one
-    double tail_ratio = 0.0;               // of successive bounces' power at the end, the largest of the colours'
-    double tail_share = 0.0;               // of the scattered power that the extrapolated tail makes up
-    double remainder = 0.0;                // estimated share still missing
+    std::vector<LevelCost> levels;          // of the first bounce
+    std::optional<CascadeCounts> cascades;  // none: the solver is another
+    std::optional<BounceBalance> balance;   // of all flights together; none: not measured
+    int bounces = 0;                        // computed one by one
+    double tail_ratio = 0.0;                // of successive bounces' power at the end, the largest of the colours'
+    double tail_share = 0.0;                // of the scattered power that the extrapolated tail makes up
+    double remainder = 0.0;                 // estimated share still missing
     std::uint64_t bytes = 0;
 };
 

@@ -112,6 +112,15 @@ TEST(Methods, OfLampsHaveALadderOfTheirNumbers) {
     EXPECT_FALSE(owns(methods[0], "V"));
 }
 
+TEST(Methods, OfCascadesHaveALadderOfTheirDirections) {
+    const std::vector<Method> methods = parse({"radiance_cascades", "few=radiance_cascades"}, {"few:2,3"});
+    EXPECT_EQ(labels(methods[0]), (Strings{"4 x 4 directions", "8 x 8 directions", "16 x 16 directions"}));
+    EXPECT_EQ(methods[1].steps[1].settings, (Strings{"scattering.cascade_side=3"}));
+    EXPECT_HAS(joined(methods[0].settings), "scattering.solver=radiance_cascades");
+    EXPECT_TRUE(owns(methods[0], "MM"));
+    EXPECT_FALSE(owns(methods[0], "MV"));
+}
+
 TEST(Methods, ThatFilterNoiseTakePathsButAreBiased) {
     const std::vector<Method> methods = parse({"path_filtered", "path", "p=path,tracing.denoising_radius=2", "q=path"},
                                               {"4,8"}, {"q:tracing.denoising_radius=0,3"});
@@ -201,8 +210,11 @@ TEST(Runs, OfBaselinesAreTheirsAlone) {
     Shot base = fire_shot();
     base.lighting.clusters = 7;
     base.tracing.denoising_radius = 9;
+    base.scattering.solver = ScatteringSolver::RadianceCascades;
     const std::vector<PlannedMethod> planned =
-        plan_runs(base, parse({"lighting_grid", "path", "fire_clusters", "path_filtered"}));
+        plan_runs(base, parse({"lighting_grid", "path", "fire_clusters", "path_filtered", "radiance_cascades"}));
+    EXPECT_EQ(planned[0].runs[0].shot.scattering.solver, ScatteringSolver::Hierarchy);
+    EXPECT_EQ(planned[4].runs[0].shot.scattering.solver, ScatteringSolver::RadianceCascades);
     EXPECT_EQ(planned[0].runs[0].shot.lighting.clusters, 0);
     EXPECT_EQ(planned[1].runs[0].shot.tracing.denoising_radius, 0);
     EXPECT_EQ(planned[2].runs[1].shot.lighting.clusters, 16);

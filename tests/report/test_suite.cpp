@@ -64,7 +64,9 @@ TEST(SuiteMethods, HaveTheBudgetsOfTheSuite) {
     ASSERT_EQ(methods[2].steps.size(), 3u);
     EXPECT_EQ(methods[2].steps.back().settings.back(), "camera.samples_per_axis=4");
     EXPECT_THROW(suite_size("middling"), Error);
-    const std::vector<Method> baselines = suite_methods(suite_size("full"), {"fire_clusters", "path_filtered"});
+    const std::vector<Method> baselines =
+        suite_methods(suite_size("full"), {"fire_clusters", "path_filtered", "radiance_cascades"});
+    EXPECT_EQ(baselines[2].steps.size(), 3u);
     EXPECT_EQ(baselines[0].steps.back().label, "256 lamps");
     EXPECT_EQ(baselines[1].steps.back().label, "256 spp");
 }

@@ -58,7 +58,7 @@ TEST(BounceBalance, ASeriesConservesEnergy) {
     for (const float mean_cosine : {0.0f, 0.5f})
         for (const int level : {0, 1}) {
             const Lit lit = lit_ball(kDepth, mean_cosine);
-            CoarseOperator op(lit.pyramid, level, LightingSettings{}, 1.5f);
+            CoarseOperator op(lit.pyramid, level, LightingSettings{}, ScatteringSettings{});
             const BounceBalance b = balance_of_series(lit, op, level, 1.0f);
             print("nothing lost", b);
             EXPECT_LE(b.escaped_error, 0.001) << "not sampled enough";
@@ -69,7 +69,7 @@ TEST(BounceBalance, ASeriesConservesEnergy) {
 // Two per cent of the light that is scattered, which is about 0.6 of what is emitted.
 TEST(BounceBalance, ALossOfTwoPerCentShows) {
     const Lit lit = lit_ball(kDepth, 0.0f);
-    CoarseOperator op(lit.pyramid, 1, LightingSettings{}, 1.5f);
+    CoarseOperator op(lit.pyramid, 1, LightingSettings{}, ScatteringSettings{});
     const BounceBalance b = balance_of_series(lit, op, 1, 0.98f);
     print("2 % lost", b);
     EXPECT_LT(b.sum() + kSigmas * b.escaped_error, 1.0 - 0.003);
@@ -79,7 +79,7 @@ TEST(BounceBalance, ALossOfTwoPerCentShows) {
 // collisions as the operator takes the smoke for thinner, its own books still balance; the rays' do not.
 TEST(BounceBalance, AWrongTableShows) {
     const Lit lit = lit_ball(kDepth, 0.0f), thinner = lit_ball(0.95f * kDepth, 0.0f);
-    CoarseOperator op(thinner.pyramid, 1, LightingSettings{}, 1.5f);
+    CoarseOperator op(thinner.pyramid, 1, LightingSettings{}, ScatteringSettings{});
     const BounceBalance b = balance_of_series(lit, op, 1, 1.0f);
     print("table of thinner smoke", b);
     EXPECT_LT(b.sum() + kSigmas * b.escaped_error, 1.0 - 0.003);
@@ -88,7 +88,7 @@ TEST(BounceBalance, AWrongTableShows) {
 TEST(BounceBalance, EscapeFromABallIsAsTabulated) {
     const Lit lit(make_medium(glowing_ball(16, kDepth)));
     for (const int level : {0, 2}) {
-        CoarseOperator op(lit.pyramid, level, LightingSettings{}, 1.5f);
+        CoarseOperator op(lit.pyramid, level, LightingSettings{}, ScatteringSettings{});
         const ScatteredLight lights = op.restricted({lit.intensity, {}}, lit.medium.lattice);
         const EscapeMeasurement e = measure_escape(lit.pyramid, level, lights, kRays, 7);
         EXPECT_EQ(e.rays, kRays);

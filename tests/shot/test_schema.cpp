@@ -92,6 +92,8 @@ std::vector<Shot> unusual_shots() {
                                              "scattering.bounces=0",
                                              "scattering.lattice_level=0",
                                              "scattering.escape=0.3",
+                                             "scattering.solver=radiance_cascades",
+                                             "scattering.cascade_side=4",
                                              "output.exposure_stops=0",
                                              "output.layers.bounces=true",
                                              "output.frames_per_second=23.976"};

@@ -154,7 +154,8 @@ void add_report_options(CLI::App& command, ReportOptions& options) {
     command
         .add_option("--budgets", options.methods.budgets,
                     "Paths per pixel of the path methods: 4,16,64,256; of one method alone: path:16,64; steps 1 to 4, "
-                    "from coarse to fine, of the other one: lighting_grid:2,3; lamps: fire_clusters:4,64")
+                    "from coarse to fine, of the other one: lighting_grid:2,3; lamps: fire_clusters:4,64; directions: "
+                    "radiance_cascades:4,8")
         ->type_name("[METHOD:]LIST ...")
         ->excludes(suite);
     command

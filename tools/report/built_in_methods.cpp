@@ -50,7 +50,11 @@ std::vector<BuiltIn> make_built_ins() {
          kAllCells,
          true},
         {"path_filtered", {"method=path", "tracing.denoising_radius=5"}, StepsOf::Paths, kAllCells},
-        {"fire_clusters", {"method=lighting_grid", "scattering.method=lighting_grid"}, StepsOf::Lamps, kCellsOfLamps}};
+        {"fire_clusters", {"method=lighting_grid", "scattering.method=lighting_grid"}, StepsOf::Lamps, kCellsOfLamps},
+        {"radiance_cascades",
+         {"method=lighting_grid", "scattering.method=lighting_grid", "scattering.solver=radiance_cascades"},
+         StepsOf::Directions,
+         kCellsOfScatteringMethods}};
     add_scattering_methods(methods);
     return methods;
 }

@@ -19,7 +19,7 @@ namespace brisance {
 namespace {
 
 // The step alone says when a run stops, cells are what is compared, and pictures of lights would cost time. Lamps in
-// the place of the fire and filtered noise are methods of their own.
+// the place of the fire, other solvers of scattering and filtered noise are methods of their own.
 void complete(const Shot& shot, std::vector<std::string>& settings) {
     if (sets(settings, "tracing.samples") && shot.tracing.seconds > 0.0 && !sets(settings, "tracing.seconds"))
         settings.push_back("tracing.seconds=none");
@@ -27,6 +27,8 @@ void complete(const Shot& shot, std::vector<std::string>& settings) {
         settings.push_back("tracing.error=none");
     if (shot.lighting.clusters > 0 && !sets(settings, "lighting.clusters"))
         settings.push_back("lighting.clusters=0");
+    if (shot.scattering.solver != ScatteringSolver::Hierarchy && !sets(settings, "scattering.solver"))
+        settings.push_back("scattering.solver=hierarchy");
     if (shot.tracing.denoising_radius > 0 && !sets(settings, "tracing.denoising_radius"))
         settings.push_back("tracing.denoising_radius=0");
     if (!shot.output.cell_layers)

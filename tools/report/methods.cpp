@@ -26,6 +26,7 @@ const std::vector<Settings>& grid_ladder() {
 }
 
 const std::vector<std::string> kNumbersOfLamps = {"4", "16", "64", "256"};
+const std::vector<std::string> kSidesOfCascades = {"4", "8", "16"};
 const std::vector<std::string> kPathBudgets = {"4", "16", "64", "256"};
 const std::vector<std::string> kSidesOfSamples = {"1", "2", "4", "8"};
 
@@ -166,6 +167,13 @@ std::vector<MethodStep> lamp_steps(const std::vector<std::string>& numbers) {
     return steps;
 }
 
+std::vector<MethodStep> direction_steps(const std::vector<std::string>& sides) {
+    std::vector<MethodStep> steps(sides.size());
+    for (std::size_t i = 0; i < sides.size(); ++i)
+        steps[i] = {fmt::format("{0} x {0} directions", sides[i]), {"scattering.cascade_side=" + sides[i]}};
+    return steps;
+}
+
 bool stops(const Settings& settings) {
     return sets(settings, "tracing.samples") || sets(settings, "tracing.seconds") || sets(settings, "tracing.error");
 }
@@ -261,6 +269,8 @@ std::vector<MethodStep> built_in_steps(const std::optional<std::vector<std::stri
             return sample_steps(budgets.value_or(kSidesOfSamples));
         case StepsOf::Lamps:
             return lamp_steps(budgets.value_or(kNumbersOfLamps));
+        case StepsOf::Directions:
+            return direction_steps(budgets.value_or(kSidesOfCascades));
         case StepsOf::Grid:
             break;
     }

@@ -30,6 +30,11 @@ std::vector<ScatteredLight> orders_of_scattering(const LitLattice& lattice, cons
                      {"tail_share", costs.tail_share},
                      {"estimated_remainder", costs.remainder}};
     series.detail["levels"] = level_table(costs.levels);
+    if (costs.cascades)
+        series.detail["radiance_cascades"] = {{"cascades", costs.cascades->cascades},
+                                              {"probes", costs.cascades->probes},
+                                              {"intervals", costs.cascades->intervals},
+                                              {"directions_of_coarsest", costs.cascades->directions}};
     if (costs.balance)
         series.detail["balance"].push_back(
             balance_row(*costs.balance, "1-" + std::to_string(costs.balance->last_order)));

@@ -61,6 +61,18 @@ void add_lighting_keys(std::vector<Key>& keys) {
         "probability that scattered light leaves the smoke without another collision, by which scattering.method=auto "
         "and the light of lamps on smoke choose; auto: measured",
         or_word(real_float({0.0, 1.0}), "auto", -1.0f), [](Shot & s) -> auto& { return s.scattering.escape; }));
+    keys.push_back(make_key(
+        "scattering.solver",
+        "what makes the bounces above one: hierarchy: lights with shadow maps, radiance_cascades: probes that look "
+        "ahead "
+        "by intervals",
+        choice<ScatteringSolver>(
+            {{"hierarchy", ScatteringSolver::Hierarchy}, {"radiance_cascades", ScatteringSolver::RadianceCascades}}),
+        [](Shot & s) -> auto& { return s.scattering.solver; }));
+    keys.push_back(make_key(
+        "scattering.cascade_side",
+        "with radiance_cascades: directions of the finest probes, n * n; coarser ones have up to 4 times as many each",
+        whole(2, 32), [](Shot & s) -> auto& { return s.scattering.cascade_side; }));
     add_scattering_method_keys(keys);
 }
 

@@ -34,6 +34,8 @@ std::string budget_of(const SuiteSize& size, const Method& method) {
             return size.grid_steps;
         case StepsOf::Lamps:
             return size.lamps;
+        case StepsOf::Directions:
+            return size.cascade_sides;
         case StepsOf::Samples:
             break;
     }
@@ -57,6 +59,7 @@ const std::vector<SuiteSize>& suite_sizes() {
          64,
          "4,16",
          "1,2",
+         "4",
          "4,64",
          "1",
          {"camera.edge_refinement=1", "lighting.lattice_level=3", "lighting.error=0.1", "lighting.alpha=1",
@@ -72,6 +75,7 @@ const std::vector<SuiteSize>& suite_sizes() {
          4096,
          "4,16,64,256",
          "1,2,3,4",
+         "4,8,16",
          "4,16,64,256",
          "1,2,4",
          {},
