@@ -96,8 +96,9 @@ TEST(MeanEscape, ChangesLittleWithTheDensityAndNotWithThreads) {
         const Medium medium = make_medium(ball_of(8, std::pow(1.05f, float(k))));
         const double escape = mean_escape(medium);
         EXPECT_LT(escape, before);
-        if (k > 0)
+        if (k > 0) {
             EXPECT_GT(escape, before - 0.03);  // 5 % of the density change the logarithm by as much at most
+        }
         before = escape;
         const ThreadLimit limit(1);
         EXPECT_EQ(mean_escape(medium), escape);

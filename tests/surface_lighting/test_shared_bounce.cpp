@@ -113,8 +113,9 @@ TEST(SharedBounce, StaysSharpBesideOtherSurfaces) {
     });
     const std::vector<Rgb> pixels = shared.take_pixels();
     for (std::size_t p = 0; p < pixels.size(); ++p)
-        if (const int from_edge = std::abs(int(p % kWidth) - kWidth / 2); from_edge > 3)
+        if (const int from_edge = std::abs(int(p % kWidth) - kWidth / 2); from_edge > 3) {
             EXPECT_NEAR(pixels[p].x, p % kWidth >= kWidth / 2 ? 1.0f : 0.0f, 1e-5f) << p;
+        }
 }
 
 // A camera that lies in the wall has pixels without size.
@@ -211,8 +212,9 @@ TEST(SharedBounce, GivesNoFartherThanItsOwnLightIsSmooth) {
     });
     const std::vector<Rgb> pixels = shared.take_pixels();
     for (std::size_t p = 0; p < pixels.size(); ++p)
-        if (p % kWidth < kWidth / 2 - 8)
+        if (p % kWidth < kWidth / 2 - 8) {
             EXPECT_LT(pixels[p].x, 0.02f) << p;
+        }
 }
 
 // Consistent: with more rays of a pixel the blur of an edge of light gets narrower.

@@ -194,7 +194,7 @@ LoadedShot load_shot_and_look(const std::string& input, const ShotOptions& optio
         return load_file(input, options, look, progress);
     if (!look.empty())
         throw Error(ExitCode::Usage, input + ": a look is for volumes; a glTF file has none");
-    return {shot_of_scene(input, options), std::nullopt};
+    return {shot_of_scene(input, options), std::nullopt, {}};
 }
 
 Shot load_shot(const std::string& input, const ShotOptions& options, Progress& progress) {

@@ -63,7 +63,7 @@ void add_lighting_keys(std::vector<Key>& keys) {
         or_word(real_float({0.0, 1.0}), "auto", -1.0f), [](Shot & s) -> auto& { return s.scattering.escape; }));
     keys.push_back(make_key(
         "scattering.solver",
-        "what makes the bounces above one: hierarchy: lights with shadow maps, radiance_cascades: probes that look "
+        "what makes the bounces above one: hierarchy: lights with shadow maps; radiance_cascades: probes that look "
         "ahead "
         "by intervals",
         choice<ScatteringSolver>(
