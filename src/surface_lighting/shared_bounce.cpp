@@ -34,6 +34,11 @@ float square(float x) {
     return x * x;
 }
 
+// What a normal may turn by, for a lobe of that width: a reflection turns twice as far.
+float turned(float lobe) {
+    return lobe < 1.0f ? 0.5f * lobe : lobe;
+}
+
 }  // namespace
 
 SharedBounce::SharedBounce(int width, int height, double radius, int rays)
@@ -104,7 +109,7 @@ void SharedBounce::for_neighbours(std::size_t pixel, const Patch& patch, float r
                                   const Take& take) const {
     const int x = int(pixel % std::size_t(width_)), y = int(pixel / std::size_t(width_));
     const int reach = std::min(kReach, int(radius / (patch.pixel_size * float(step))) + 1);
-    const float inverse = 1.0f / radius, least_facing = 1.0f - kOtherNormal * square(patch.lobe);
+    const float inverse = 1.0f / radius, least_facing = 1.0f - kOtherNormal * square(turned(patch.lobe));
     for (int dy = -reach; dy <= reach; ++dy)
         for (int dx = -reach; dx <= reach; ++dx) {
             const int u = x + dx * step, v = y + dy * step;

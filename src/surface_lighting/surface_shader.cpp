@@ -21,9 +21,12 @@ bool has_specular(const SurfaceMaterial& m) {
     return needs_energy_tables(m);
 }
 
-// The width of the glossy lobes of a surface as rough as can be, over that of a base: less, so that pixels keep them
-// apart.
-constexpr float kWidestGloss = 0.7f;
+// Half the angle [rad] in which a glossy lobe reflects is about twice the width of its microfacet slopes. It stays below a
+// base's, so that pixels keep them apart.
+float width_of_gloss(float roughness) {
+    constexpr float kWidest = 0.7f;
+    return std::min(kWidest, 2.0f * roughness * roughness);
+}
 
 // Glossy lobes reflect at grazing angles what the colour of their metal does not hold: light is divided by no less.
 constexpr float kLeastColour = 0.04f;
@@ -220,8 +223,7 @@ Rgb SurfaceShader::from_virtual_lights(const SurfaceSample& sample, const PathVe
         return input_.virtual_lights->shade(PathVertex(point, others, at.seen.arriving), rng, shading(at));
     const Rgb colour =
         glm::max(glm::mix(Rgb(1.0f), point.material.base_colour, point.material.metallic), Rgb(kLeastColour));
-    at.gloss = shared_sample(sample, others, colour, kWidestGloss * point.material.roughness * point.material.roughness,
-                             rng, at);
+    at.gloss = shared_sample(sample, others, colour, width_of_gloss(point.material.roughness), rng, at);
     return Rgb(0.0f);
 }
 
