@@ -39,7 +39,7 @@ std::vector<MethodPreset> PhotonDensityMethod::presets() {
 
 MadeInScattering PhotonDensityMethod::make(const InScatteringRequest& request, const Settings& settings) {
     auto photons = std::make_unique<PhotonDensity>(
-        request.scene, settings_of_pass(settings, request.pass, request.first_radius), request.bounces);
+        request.scene, settings_of_pass(settings, request.pass, request.first_radius), request.bounces, request.eye);
     const PhotonDensityReport& r = photons->report();
     MadeInScattering made{nullptr, photons->bytes(), {}, r.radius};
     made.detail = {{"particles", r.paths},

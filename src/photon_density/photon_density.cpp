@@ -70,14 +70,14 @@ PhotonDensitySettings settings_of_pass(PhotonDensitySettings settings, int pass,
     return settings;
 }
 
-PhotonDensity::PhotonDensity(const DirectLight& scene, const PhotonDensitySettings& settings, int bounces)
+PhotonDensity::PhotonDensity(const DirectLight& scene, const PhotonDensitySettings& settings, int bounces, const dvec3& eye)
     : InScattering(settings.seed),
       scene_(scene),
       settings_(settings),
       longest_(longest_piece(scene.field())),
-      photon_map_(store(trace_photons(scene, settings, std::max(longest_, settings.radius), bounces, report_))) {}
+      photon_map_(store(trace_photons(scene, settings, std::max(longest_, settings.radius), bounces, report_), eye)) {}
 
-std::vector<SurfacePhoton> PhotonDensity::store(TracedPhotons photons) {
+std::vector<SurfacePhoton> PhotonDensity::store(TracedPhotons photons, const dvec3& eye) {
     report_.radius = settings_.radius;
     if (settings_.radius == kAutomaticBlur)
         report_.radius =
@@ -85,7 +85,8 @@ std::vector<SurfacePhoton> PhotonDensity::store(TracedPhotons photons) {
     if (settings_.estimator == DensityEstimator::BeamBeam)
         beams_ = PhotonBeams(photons.flights, radius(), longest_);
     else
-        points_ = PhotonPoints(scene_.field(), photons.flights, radius());
+        points_ = PhotonPoints(scene_.field(), photons.flights, radius(),
+                               settings_.estimator == DensityEstimator::PointBeam, eye);
     report_.stored = points_.size() + beams_.size();
     report_.surface_photons = photons.landed.size();
     return std::move(photons.landed);

@@ -25,8 +25,9 @@ struct PhotonDensityReport : FlightReport {
 
 class PhotonDensity : public InScattering {
 public:
-    // Traces the photons. Keeps a reference to the scene. `bounces`: the most scatterings, -1: no limit.
-    PhotonDensity(const DirectLight& scene, const PhotonDensitySettings& settings, int bounces);
+    // Traces the photons. Keeps a reference to the scene. `bounces`: the most scatterings, -1: no limit;
+    // `eye`: local [m], from which most rays come.
+    PhotonDensity(const DirectLight& scene, const PhotonDensitySettings& settings, int bounces, const dvec3& eye);
 
     Rgb along_ray(const RayMedium& seen, Rng& rng, SelectionCost* cost = nullptr) const override;
     Rgb at_surface(const SurfacePoint& point, const ReceiverLobes& lobes, const dvec3& toward_viewer, Rng& rng,
@@ -37,7 +38,7 @@ public:
     std::uint64_t bytes() const { return points_.bytes() + beams_.bytes() + photon_map_.bytes(); }
 
 private:
-    std::vector<SurfacePhoton> store(TracedPhotons photons);
+    std::vector<SurfacePhoton> store(TracedPhotons photons, const dvec3& eye);
 
     const DirectLight& scene_;
     PhotonDensitySettings settings_;
