@@ -1,5 +1,5 @@
-// The kernel of Epanechnikov, Non-Parametric Estimation of a Multivariate Probability Density, 1969: 1 - x^2 / r^2 up to
-// the radius r. Of all kernels it has the least mean squared error, and unlike a constant it leaves no edges in a
+// The kernel of Epanechnikov, Non-Parametric Estimation of a Multivariate Probability Density, 1969: 1 - x^2 / r^2 up
+// to the radius r. Of all kernels it has the least mean squared error, and unlike a constant it leaves no edges in a
 // picture. Along every axis its second moment is r^2 / (4 + dimensions).
 #pragma once
 

@@ -16,15 +16,17 @@ std::vector<SettingKey<PhotonDensitySettings>> PhotonDensityMethod::keys() {
                     &S::estimator),
         setting_key("paths", "particles that are followed through smoke and surfaces, in each pass",
                     whole(1, 1000000000), &S::paths),
-        setting_key("radius",
-                    "of the blur in the smoke in the first pass [m]; auto: from the smoke and how many photons it holds",
-                    or_word(real(above(0.0)), "auto", kAutomaticBlur), &S::radius),
+        setting_key(
+            "radius",
+            "of the blur in the smoke in the first pass [m]; auto: from the smoke and how many photons it holds",
+            or_word(real(above(0.0)), "auto", kAutomaticBlur), &S::radius),
         setting_key("passes", "whole pictures that are averaged, each by photons of its own and with less blur",
                     whole(1, 65536), &S::passes),
-        setting_key("alpha",
-                    "the radius shrinks from pass to pass, its power of the blur's dimensions by (i + alpha) / (i + 1): "
-                    "small values lose the blur sooner, 1 keeps it; auto: noise and bias fall alike",
-                    or_word(real({0.0, 1.0, true, false}), "auto", kFastestAlpha), &S::alpha),
+        setting_key(
+            "alpha",
+            "the radius shrinks from pass to pass, its power of the blur's dimensions by (i + alpha) / (i + 1): "
+            "small values lose the blur sooner, 1 keeps it; auto: noise and bias fall alike",
+            or_word(real({0.0, 1.0, true, false}), "auto", kFastestAlpha), &S::alpha),
         setting_key("neighbours",
                     "photons around a point of a surface that estimate the light arriving there, in the first pass",
                     whole(1, 65536), &S::neighbours),
@@ -42,12 +44,9 @@ MadeInScattering PhotonDensityMethod::make(const InScatteringRequest& request, c
         request.scene, settings_of_pass(settings, request.pass, request.first_radius), request.bounces, request.eye);
     const PhotonDensityReport& r = photons->report();
     MadeInScattering made{nullptr, photons->bytes(), {}, r.radius};
-    made.detail = {{"particles", r.paths},
-                   {"flights", r.flights},
-                   {"stored", r.stored},
-                   {"surface_photons", r.surface_photons},
-                   {"not_finite", r.not_finite},
-                   {"last_radius", r.radius}};
+    made.detail = {{"particles", r.paths},       {"flights", r.flights},
+                   {"stored", r.stored},         {"surface_photons", r.surface_photons},
+                   {"not_finite", r.not_finite}, {"last_radius", r.radius}};
     made.estimator = std::move(photons);
     return made;
 }

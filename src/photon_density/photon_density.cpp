@@ -40,12 +40,12 @@ double automatic_radius(DensityEstimator estimator, const std::vector<PhotonFlig
     const double seen = depth > 0.0 ? width * (-std::expm1(-depth) / depth) : width;
     constexpr double kPi = std::numbers::pi;
     switch (estimator) {
-    case DensityEstimator::PointPoint:
-        return std::cbrt(kAroundPoint * 3.0 * volume / (4.0 * kPi * std::max(points, 1.0)));
-    case DensityEstimator::PointBeam:
-        return std::sqrt(kAroundRay * volume / (kPi * seen * std::max(points, 1.0)));
-    case DensityEstimator::BeamBeam:
-        break;
+        case DensityEstimator::PointPoint:
+            return std::cbrt(kAroundPoint * 3.0 * volume / (4.0 * kPi * std::max(points, 1.0)));
+        case DensityEstimator::PointBeam:
+            return std::sqrt(kAroundRay * volume / (kPi * seen * std::max(points, 1.0)));
+        case DensityEstimator::BeamBeam:
+            break;
     }
     return kAroundRay * volume / (0.5 * kPi * seen * length);
 }
@@ -70,7 +70,8 @@ PhotonDensitySettings settings_of_pass(PhotonDensitySettings settings, int pass,
     return settings;
 }
 
-PhotonDensity::PhotonDensity(const DirectLight& scene, const PhotonDensitySettings& settings, int bounces, const dvec3& eye)
+PhotonDensity::PhotonDensity(const DirectLight& scene, const PhotonDensitySettings& settings, int bounces,
+                             const dvec3& eye)
     : InScattering(settings.seed),
       scene_(scene),
       settings_(settings),
@@ -97,12 +98,12 @@ Rgb PhotonDensity::along_ray(const RayMedium& seen, Rng& rng, SelectionCost*) co
         return Rgb(0.0f);
     const double g = scene_.field().mean_cosine();
     switch (settings_.estimator) {
-    case DensityEstimator::PointPoint:
-        return points_.around(seen, g, rng);
-    case DensityEstimator::PointBeam:
-        return points_.along(seen, g);
-    case DensityEstimator::BeamBeam:
-        break;
+        case DensityEstimator::PointPoint:
+            return points_.around(seen, g, rng);
+        case DensityEstimator::PointBeam:
+            return points_.along(seen, g);
+        case DensityEstimator::BeamBeam:
+            break;
     }
     return beams_.along(seen, g);
 }

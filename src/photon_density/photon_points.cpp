@@ -20,9 +20,9 @@ float phase(const vec3& direction, const dvec3& toward_viewer, double mean_cosin
 // Discs whose axes differ by less than this cosine from 1 count as one.
 constexpr double kSameDisc = 1e-4;
 
-// The rule of Gauss and Radau for the kernel's mean over s = (distance / radius)^2, whose three nodes are 0, `outer` and
-// `inner`: the nodes solve s^2 - sum s + product = 0, and m1 and m2 are the first moments of s. Photons are in smoke, so
-// that the node at the centre makes every mean greater than zero.
+// The rule of Gauss and Radau for the kernel's mean over s = (distance / radius)^2, whose three nodes are 0, `outer`
+// and `inner`: the nodes solve s^2 - sum s + product = 0, and m1 and m2 are the first moments of s. Photons are in
+// smoke, so that the node at the centre makes every mean greater than zero.
 struct RadialRule {
     RadialRule(double sum, double product, double m1, double m2) {
         const double root = std::sqrt(sum * sum - 4.0 * product), s = 0.5 * (sum + root), t = 0.5 * (sum - root);

@@ -4,13 +4,13 @@
 // space: at a point u it sends out
 //   P K(u - x) sigma_s(u) / E(x) * p(direction, toward the viewer),    E(x) = integral of K(y - x) sigma_t(y) over y,
 // which in even smoke is P K albedo p. As sigma_s is taken where it is seen, the smoke keeps its detail. As E is a mean
-// over all that the kernel K covers, each photon keeps its energy, also at the smoke's skin, and a photon in a thin spot
-// beside dense smoke is not magnified by sigma_s(u) / sigma_t(x).
+// over all that the kernel K covers, each photon keeps its energy, also at the smoke's skin, and a photon in a thin
+// spot beside dense smoke is not magnified by sigma_s(u) / sigma_t(x).
 //
 // along() blurs over the disc perpendicular to the ray (Jarosz, Zwicker, Jensen, The Beam Radiance Estimate for
 // Volumetric Photon Mapping, EG 2008), around() over the ball at points where flights along the ray would collide
-// (Jensen and Christensen, Efficient Simulation of Light Transport in Scenes with Participating Media using Photon Maps,
-// SIGGRAPH 1998).
+// (Jensen and Christensen, Efficient Simulation of Light Transport in Scenes with Participating Media using Photon
+// Maps, SIGGRAPH 1998).
 #pragma once
 
 #include <vector>
@@ -29,8 +29,8 @@ double extinction_in_disc(const TrackingField& field, const dvec3& centre, const
 class PhotonPoints {
 public:
     PhotonPoints() = default;
-    // Of the flights that collide. Keeps a reference to the field. `discs`: for along(), else for around(); `eye`: local
-    // [m], from which most rays come: their discs are known beforehand.
+    // Of the flights that collide. Keeps a reference to the field. `discs`: for along(), else for around(); `eye`:
+    // local [m], from which most rays come: their discs are known beforehand.
     PhotonPoints(const TrackingField& field, const std::vector<PhotonFlight>& flights, double radius, bool discs,
                  const dvec3& eye);
 

@@ -18,7 +18,7 @@ constexpr double kFastestAlpha = 0.0;
 
 struct PhotonDensitySettings {
     DensityEstimator estimator = DensityEstimator::BeamBeam;
-    int paths = 100000;              // particles that are followed in each pass
+    int paths = 400000;              // particles that are followed in each pass
     double radius = kAutomaticBlur;  // of the blur in the first pass [m]
     int passes = 1;                  // pictures that are averaged, each with photons of its own
     double alpha = kFastestAlpha;    // of radius_shrunk(): at 1 the radius stays

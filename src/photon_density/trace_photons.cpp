@@ -26,11 +26,11 @@ void store(const DirectLight& scene, const ParticleFlight& flight, double margin
     if (!flight.from_medium)
         return;
     const Ray& ray = flight.ray();
-    const double end = flight.collision
-                           ? flight.collision->distance
-                           : std::min(flight.segment.end, end_of_smoke(scene.field(), ray, flight.segment.end) + margin);
-    stored.emplace_back(PhotonFlight{vec3(ray.origin), vec3(ray.direction), flight.power, float(end),
-                                     flight.collision.has_value()});
+    const double end =
+        flight.collision ? flight.collision->distance
+                         : std::min(flight.segment.end, end_of_smoke(scene.field(), ray, flight.segment.end) + margin);
+    stored.emplace_back(
+        PhotonFlight{vec3(ray.origin), vec3(ray.direction), flight.power, float(end), flight.collision.has_value()});
     if (const std::optional<SurfacePhoton> photon = landed_photon(flight))
         stored.emplace_back(*photon);
 }

@@ -49,7 +49,8 @@ Estimate in_smoke(Estimate e) {
     return e;
 }
 
-void expect_as_paths(const Stage& stage, const char* what, std::uint64_t path_samples, bool surfaces, int paths = 1500) {
+void expect_as_paths(const Stage& stage, const char* what, std::uint64_t path_samples, bool surfaces,
+                     int paths = 1500) {
     const auto part = [&](Estimate e) { return surfaces ? e : in_smoke(std::move(e)); };
     const Estimate expected = part(mean_by_paths(stage, path_samples));
     for (const DensityEstimator estimator : kEstimators)

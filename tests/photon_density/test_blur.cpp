@@ -98,8 +98,8 @@ std::vector<PhotonFlight> collisions(double extinction, const dvec3& direction, 
     for (int i = 0; i < count; ++i) {
         const dvec3 end = kEdge * (2.0 * dvec3(rng.next_double(), rng.next_double(), rng.next_double()) - 1.0);
         const dvec3 fades = glm::clamp((kEdge - glm::abs(end)) / 0.1, 0.0, 1.0);
-        const double power = extinction * fades.x * fades.y * fades.z * std::pow(2.0 * kEdge, 3) / count *
-                             (1.0 + bend * end.y * end.y);
+        const double power =
+            extinction * fades.x * fades.y * fades.z * std::pow(2.0 * kEdge, 3) / count * (1.0 + bend * end.y * end.y);
         flights.push_back({vec3(end - 0.5 * direction), vec3(direction), Rgb(float(power)), 0.5f, true});
     }
     return flights;

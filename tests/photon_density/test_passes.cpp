@@ -8,8 +8,8 @@
 #include "core/parallel.h"
 #include "fixtures/ray_fixture.h"
 #include "light_selection/progressive_radius.h"
-#include "photon_density/method.h"
 #include "photon_density/estimators.h"
+#include "photon_density/method.h"
 #include "photon_density/photon_density.h"
 
 namespace brisance {
@@ -61,7 +61,8 @@ TEST(Passes, MeanDoesNotDependOnTheirNumber) {
                 s.paths = 1600 / passes;
                 s.radius = 0.15;
                 for (int pass = 0; pass < passes; ++pass) {
-                    const PhotonDensity photons(stage.scene(), settings_of_pass(s, pass, 0.15), -1, dvec3(0.5, -3.0, 2.5));
+                    const PhotonDensity photons(stage.scene(), settings_of_pass(s, pass, 0.15), -1,
+                                                dvec3(0.5, -3.0, 2.5));
                     for (int i = 0; i < 64 / passes; ++i)
                         out[passes > 1] += stage.by_lights(photons, stage.ray(rng), rng).medium.x / 64.0;
                 }
@@ -129,9 +130,9 @@ bool takes(const std::string& name, const Json& value, PhotonDensitySettings& s)
 TEST(PhotonDensity, RefusesValuesThatMeanNothing) {
     PhotonDensitySettings s;
     const std::pair<const char*, Json> bad[] = {
-        {"estimator", "beam"}, {"estimator", 1},      {"paths", 0},      {"paths", 1.5},    {"radius", 0},
-        {"radius", -0.1},      {"radius", "none"},    {"passes", 0},     {"passes", 65537}, {"alpha", 0},
-        {"alpha", 1.01},       {"alpha", "fast"},     {"neighbours", 0}, {"seed", -1}};
+        {"estimator", "beam"}, {"estimator", 1},   {"paths", 0},      {"paths", 1.5},    {"radius", 0},
+        {"radius", -0.1},      {"radius", "none"}, {"passes", 0},     {"passes", 65537}, {"alpha", 0},
+        {"alpha", 1.01},       {"alpha", "fast"},  {"neighbours", 0}, {"seed", -1}};
     for (const auto& [name, value] : bad)
         EXPECT_FALSE(takes(name, value, s)) << name << " = " << value.dump();
     EXPECT_TRUE(takes("radius", 0.25, s));
