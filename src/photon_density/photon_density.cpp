@@ -27,8 +27,10 @@ double longest_piece(const TrackingField& field) {
 // Where photons are distributed uniformly over the smoke: N points, beams of length L together in a volume V, of which
 // a ray sees a length s. Around a point there are 4 pi r^3 N / (3 V) points, around a ray pi r^2 s N / V, and lines of
 // any direction pass a ray within r in 2 r s (pi / 4) L / V places. A ray sees the width of the smoke as far as its
-// mean free path L / N allows.
-double automatic_radius(DensityEstimator estimator, const std::vector<PhotonFlight>& flights, double volume) {
+// mean free path L / N allows. A sharp phase function shows few of the photons: as many as noise would say are
+// 1 / mean((4 pi p)^2) of all, which is (1 - g^2)^2 / (1 + g^2), and so many more are taken.
+double automatic_radius(DensityEstimator estimator, const std::vector<PhotonFlight>& flights, double volume,
+                        double mean_cosine) {
     double points = 0.0, length = 0.0;
     for (const PhotonFlight& flight : flights) {
         points += flight.collides;
@@ -38,16 +40,17 @@ double automatic_radius(DensityEstimator estimator, const std::vector<PhotonFlig
         return 0.0;
     const double width = std::cbrt(volume), depth = width * points / length;
     const double seen = depth > 0.0 ? width * (-std::expm1(-depth) / depth) : width;
+    const double g2 = mean_cosine * mean_cosine, more = (1.0 + g2) / std::max((1.0 - g2) * (1.0 - g2), 1e-12);
     constexpr double kPi = std::numbers::pi;
     switch (estimator) {
         case DensityEstimator::PointPoint:
-            return std::cbrt(kAroundPoint * 3.0 * volume / (4.0 * kPi * std::max(points, 1.0)));
+            return std::cbrt(more * kAroundPoint * 3.0 * volume / (4.0 * kPi * std::max(points, 1.0)));
         case DensityEstimator::PointBeam:
-            return std::sqrt(kAroundRay * volume / (kPi * seen * std::max(points, 1.0)));
+            return std::sqrt(more * kAroundRay * volume / (kPi * seen * std::max(points, 1.0)));
         case DensityEstimator::BeamBeam:
             break;
     }
-    return kAroundRay * volume / (0.5 * kPi * seen * length);
+    return more * kAroundRay * volume / (0.5 * kPi * seen * length);
 }
 
 }  // namespace
@@ -82,7 +85,8 @@ std::vector<SurfacePhoton> PhotonDensity::store(TracedPhotons photons, const dve
     report_.radius = settings_.radius;
     if (settings_.radius == kAutomaticBlur)
         report_.radius =
-            std::min(longest_, automatic_radius(settings_.estimator, photons.flights, scene_.field().smoke_volume()));
+            std::min(longest_, automatic_radius(settings_.estimator, photons.flights, scene_.field().smoke_volume(),
+                                                scene_.field().mean_cosine()));
     if (settings_.estimator == DensityEstimator::BeamBeam)
         beams_ = PhotonBeams(photons.flights, radius(), longest_);
     else
