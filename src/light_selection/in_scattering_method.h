@@ -28,7 +28,7 @@ struct MadeInScattering {
     std::unique_ptr<InScattering> estimator;
     std::uint64_t bytes = 0;
     nlohmann::ordered_json detail;  // counts, for the statistics
-    double radius = 0.0;            // of beams [m]; 0: there are none
+    double radius = 0.0;            // of beams or of another blur that shrinks [m]; 0: there is none
 };
 
 // A method of `brisance report` that is this scattering method with some settings ("KEY=VALUE", without the section).

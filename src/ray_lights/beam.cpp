@@ -133,11 +133,4 @@ Rgb mean_reflected(const BallCone& cone, const dvec3& arriving, double mean_cosi
     return sum / float(kDirections);
 }
 
-double radius_shrunk(int pass, double alpha) {
-    double square = 1.0;
-    for (int i = 1; i <= pass; ++i)
-        square *= (i + alpha) / (i + 1.0);
-    return std::sqrt(square);
-}
-
 }  // namespace brisance

@@ -67,7 +67,4 @@ double mean_phases(const BallCone& cone, const dvec3& arriving, const dvec3& lea
 Rgb mean_reflected(const BallCone& cone, const dvec3& arriving, double mean_cosine, const SurfacePoint& point,
                    const ReceiverLobes& lobes, const dvec3& toward_viewer, Rng& rng);
 
-// Ratio of the radius of a pass, counted from 0, to that of the first.
-double radius_shrunk(int pass, double alpha);
-
 }  // namespace brisance

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "light_selection/joint_sampling.h"
+#include "light_selection/progressive_radius.h"
 #include "light_selection/resample_lights.h"
 #include "light_selection/thin_lights.h"
 

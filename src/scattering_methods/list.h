@@ -8,12 +8,14 @@
 
 #include <tuple>
 
+#include "photon_density/method.h"
 #include "ray_lights/method.h"
 #include "volumetric_photons/method.h"
 #include "volumetric_vpls/method.h"
 
 namespace brisance {
 
-using ScatteringMethodList = std::tuple<RayLightsMethod, VolumetricVplsMethod, VolumetricPhotonsMethod>;
+using ScatteringMethodList =
+    std::tuple<RayLightsMethod, VolumetricVplsMethod, VolumetricPhotonsMethod, PhotonDensityMethod>;
 
 }  // namespace brisance

@@ -6,6 +6,8 @@
 #include <nanoflann.hpp>
 #include <numbers>
 
+#include "transport/particle_walk.h"
+
 namespace brisance {
 
 namespace {
@@ -77,6 +79,15 @@ private:
 };
 
 }  // namespace
+
+std::optional<SurfacePhoton> landed_photon(const ParticleFlight& flight) {
+    const SurfacePoint* point = flight.landing();
+    if (!point)
+        return std::nullopt;
+    const dvec3 &normal = point->frame.normal, &direction = flight.ray().direction;
+    const bool above = glm::dot(normal, direction) < 0.0;
+    return SurfacePhoton{vec3(point->position), vec3(above ? normal : -normal), vec3(direction), flight.power};
+}
 
 class PhotonMap::Tree {
 public:

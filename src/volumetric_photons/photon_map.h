@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,12 +11,17 @@
 
 namespace brisance {
 
+struct ParticleFlight;
+
 struct SurfacePhoton {
     vec3 position;   // local [m]
     vec3 normal;     // unit, on the side that was lit
     vec3 direction;  // unit, of travel
     Rgb power;       // [W]
 };
+
+// The photon that a flight leaves where it ends on a surface.
+std::optional<SurfacePhoton> landed_photon(const ParticleFlight& flight);
 
 class PhotonMap {
 public:

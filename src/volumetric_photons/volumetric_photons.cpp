@@ -11,16 +11,6 @@ constexpr int kSamples = 8;
 // A ray starts at the eye if its line passes the eye within this fraction of its distance.
 constexpr double kSameLine = 1e-5;
 
-// Stores the photon of a flight that was scattered in smoke.
-void store_photon(const ParticleFlight& flight, std::vector<SurfacePhoton>& photons) {
-    const SurfacePoint* point = flight.landing();
-    if (!point)
-        return;
-    const dvec3 &normal = point->frame.normal, &direction = flight.ray().direction;
-    const bool above = glm::dot(normal, direction) < 0.0;
-    photons.push_back({vec3(point->position), vec3(above ? normal : -normal), vec3(direction), flight.power});
-}
-
 }  // namespace
 
 VolumetricPhotons::VolumetricPhotons(const DirectLight& scene, const VolumetricPhotonSettings& settings, int bounces,
@@ -43,7 +33,8 @@ std::vector<SurfacePhoton> VolumetricPhotons::follow(int most_before) {
                 return;
             Rng keep_rng(Stream::StoredTrack, flight.particle, settings_.seed | std::uint64_t(flight.before) << 32);
             cache_.add(flight.ray(), flight.segment.end, flight.power, keep_rng);
-            store_photon(flight, photons);
+            if (const std::optional<SurfacePhoton> photon = landed_photon(flight))
+                photons.push_back(*photon);
         },
         report_);
 }

@@ -8,6 +8,7 @@
 
 #include "fixtures/ray_fixture.h"
 #include "light_selection/joint_sampling.h"
+#include "light_selection/progressive_radius.h"
 
 namespace brisance {
 namespace {

@@ -239,7 +239,10 @@ TEST(Runs, OfVirtualLightsChangeTheirChoicesAndTheSamples) {
                                       "volumetric_vpls",
                                       "volumetric_vpls_bounded",
                                       "volumetric_vpls_compensated",
-                                      "volumetric_vpls_local"};
+                                      "volumetric_vpls_local",
+                                      "photon_points",
+                                      "photon_points_3d",
+                                      "photon_beams"};
     for (const TechniquePreset& preset : light_presets())
         if (std::find(names.begin(), names.end(), preset.name) == names.end())
             names.push_back(preset.name);

@@ -46,6 +46,8 @@ Case scattering(int decade) {
     if (decade > 0) {
         // Nearly all light ends within a part of a voxel: what a flight or a track leaves is known per voxel only.
         c.tolerance.limits["ray_lights"] = {1.0, "flights are far shorter than the skin's voxel, which few rays meet"};
+        c.tolerance.limits["photon_density"] = {1.0,
+                                                "few photons start in the skin, and those elsewhere never reach it"};
         c.tolerance.limits["volumetric_photons"] = {
             std::numeric_limits<double>::infinity(),
             "track lengths are counted for whole voxels, of which only a skin is seen: take the lighting grid"};

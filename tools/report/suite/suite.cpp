@@ -66,7 +66,7 @@ const std::vector<SuiteSize>& suite_sizes() {
           "scattering.lattice_level=3", "scattering.alpha=1", "virtual_lights.count=300",
           "virtual_lights.photons=20000", "virtual_lights.neighbours=32", "ray_lights.paths=2048",
           "ray_lights.count=8192", "volumetric_vpls.paths=4096", "volumetric_vpls.count=8192",
-          "volumetric_photons.paths=50000"},
+          "volumetric_photons.paths=50000", "photon_density.paths=20000"},
          {"lighting.lattice_level=5", "lighting.error=0.3"},
          {"scattering.method=volumetric_photons", "volumetric_photons.paths=20000"}},
         {"full",
