@@ -10,7 +10,7 @@
 #include "fixtures/media.h"
 #include "fixtures/sets.h"
 #include "forecast/plan.h"
-#include "ray_lights/beam.h"
+#include "light_selection/progressive_radius.h"
 #include "render/render_frame.h"
 
 namespace brisance {
