@@ -21,8 +21,8 @@ bool has_specular(const SurfaceMaterial& m) {
     return needs_energy_tables(m);
 }
 
-// Half the angle [rad] in which a glossy lobe reflects is about twice the width of its microfacet slopes. It stays below a
-// base's, so that pixels keep them apart.
+// Half the angle [rad] in which a glossy lobe reflects is about twice the width of its microfacet slopes. It stays
+// below a base's, so that pixels keep them apart.
 float width_of_gloss(float roughness) {
     constexpr float kWidest = 0.7f;
     return std::min(kWidest, 2.0f * roughness * roughness);
