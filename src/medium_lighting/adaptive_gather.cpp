@@ -6,6 +6,7 @@
 #include "core/parallel.h"
 #include "lighting_grid/voxel_lights.h"
 #include "medium/phase.h"
+#include "medium/voxel_size.h"
 #include "scattering/balance.h"
 #include "scattering/multiple_scattering.h"
 
@@ -124,8 +125,8 @@ private:
     // Whether a surface may part the node from some node interpolated from it.
     static bool beside_surface(const LitLevel& l, std::size_t i) {
         const Occluders* const surfaces = l.pyramid->occluders();
-        return surfaces && surfaces->any_within(l.medium.local_of_node(l.medium.lattice.node(i)),
-                                                std::sqrt(3.0f) * l.medium.spacing);
+        return surfaces &&
+               surfaces->any_within(l.medium.local_of_node(l.medium.lattice.node(i)), longest_diagonal(l.medium));
     }
 
     // A quarter of the difference between a node and the interpolant through the even nodes around it.

@@ -6,13 +6,14 @@
 
 namespace brisance {
 
-void AdaptiveLight::conserve(const std::vector<std::uint8_t>& as_it_is) {
+void AdaptiveLight::conserve(const std::vector<float>& kept) {
     const auto planes = light.planes();
     parallel_for(
         conserving.size(),
         [&](std::size_t i) {
-            for (std::size_t c = 0; c < planes.size() && (as_it_is.empty() || !as_it_is[i]); ++c)
-                planes[c][i] *= conserving[i];
+            const float factor = kept.empty() ? conserving[i] : glm::mix(1.0f, conserving[i], kept[i]);
+            for (const auto& plane : planes)
+                plane[i] *= factor;
         },
         4096);
 }

@@ -21,8 +21,9 @@ struct AdaptiveLight {
     GatheredPart gathered;          // what the nodes gathered themselves
     std::vector<float> conserving;  // the factor with which the light conserves energy
 
-    // Makes `light` the light that conserves energy, but at nodes with `as_it_is` (per node, or empty).
-    void conserve(const std::vector<std::uint8_t>& as_it_is);
+    // Makes `light` the light that conserves energy, as far as it is still the gathered one: `kept`, in [0, 1] per
+    // node; empty: everywhere.
+    void conserve(const std::vector<float>& kept);
 };
 
 // Scales the light so that the medium's own `lights` conserve energy. The nodes that gathered themselves set the scale

@@ -41,7 +41,7 @@ public:
     std::uint64_t bytes() const { return order_.size() * sizeof(std::uint32_t) + boxes_.size() * sizeof(Box); }
 
 private:
-    static constexpr int kLeaf = 8;  // primitives at most
+    static constexpr int kLeaf = 8;  // primitives, about
     std::size_t first_of(std::size_t part, int depth) const { return (order_.size() * part) >> depth; }
     void split(std::size_t part, int depth, const std::vector<Box>& boxes);
 

@@ -19,7 +19,7 @@ std::vector<SettingKey<PhotonDensitySettings>> PhotonDensityMethod::keys() {
         setting_key(
             "radius",
             "of the blur in the smoke in the first pass [m]; auto: from the smoke and how many photons it holds",
-            or_word(real(above(0.0)), "auto", kAutomaticBlur), &S::radius),
+            or_word(real({1e-9, 1e9}), "auto", kAutomaticBlur), &S::radius),
         setting_key("passes", "whole pictures that are averaged, each by photons of its own and with less blur",
                     whole(1, 65536), &S::passes),
         setting_key(

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "light_selection/progressive_radius.h"
@@ -14,6 +15,8 @@ constexpr Stream kPasses = stream_of("photon_density/pass");
 
 // Relative to the medium's diagonal.
 constexpr double kLongestPiece = 1.0 / 24.0;
+// Of flights beyond the smoke, in longest pieces: as far as the smoke is wide.
+constexpr double kMostMargin = 24.0;
 // Photons within the automatic radius of a ray, or of one of its points, if they were distributed uniformly.
 constexpr double kAroundRay = 64.0, kAroundPoint = 32.0;
 // Photons around a point of a surface, however many passes.
@@ -37,7 +40,7 @@ double automatic_radius(DensityEstimator estimator, const std::vector<PhotonFlig
         length += flight.length;
     }
     if (!(length > 0.0))
-        return 0.0;
+        return std::numeric_limits<double>::infinity();
     const double width = std::cbrt(volume), depth = width * points / length;
     const double seen = depth > 0.0 ? width * (-std::expm1(-depth) / depth) : width;
     const double g2 = mean_cosine * mean_cosine, more = (1.0 + g2) / std::max((1.0 - g2) * (1.0 - g2), 1e-12);
@@ -79,7 +82,9 @@ PhotonDensity::PhotonDensity(const DirectLight& scene, const PhotonDensitySettin
       scene_(scene),
       settings_(settings),
       longest_(longest_piece(scene.field())),
-      photon_map_(store(trace_photons(scene, settings, std::max(longest_, settings.radius), bounces, report_), eye)) {}
+      photon_map_(store(trace_photons(scene, settings, std::clamp(settings.radius, longest_, kMostMargin * longest_),
+                                      bounces, report_),
+                        eye)) {}
 
 std::vector<SurfacePhoton> PhotonDensity::store(TracedPhotons photons, const dvec3& eye) {
     report_.radius = settings_.radius;
@@ -88,7 +93,7 @@ std::vector<SurfacePhoton> PhotonDensity::store(TracedPhotons photons, const dve
             std::min(longest_, automatic_radius(settings_.estimator, photons.flights, scene_.field().smoke_volume(),
                                                 scene_.field().mean_cosine()));
     if (settings_.estimator == DensityEstimator::BeamBeam)
-        beams_ = PhotonBeams(photons.flights, radius(), longest_);
+        beams_ = PhotonBeams(photons.flights, radius(), std::max(longest_, radius()));
     else
         points_ = PhotonPoints(scene_.field(), photons.flights, radius(),
                                settings_.estimator == DensityEstimator::PointBeam, eye);

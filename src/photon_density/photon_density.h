@@ -1,6 +1,6 @@
 // Light scattered by the medium, estimated by the density of photons: points or beams in the medium (photon_points.h,
 // photon_beams.h), and a photon map on surfaces. The cells MM and SM, for the camera's rays and for those that leave
-// surfaces alike. The estimates are biased by their blur and consistent: `passes` let its radius shrink
+// surfaces alike. The estimates are biased by their blur: `passes` let its radius shrink
 // (light_selection/progressive_radius.h; Jarosz, Nowrouzezahrai, Thomas, Sloan, Zwicker, Progressive Photon Beams,
 // SIGGRAPH Asia 2011).
 #pragma once

@@ -322,7 +322,10 @@ void RadianceCascades::average_source(std::span<const float> source, int channel
             coarse.size(),
             [&](std::size_t i) {
                 for (int c = 0; c < channels; ++c)
-                    levels_[l + 1].source[i * channels + c] *= coarse[i] > 0.0f ? 1.0f / coarse[i] : 0.0f;
+                    if (float& s = levels_[l + 1].source[i * channels + c]; coarse[i] > 0.0f)
+                        s /= coarse[i];
+                    else
+                        s = 0.0f;
             },
             4096);
     }

@@ -58,7 +58,7 @@ public:
 private:
     // Light at the nodes, with the balance factors.
     Gathered gather(const ScatteredLight& lights, std::vector<LevelCost>& costs, Progress& progress);
-    Gathered gather_from_hierarchy(const ScatteredLight& scaled, std::vector<LevelCost>& costs, Progress& progress);
+    Gathered gather_from_hierarchy(const ScatteredLight& lights, std::vector<LevelCost>& costs, Progress& progress);
     Gathered gather_by_cascades(const ScatteredLight& lights);
     std::vector<float> source_of(const Gathered& arriving) const;
     void balance_nodes(const ExtinctionPyramid& fine);

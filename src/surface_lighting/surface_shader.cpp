@@ -22,10 +22,10 @@ bool has_specular(const SurfaceMaterial& m) {
 }
 
 // Half the angle [rad] in which a glossy lobe reflects is about twice the width of its microfacet slopes. It stays
-// below a base's, so that pixels keep them apart.
+// below a base's, and rises with roughness throughout: pixels tell lobes by it.
 float width_of_gloss(float roughness) {
     constexpr float kWidest = 0.7f;
-    return std::min(kWidest, 2.0f * roughness * roughness);
+    return kWidest * -std::expm1(-2.0f * roughness * roughness / kWidest);
 }
 
 // Glossy lobes reflect at grazing angles what the colour of their metal does not hold: light is divided by no less.

@@ -4,6 +4,7 @@
 
 #include "core/parallel.h"
 #include "gathering/escape_probability.h"
+#include "medium/voxel_size.h"
 #include "thin_media/seen_share.h"
 #include "thin_media/unresolved_lights.h"
 
@@ -15,8 +16,6 @@ namespace {
 constexpr float kHollow = 0.02f, kOpen = 0.1f;
 // Distance from the camera, in bricks, below which the direction to it turns too fast to be interpolated.
 constexpr float kAroundCamera = 4.0f;
-// Of a brick's diagonal, in its edges.
-constexpr float kHalfDiagonal = 0.8660254f;
 
 // Largest optical depth across a brick of which light does not change much from one side to the other, as long as what
 // lights it is not beside it.
@@ -64,13 +63,18 @@ std::vector<float> thinness(const Medium& medium, const PointDepths& depths, con
     return thin;
 }
 
+bool glows(const Medium& medium, std::size_t node) {
+    return (!medium.emission.empty() && medium.emission[node] != Rgb(0.0f)) ||
+           (!medium.source.empty() && medium.source[node] != Rgb(0.0f) && medium.extinction[node] > 0.0f);
+}
+
 struct ThinBricks {
     std::vector<std::uint8_t> wholly, in_part;  // per brick; `in_part`: whether light there is to be replaced
 };
 
 ThinBricks thin_bricks(const Medium& medium, const std::vector<float>& thin) {
     const float fullest = *std::max_element(thin.begin(), thin.end());
-    const float most = kThinAcross / (BrickLattice::kSize * medium.spacing);
+    const float most = kThinAcross / (BrickLattice::kSize * longest_edge(medium));
     const std::size_t count = medium.lattice.brick_count();
     ThinBricks out{std::vector<std::uint8_t>(count), std::vector<std::uint8_t>(count)};
     parallel_for(
@@ -80,6 +84,7 @@ ThinBricks thin_bricks(const Medium& medium, const std::vector<float>& thin) {
             out.wholly[b] = true;
             for (std::size_t i = first; i < first + BrickLattice::kNodes; ++i) {
                 out.wholly[b] &= thin[i] == fullest || medium.extinction[i] <= most;
+                out.wholly[b] &= !glows(medium, i);
                 out.in_part[b] |= thin[i] > 0.0f;
             }
         },
@@ -104,8 +109,10 @@ ThinMedium::ThinMedium(const Medium& medium, const PointDepths& depths, const st
         nodes_[i] = weight_[i] > 0.0f;
     }
     single_ = nodes_;
-    for (const std::uint32_t b : even_)
-        std::fill_n(single_.begin() + std::ptrdiff_t(b) * BrickLattice::kNodes, BrickLattice::kNodes, 0);
+    for (std::size_t k = 0; k < even_.size(); ++k)
+        for (int n = 0; n < BrickLattice::kNodes; ++n)
+            if (even_smoke_[k].contains(BrickLattice::node_in_brick(n)))
+                single_[std::size_t(even_[k]) * BrickLattice::kNodes + n] = 0;
 }
 
 // Finds the bricks that contain no dense smoke and have none around them.
@@ -123,7 +130,8 @@ void ThinMedium::find_even_bricks(const Medium& medium, const std::vector<float>
             if (!in_part[b] || !slow || !homogeneous_bricks_.at(lattice.brick(b) - (medium.reference_node >> 3)))
                 return;
             // Points beyond a wall would bring its other side's light to the smoke before it.
-            const bool beside = surfaces && surfaces->any_within(middle, kHalfDiagonal * edge);
+            const bool beside =
+                surfaces && surfaces->any_within(middle, 0.5f * BrickLattice::kSize * longest_diagonal(medium));
             smoke[b] = beside ? unparted_smoke(*surfaces, medium, b) : BrickPart{};
         },
         16);
@@ -204,7 +212,8 @@ Gathered ThinMedium::gather(const LightField& field, const GridLevel& bottom, co
             const std::size_t first = std::size_t(even_[k]) * BrickLattice::kNodes;
             for (std::size_t plane = 0; plane * nodes < to.size(); ++plane)
                 for (int n = 0; n < BrickLattice::kNodes; ++n)
-                    to[plane * nodes + first + n] = LightPoints::at(&from[plane * receiver_count + first_point], n);
+                    if (even_smoke_[k].contains(BrickLattice::node_in_brick(n)))
+                        to[plane * nodes + first + n] = LightPoints::at(&from[plane * receiver_count + first_point], n);
         });
     };
     spread(few.fluence, out.fluence);

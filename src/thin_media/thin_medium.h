@@ -42,7 +42,7 @@ public:
     // Mean transmittance from thin nodes to the outside (gathering/escape_probability.h); below 0 for other nodes.
     const std::vector<float>& open() const { return open_; }
 
-    // Bricks that contain no dense smoke and have none around them, are far from the camera, and are not parted by
+    // Bricks that are thin and have only such around them, do not glow, are far from the camera, and are not parted by
     // surfaces.
     const std::vector<std::uint32_t>& even_bricks() const { return even_; }
     // The same bricks, whatever the distance from the camera and from surfaces.

@@ -93,6 +93,26 @@ TEST(Passes, TheAutomaticRadiusKeepsTheNumberOfPhotonsAroundARay) {
     }
 }
 
+// However far a blur reaches: flights beyond the smoke end somewhere, and their pieces are as long as the radius.
+TEST(PhotonDensity, ARadiusBeyondTheSceneTakesNoMoreMemory) {
+    const Stage stage(coloured_ball(8, 2.0f, 0.0f), {});
+    for (const DensityEstimator estimator : kEstimators) {
+        PhotonDensitySettings s;
+        s.estimator = estimator;
+        s.paths = 3000;
+        s.radius = 0.1;
+        const std::uint64_t usual = PhotonDensity(stage.scene(), s, -1, dvec3(0.5, -3.0, 2.5)).bytes();
+        for (const double radius : {1e-9, 1e3, 1e9}) {
+            s.radius = radius;
+            const PhotonDensity photons(stage.scene(), s, -1, dvec3(0.5, -3.0, 2.5));
+            EXPECT_LE(photons.bytes(), 2 * usual) << radius;
+            Rng rng(Stream::Points, 5);
+            for (int i = 0; i < 20; ++i)
+                EXPECT_TRUE(std::isfinite(stage.by_lights(photons, stage.ray(rng), rng).medium.x)) << radius;
+        }
+    }
+}
+
 TEST(PhotonDensity, ThreadsChangeNothing) {
     const Stage stage(lumpy_ball(8, 2.0f, 0.5f), floor_below(0.7f));
     for (const DensityEstimator estimator : kEstimators) {
@@ -130,9 +150,10 @@ bool takes(const std::string& name, const Json& value, PhotonDensitySettings& s)
 TEST(PhotonDensity, RefusesValuesThatMeanNothing) {
     PhotonDensitySettings s;
     const std::pair<const char*, Json> bad[] = {
-        {"estimator", "beam"}, {"estimator", 1},   {"paths", 0},      {"paths", 1.5},    {"radius", 0},
-        {"radius", -0.1},      {"radius", "none"}, {"passes", 0},     {"passes", 65537}, {"alpha", 0},
-        {"alpha", 1.01},       {"alpha", "fast"},  {"neighbours", 0}, {"seed", -1}};
+        {"estimator", "beam"}, {"estimator", 1},  {"paths", 0},       {"paths", 1.5},
+        {"radius", 0},         {"radius", -0.1},  {"radius", "none"}, {"radius", 1e-200},
+        {"radius", 1e10},      {"passes", 0},     {"passes", 65537},  {"alpha", 0},
+        {"alpha", 1.01},       {"alpha", "fast"}, {"neighbours", 0},  {"seed", -1}};
     for (const auto& [name, value] : bad)
         EXPECT_FALSE(takes(name, value, s)) << name << " = " << value.dump();
     EXPECT_TRUE(takes("radius", 0.25, s));

@@ -20,7 +20,7 @@ using namespace testing;
 constexpr int kWidth = 32, kHeight = 24, kRadius = 12;
 
 // A ragged ball that burns inside, in a box of smoke `thin` times as dense.
-Medium burst_in_haze(float thin, float mean_cosine = 0.0f, float extinction = 30.0f) {
+Recipe burst_in_haze_recipe(float thin, float mean_cosine, float extinction) {
     Recipe recipe;
     recipe.box = cube(-28, 28);
     recipe.world_from_index = cubic(0.05);
@@ -33,7 +33,11 @@ Medium burst_in_haze(float thin, float mean_cosine = 0.0f, float extinction = 30
     recipe.settings.smoke.extinction_per_metre = extinction;
     recipe.settings.smoke.albedo = Rgb(0.8f);
     recipe.settings.smoke.mean_cosine = mean_cosine;
-    return make_medium(recipe);
+    return recipe;
+}
+
+Medium burst_in_haze(float thin, float mean_cosine = 0.0f, float extinction = 30.0f) {
+    return make_medium(burst_in_haze_recipe(thin, mean_cosine, extinction));
 }
 
 Image picture(const Medium& medium, RenderMethod method) {
@@ -146,6 +150,22 @@ TEST(ThinMedium, AsksAtFewPointsWhereItsTreatmentFades) {
         fading += rest > 0.02f && rest < 0.98f;
     EXPECT_GT(fading, haze.node_count() / 2);
     EXPECT_LT(haze.point_count(), haze.node_count() / 2);
+}
+
+// Light close to a flame is not interpolated over half a brick, however thin the smoke is.
+TEST(ThinMedium, AsksEachNodeAroundAFlame) {
+    Recipe recipe = burst_in_haze_recipe(0.002f, 0.0f, 30.0f);
+    const NodeScalar inside = recipe.flame;
+    const ivec3 spark(-20, 20, 20);
+    recipe.flame = [=](const ivec3& n) { return std::max(inside(n), ball(n - spark, dvec3(0.0), 2)); };
+    const Medium medium = make_medium(recipe);
+    const ThinMedium haze = Around(medium).haze(medium);
+    ASSERT_FALSE(haze.even_bricks().empty());
+    const ivec3 brick = (medium.reference_node + spark) >> 3;
+    for (const std::uint32_t b : haze.even_bricks()) {
+        const ivec3 apart = glm::abs(medium.lattice.brick(b) - brick);
+        EXPECT_GT(std::max({apart.x, apart.y, apart.z}), 1);
+    }
 }
 
 // What mix() replaces and what it leaves are one.

@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "gathering/point_depths.h"
 #include "lighting_grid/voxel_lights.h"
+#include "medium/voxel_size.h"
 #include "medium_lighting/levels/coarse_lighting.h"
 #include "shadows/shadow_kernels.h"
 
@@ -39,14 +40,6 @@ std::vector<float> depths_to_eye(const LitLevel& level, const PointDepths& depth
                  },
                  64);
     return out;
-}
-
-// Length of a voxel's longest edge [m].
-float longest_edge(const Medium& medium) {
-    float longest = 0.0f;
-    for (int a = 0; a < 3; ++a)
-        longest = std::max(longest, glm::length(medium.local_from_index[a]));
-    return longest;
 }
 
 // Mean extinction under each node's hat [1/m].
