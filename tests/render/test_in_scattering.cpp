@@ -29,6 +29,9 @@ VolumetricVplSettings& vpls_of(Shot& shot) {
 VolumetricPhotonSettings& photons_of(Shot& shot) {
     return shot.scattering_methods.get<VolumetricPhotonSettings>();
 }
+PhotonDensitySettings& densities_of(Shot& shot) {
+    return shot.scattering_methods.get<PhotonDensitySettings>();
+}
 
 Shot small_shot(RenderMethod method, const std::string& scattering = RayLightsMethod::kName) {
     Shot shot;
@@ -53,6 +56,9 @@ Shot small_shot(RenderMethod method, const std::string& scattering = RayLightsMe
     vpls_of(shot).count = 6000;
     photons_of(shot).paths = 100000;
     photons_of(shot).neighbours = 32;
+    densities_of(shot).paths = 50000;
+    densities_of(shot).radius = 0.05;
+    densities_of(shot).neighbours = 32;
     return shot;
 }
 
@@ -96,7 +102,8 @@ std::vector<Sets> over_sets(Shot shot, const Medium& medium, const Surroundings*
     std::vector<double> sum(layers.size(), 0.0), square(layers.size(), 0.0);
     Progress silent;
     for (int i = 0; i < kSets; ++i) {
-        rays_of(shot).seed = vpls_of(shot).seed = photons_of(shot).seed = static_cast<std::uint32_t>(i);
+        rays_of(shot).seed = vpls_of(shot).seed = photons_of(shot).seed = densities_of(shot).seed =
+            static_cast<std::uint32_t>(i);
         const Image image = render_medium(shot, medium, silent, set).image;
         for (std::size_t l = 0; l < layers.size(); ++l) {
             const double mean = mean_of(image, layers[l]);
@@ -139,9 +146,11 @@ class LightsInSmokePictures : public ::testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Kinds, LightsInSmokePictures, ::testing::ValuesIn(all_methods()),
                          [](const auto& kind) { return kind.param; });
 
-// Particles are blurred over voxels, eight of which make the smoke's radius.
+// Particles are blurred over voxels, eight of which make the smoke's radius; photon beams over a 20th of it.
 double blur_of(const std::string& method) {
-    return method == std::string(VolumetricPhotonsMethod::kName) ? 0.02 : 0.0;
+    return method == std::string(VolumetricPhotonsMethod::kName) ? 0.02
+           : method == std::string(PhotonDensityMethod::kName)   ? 0.01
+                                                                 : 0.0;
 }
 
 TEST_P(LightsInSmokePictures, SmokeIsAsPathsSeeIt) {
@@ -160,8 +169,8 @@ TEST_P(LightsInSmokePictures, ThreadsChangeNothing) {
     const Medium medium = smoke(0.6f);
     const Surroundings set = floor_of_two();
     std::vector<Shot> shots = {small_shot(RenderMethod::LightingGrid, GetParam())};
-    photons_of(shots.front()).paths = 10000;                  // bits differ or not, however few
-    if (GetParam() == std::string(RayLightsMethod::kName)) {  // beams
+    photons_of(shots.front()).paths = densities_of(shots.front()).paths = 10000;  // bits differ or not, however few
+    if (GetParam() == std::string(RayLightsMethod::kName)) {                      // beams
         shots.push_back(shots.front());
         rays_of(shots.back()).radius = kAutomaticRadius;
         rays_of(shots.back()).passes = 2;
