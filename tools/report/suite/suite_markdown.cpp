@@ -130,6 +130,14 @@ std::string figures_of(const MeasuredScene& scene) {
     return text;
 }
 
+// Of the pictures, which settings of the command may have changed [pixels].
+int width_of(const SuiteReport& suite) {
+    for (const MeasuredScene& scene : suite.scenes)
+        if (scene.report)
+            return scene.report->shot.width;
+    return suite.size.width;
+}
+
 std::string how_it_was_made(const SuiteReport& suite) {
     const SuiteSize& size = suite.size;
     std::string text = fmt::format("```sh\n{}\n```\n\n", suite.command);
@@ -141,7 +149,7 @@ std::string how_it_was_made(const SuiteReport& suite) {
         "Suite `{}`: pictures {} pixels wide; references of {} paths per pixel in two independent halves; path tracers "
         "with {} paths per pixel, `lighting_grid` by steps {} of its ladder, all others with {} samples along a "
         "pixel's side.",
-        size.name, size.width, suite.reference_samples, size.path_samples, size.grid_steps, size.sides);
+        size.name, width_of(suite), suite.reference_samples, size.path_samples, size.grid_steps, size.sides);
     if (!size.settings.empty())
         text += fmt::format(" Settings over those of every shot: `{}`.", fmt::join(size.settings, " "));
     for (const auto& [settings, cell] : {std::pair{&size.beside_fire, "MV"}, {&size.beside_scattering, "MM"}})
