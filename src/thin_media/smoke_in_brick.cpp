@@ -40,12 +40,11 @@ bool parts_nodes(const Occluders& surfaces, const Medium& medium, const ivec3& f
 
 std::optional<BrickPart> unparted_smoke(const Occluders& surfaces, const Medium& medium, std::size_t brick) {
     const ivec3 first = medium.lattice.first_node(brick);
-    BrickPart box = smoke_in_brick(medium, brick);
-    if (!box.empty() && parts_nodes(surfaces, medium, first, box))
-        box = {box.low + 1, box.high - 1};
-    if (box.empty() || parts_nodes(surfaces, medium, first, box))
-        return std::nullopt;
-    return box;
+    const BrickPart whole = smoke_in_brick(medium, brick), inner{whole.low + 1, whole.high - 1};
+    for (const BrickPart& part : {whole, inner})
+        if (!part.empty() && !parts_nodes(surfaces, medium, first, part))
+            return part;
+    return std::nullopt;
 }
 
 }  // namespace brisance
