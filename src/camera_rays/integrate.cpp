@@ -116,6 +116,7 @@ RaySum integrate(const SourceField& field, const Ray& ray, int parts, double end
         return sum.similar_depth < kOpaqueDepth;
     });
     sum.alpha = -std::expm1(-sum.depth);
+    sum.through = 1.0f - sum.alpha;
     return sum;
 }
 

@@ -3,20 +3,27 @@
 #include <algorithm>
 #include <cmath>
 
+#include "camera_rays/look_again.h"
 #include "camera_rays/picture_writer.h"
 #include "camera_rays/pixel_rays.h"
-#include "camera_rays/refine_edges.h"
 #include "core/parallel.h"
 
 namespace brisance {
 
 namespace {
 
+float luminance_of_medium(const CellSum& cells) {
+    float sum = 0.0f;
+    for (const Cell cell : {Cell::V, Cell::MV, Cell::MM, Cell::MS, Cell::MA})
+        sum += luminance(cells.at(cell));
+    return sum;
+}
+
 // Rows of a picture together: their surfaces are lit in one call.
 class Band {
 public:
-    Band(const PixelRays& rays, int width, const LightSurfaces& light_surfaces, std::vector<Glare>& glare)
-        : rays_(rays), width_(width), light_surfaces_(light_surfaces), glare_(glare) {}
+    Band(const PixelRays& rays, int width, const LightSurfaces& light_surfaces, std::vector<FirstLook>& first)
+        : rays_(rays), width_(width), light_surfaces_(light_surfaces), first_(first) {}
 
     void draw(int begin, int end, PictureWriter& writer) {
         sums_.assign(std::size_t(end - begin) * width_, RaySum{});
@@ -32,8 +39,13 @@ public:
 private:
     void draw_row(int begin, int row, std::vector<FoundSurface>& found) {
         for (int x = 0; x < width_; ++x) {
-            Glare* const glare = glare_.empty() ? nullptr : &glare_[std::size_t(begin + row) * width_ + x];
-            sums_[std::size_t(row) * width_ + x] = rays_.trace(x, begin + row, &found, glare);
+            FirstLook* const look = first_.empty() ? nullptr : &first_[std::size_t(begin + row) * width_ + x];
+            RaySum& sum = sums_[std::size_t(row) * width_ + x];
+            sum = rays_.trace(x, begin + row, &found, look ? &look->glare : nullptr);
+            if (look) {
+                look->medium = luminance_of_medium(sum.cells);
+                look->through = sum.through;
+            }
         }
     }
 
@@ -54,7 +66,7 @@ private:
     const PixelRays& rays_;
     int width_;
     const LightSurfaces& light_surfaces_;
-    std::vector<Glare>& glare_;  // empty: not recorded
+    std::vector<FirstLook>& first_;  // empty: not recorded
     std::vector<RaySum> sums_;
 };
 
@@ -63,9 +75,11 @@ constexpr std::size_t kRaysAtOnce = 1 << 18;
 
 }  // namespace
 
-int automatic_samples(const Camera& camera, const SourceField& field) {
+AutomaticSamples automatic_samples(const Camera& camera, const SourceField& field) {
+    constexpr double kFewOfVoxel = 1.7, kEnoughOfVoxel = 5.0;
+    constexpr int kMost = 8;
     if (field.bricks().empty())
-        return 1;
+        return {1, 1};
     const Medium& medium = field.medium();
     double nearest = 1e300;
     for (std::size_t b = 0; b < field.bricks().brick_count(); ++b) {
@@ -73,7 +87,10 @@ int automatic_samples(const Camera& camera, const SourceField& field) {
         nearest = std::min(nearest, std::max(0.0, glm::dot(centre - camera.eye_local(), camera.forward())));
     }
     const double footprint = camera.pixel_angle() * nearest / medium.spacing;  // voxels per pixel
-    return std::clamp(static_cast<int>(std::ceil(5.0 * std::min(footprint, 1e3))), 1, 8);
+    const auto samples = [&](double of_voxel) {
+        return std::clamp(static_cast<int>(std::ceil(of_voxel * std::min(footprint, 1e3))), 1, kMost);
+    };
+    return {samples(kFewOfVoxel), samples(kEnoughOfVoxel)};
 }
 
 Image render_picture(const SourceField& field, const Camera& camera, const PictureSettings& settings,
@@ -83,15 +100,14 @@ Image render_picture(const SourceField& field, const Camera& camera, const Pictu
     const int width = camera.settings().width, height = camera.settings().height;
     const std::size_t per_row = std::max<std::size_t>(1, std::size_t(width) * pixel_rays.count());
     const int rows = static_cast<int>(std::clamp<std::size_t>(kRaysAtOnce / per_row, 1, height));
-    const bool refines = settings.surroundings && settings.edge_refinement > 1;
-    std::vector<Glare> glare(refines ? std::size_t(width) * height : 0);
-    Band band(pixel_rays, width, light_surfaces, glare);
+    std::vector<FirstLook> first(looks_again(settings) ? std::size_t(width) * height : 0);
+    Band band(pixel_rays, width, light_surfaces, first);
     for (int y = 0; y < height; y += rows) {
         band.draw(y, std::min(y + rows, height), writer);
         progress.fraction(double(std::min(y + rows, height)) / height);
     }
-    if (refines)
-        refine_edges(field, camera, settings, glare, writer);
+    if (!first.empty())
+        look_again(field, camera, settings, first, writer);
     return writer.take();
 }
 

@@ -1,6 +1,6 @@
 // The primary rays of a pixel.
 //
-// Surfaces have edges finer than a pixel and want many rays. The medium does not: rays a fifth of a voxel apart know it
+// Surfaces have edges finer than a pixel and want many rays. The medium does not: rays a part of a voxel apart know it
 // (automatic_samples()). Where all of a pixel's rays end at about the same depth, the medium is therefore integrated
 // along fewer rays, those of a picture without surfaces, and their mean transmittance dims what lies behind.
 #pragma once

@@ -48,6 +48,7 @@ PrimaryRay trace_primary_ray(const SourceField& field, const PixelRay& ray, cons
 void add_weighted(RaySum& sum, const RaySum& s, float weight) {
     sum.cells.add(s.cells, Rgb(weight));
     sum.alpha += weight * s.alpha;
+    sum.through += weight * s.through;
     sum.distance_weight += weight * s.distance_weight;
     sum.distance_sum += weight * s.distance_sum;
     sum.albedo_sum += weight * s.albedo_sum;

@@ -26,6 +26,7 @@ struct RaySum {
     float similar_depth = 0.0f;    // ... in the medium through which scattered light was traced
     Rgb forward{0.0f};             // optical depth of undeflected scattering, where it is traced separately
     float alpha = 0.0f;            // 1 - exp(-depth), set when the ray is done
+    float through = 0.0f;          // exp(-depth), the same
     float distance_weight = 0.0f;  // opacity gathered, ...
     float distance_sum = 0.0f;     // ... times the distance along the ray [m]
     Rgb albedo_sum{0.0f};          // ... times albedo (the medium's as luminance)

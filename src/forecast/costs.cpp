@@ -33,7 +33,7 @@ constexpr int kPilotSamples = 8;
 double camera_rays(const Shot& shot, const Medium& medium, const CameraSettings& settings) {
     const Camera camera(settings, medium);
     const int side =
-        settings.samples_per_axis > 0 ? settings.samples_per_axis : automatic_samples(camera, SourceField(medium));
+        settings.samples_per_axis > 0 ? settings.samples_per_axis : automatic_samples(camera, SourceField(medium)).few;
     return double(shot.camera.width) * shot.camera.height * side * side;
 }
 

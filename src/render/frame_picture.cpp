@@ -14,14 +14,26 @@ namespace {
 // Anti-aliasing samples along a pixel's side where there are surfaces: their edges are sharp.
 constexpr int kSurfaceSamples = 4;
 
+// What a single pixel may err by for want of rays, in parts of `lighting.error`. Most pixels err by far less.
+constexpr float kShareOfSampling = 0.5f;
+
+// Few rays first, and more where they err. Not where each ray carries random estimates, which want all rays, nor where
+// the layers of bounces have to add up.
+bool looks_twice(const DrawInput& input) {
+    return !input.plan.scattering_method && !input.shot.output.bounce_layers;
+}
+
 PictureSettings picture_settings(const DrawInput& input, const ManyLights& lights) {
     const CameraSettings& camera = input.camera.settings();
     PictureSettings settings;
     settings.samples_per_axis = camera.samples_per_axis;
     if (camera.samples_per_axis == 0) {
-        const int of_medium = automatic_samples(input.camera, lights.medium().field());
-        settings.samples_per_axis = std::max(of_medium, input.plan.surfaces ? kSurfaceSamples : 1);
-        settings.medium_samples_per_axis = of_medium;
+        const AutomaticSamples of_medium = automatic_samples(input.camera, lights.medium().field());
+        const int first = looks_twice(input) ? of_medium.few : of_medium.enough;
+        settings.samples_per_axis = input.plan.surfaces ? std::max(of_medium.enough, kSurfaceSamples) : first;
+        settings.medium_samples_per_axis = first;
+        settings.finest_medium_samples_per_axis = of_medium.enough;
+        settings.tolerance = kShareOfSampling * static_cast<float>(input.shot.lighting.error);
     }
     settings.edge_refinement = camera.edge_refinement;
     settings.cells = input.shot.output.cell_layers;
@@ -70,6 +82,7 @@ FramePicture::FramePicture(const DrawInput& input, const ManyLights& lights, con
     const std::size_t moments = stretch->shutter.moments().size();
     settings_.samples_per_axis = share_of_moment(settings_.samples_per_axis, moments);
     settings_.medium_samples_per_axis = share_of_moment(settings_.medium_samples_per_axis, moments);
+    settings_.finest_medium_samples_per_axis = share_of_moment(settings_.finest_medium_samples_per_axis, moments);
     settings_.edge_refinement = share_of_moment(settings_.edge_refinement, moments);
 }
 

@@ -136,6 +136,7 @@ TEST(Picture, ForwardScatteringStandsInItsOwnLayer) {
     Shot shot;
     shot.camera = front();
     shot.camera_given = true;
+    shot.camera.samples_per_axis = 2;  // second looks follow the whole picture
     Progress silent;
     const Image all = render_medium(shot, medium, silent).image;
     shot.scattering.bounces = 1;
@@ -211,9 +212,40 @@ TEST(Picture, FinerPixelsNeedFewerSamples) {
     const SourceField field(medium);
     CameraSettings camera = front();
     camera.height = camera.width = 1000;
-    EXPECT_EQ(automatic_samples(Camera(camera, medium), field), 1);
-    camera.height = camera.width = 10;
-    EXPECT_EQ(automatic_samples(Camera(camera, medium), field), 8);
+    EXPECT_EQ(automatic_samples(Camera(camera, medium), field).few, 1);
+    EXPECT_EQ(automatic_samples(Camera(camera, medium), field).enough, 1);
+    camera.height = camera.width = 100;
+    const AutomaticSamples medium_size = automatic_samples(Camera(camera, medium), field);
+    EXPECT_LT(medium_size.few, medium_size.enough);
+    camera.height = camera.width = 5;
+    EXPECT_EQ(automatic_samples(Camera(camera, medium), field).few, 8);
+    EXPECT_EQ(automatic_samples(Camera(camera, medium), field).enough, 8);
+}
+
+// Fine smoke over coarse pixels: one ray in each is off. A second look finds where. Most pixels err by far less than
+// the most that is tolerated of one.
+double error_after_second_look(const Medium& medium, const CameraSettings& camera, float tolerance) {
+    const SourceField field(medium);
+    PictureSettings settings;
+    settings.finest_medium_samples_per_axis = 8;
+    settings.tolerance = tolerance;
+    Progress silent;
+    const Image seen = render_picture(field, Camera(camera, medium), settings, silent),
+                truth = picture(medium, camera, 24);
+    const std::vector<float>&a = seen.layer("").pixels, &b = truth.layer("").pixels;
+    double square = 0.0, norm = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        square += (a[i] - b[i]) * (a[i] - b[i]);
+        norm += b[i] * b[i];
+    }
+    return std::sqrt(square / norm);
+}
+
+TEST(Picture, SecondLooksErrByNoMoreThanIsTolerated) {
+    const Medium medium = make_medium(cloud());
+    EXPECT_GT(error_after_second_look(medium, front(), 0.0f), 0.05);
+    for (const float tolerance : {0.03f, 0.01f})
+        EXPECT_LT(error_after_second_look(medium, front(), tolerance), tolerance);
 }
 
 }  // namespace
