@@ -131,6 +131,18 @@ TEST(Contests, AreAmongTheOwnersOfACell) {
     EXPECT_EQ(all[1].contenders[1].method, "lights");
 }
 
+// What do the others give for the time of the method that nobody has to ask for?
+TEST(Contests, AreHeldInTheTimeOfTheDefault) {
+    Report report = three_methods();
+    report.methods[1].method.by_default = true;
+    const Contest contest = contests(report, Clock::Cpu)[0];
+    EXPECT_EQ(contest.seconds, 16.0);
+    EXPECT_EQ(contest.at_time, 1u);
+    const std::vector<Method> methods = suite_methods(suite_size("quick"), {});
+    for (const Method& method : methods)
+        EXPECT_EQ(method.by_default, method.base == "lighting_grid" || method.base == "vbnl") << method.label;
+}
+
 TEST(Contests, HaveAWinnerAtEqualTimeAndAtEqualError) {
     const Contest contest = contests(three_methods(), Clock::Cpu)[0];
     EXPECT_EQ(contest.seconds, 2.0);  // of 2 and 16 the lower

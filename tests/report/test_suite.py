@@ -38,7 +38,7 @@ class CommandLine(test_report.Case):
     def test_usage_errors(self):
         make_shots(self.folder)
         before = self.names()
-        self.expect(2, "--suite", "middling", says=["middling", "quick, full"])
+        self.expect(2, "--suite", "middling", says=["middling", "quick, draft, full"])
         self.expect(2, *QUICK, "--budgets", "4", says="--suite")
         self.expect(2, "more.json", "--shots", "shots", says="--suite")
         self.expect(2, "more.json", "more.json", says="one SHOT_OR_VDB, or --suite; 2 were given")

@@ -20,6 +20,7 @@ const CellSet kCellsOfVirtualLights = {Cell::MS, Cell::SS};
 // Virtual lights by the settings of a preset.
 BuiltIn by_virtual_lights(const TechniquePreset& preset) {
     BuiltIn method{preset.name, {"method=lighting_grid"}, StepsOf::Samples, kCellsOfVirtualLights};
+    method.by_default = preset.settings.empty();
     for (const auto& [key, value] : preset.settings)
         method.settings.push_back("virtual_lights." + key + "=" + value);
     return method;
@@ -41,7 +42,12 @@ void add_scattering_methods(std::vector<BuiltIn>& methods) {
 
 std::vector<BuiltIn> make_built_ins() {
     std::vector<BuiltIn> methods = {
-        {"lighting_grid", {"method=lighting_grid", "scattering.method=lighting_grid"}, StepsOf::Grid, kCellsOfGrid},
+        {"lighting_grid",
+         {"method=lighting_grid", "scattering.method=lighting_grid"},
+         StepsOf::Grid,
+         kCellsOfGrid,
+         false,
+         true},
         {"path", {"method=path"}, StepsOf::Paths, kAllCells, true},
         {"path_plain",
          {"method=path", "tracing.emission=collision", "tracing.light_sampling=false",

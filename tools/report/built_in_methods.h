@@ -14,6 +14,7 @@ struct BuiltIn {
     StepsOf steps = StepsOf::Grid;
     CellSet cells;
     bool unbiased = false;
+    bool by_default = false;  // a shot that names no method has its cells from this one
 };
 
 // Virtual lights come last.

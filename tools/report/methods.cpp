@@ -85,8 +85,14 @@ Method parse_method(const std::string& text) {
     const std::vector<std::string> parts = split(text);
     const bool named = parts[0].find('=') != std::string::npos;
     const BuiltIn& base = built_in(named ? value_of(parts[0]) : parts[0], text);
-    Method method{
-        named ? key_of(parts[0]) : text, base.name, base.settings, {}, base.steps, base.unbiased, false, base.cells};
+    Method method{.label = named ? key_of(parts[0]) : text,
+                  .base = base.name,
+                  .settings = base.settings,
+                  .steps = {},
+                  .steps_of = base.steps,
+                  .unbiased = base.unbiased,
+                  .by_default = base.by_default && parts.size() == 1,
+                  .cells = base.cells};
     if (method.label.empty() || method.label.find(':') != std::string::npos)
         refuse(fmt::format("--methods {}: a label is not empty and holds no colon", text));
     for (std::size_t i = 1; i < parts.size(); ++i) {

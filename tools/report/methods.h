@@ -37,8 +37,9 @@ struct Method {
     std::vector<MethodStep> steps;      // at least one
     StepsOf steps_of = StepsOf::Grid;   // of the built-in ladder
     bool unbiased = false;
-    bool averages = false;  // its steps average more and more samples: the error falls as time^-1/2
-    CellSet cells;          // that it computes by its own technique; the others of its pictures are another method's
+    bool by_default = false;  // a shot that names no method has its cells from this one
+    bool averages = false;    // its steps average more and more samples: the error falls as time^-1/2
+    CellSet cells;            // that it computes by its own technique; the others of its pictures are another method's
 };
 
 struct MethodOptions {

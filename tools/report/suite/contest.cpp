@@ -33,26 +33,38 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
+// At which the contenders are compared: the longest run of the one that shots take by default, so that a row says what
+// the others give for its time. Where it does not compete, the median of all longest runs.
+double equal_time(const std::vector<ErrorCurve>& curves, std::optional<std::size_t> by_default) {
+    if (by_default)
+        return curves[*by_default].points().back().seconds;
+    std::vector<double> longest;
+    for (const ErrorCurve& curve : curves)
+        longest.push_back(curve.points().back().seconds);
+    return median(std::move(longest));
+}
+
 Contest contest_of(const Report& report, const std::string& cell, Clock clock) {
     Contest contest;
     contest.cell = cell;
     if (const auto noise = report.reference.noise.find(cell); noise != report.reference.noise.end())
         contest.noise = noise->second;
     std::vector<ErrorCurve> curves;
-    std::vector<double> longest;
+    std::optional<std::size_t> by_default;
     for (const MethodResult& result : report.methods) {
         if (!owns(result.method, cell))
             continue;
         ErrorCurve curve = curve_of(report, result, cell, clock);
         if (curve.points().empty())
             continue;
-        longest.push_back(curve.points().back().seconds);
+        if (result.method.by_default)
+            by_default = curves.size();
         contest.contenders.push_back({result.method.label, {}, {}, curve.floor()});
         curves.push_back(std::move(curve));
     }
     if (curves.empty())
         return contest;
-    contest.seconds = median(longest);
+    contest.seconds = equal_time(curves, by_default);
     for (std::size_t i = 0; i < curves.size(); ++i) {
         contest.contenders[i].error = curves[i].error_after(contest.seconds);
         for (std::size_t t = 0; t < kSuiteTargets.size(); ++t)

@@ -23,7 +23,7 @@ struct Contender {
 
 struct Contest {
     std::string cell;
-    double seconds = 0.0;                 // at which errors are compared: the median of the contenders' longest runs
+    double seconds = 0.0;                 // at which errors are compared (equal_time())
     double noise = 0.0;                   // of the reference: smaller errors are not told apart; 0: not known
     std::vector<Contender> contenders;    // that own the cell and have an error in it
     std::optional<std::size_t> at_time;   // index of the smallest error then

@@ -72,8 +72,8 @@ function failures() {
 
 const help =
     "Every method competes in the cells that it computes by its own technique. Times are CPU seconds of the whole " +
-    "picture; equal time is the median of the competitors' longest runs, equal error the smallest of 10, 5 and 2 % " +
-    "that any of them reaches. \u2020 is an error below the noise of the reference: such errors are not told apart. " +
+    "picture; equal time is that of the finest run of the method that shots take by default, equal error the smallest " +
+    "of 10, 5 and 2 % that any of them reaches. \u2020 is an error below the noise of the reference: such errors are not told apart. " +
     "Pictures are kept of each method's finest run, in the cells that it competes in.";
 
 export function addSuite(section, link) {
