@@ -36,6 +36,8 @@ std::string budget_of(const SuiteSize& size, const Method& method) {
             return size.lamps;
         case StepsOf::Directions:
             return size.cascade_sides;
+        case StepsOf::Lattices:
+            return size.lattice_levels;
         case StepsOf::Samples:
             break;
     }
@@ -60,6 +62,7 @@ const std::vector<SuiteSize>& suite_sizes() {
          "4,16",
          "1,2",
          "4",
+         "3",
          "4,64",
          "1",
          {"camera.edge_refinement=1", "lighting.lattice_level=3", "lighting.error=0.1", "lighting.alpha=1",
@@ -76,6 +79,7 @@ const std::vector<SuiteSize>& suite_sizes() {
          "4,16,64,256",
          "1,2,3,4",
          "4,8,16",
+         "2,1,0",
          "4,16,64,256",
          "1,2,4",
          {},
