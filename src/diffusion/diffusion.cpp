@@ -27,8 +27,8 @@ double limited(double extinction, double fluence, double gradient, double most) 
 
 // Root mean square of the difference over that of the fluence.
 double relative_change(const std::vector<double>& before, const std::vector<double>& now) {
-    const double squares = sum_over(
-        now.size(), [&](std::size_t i) { return (now[i] - before[i]) * (now[i] - before[i]); });
+    const double squares =
+        sum_over(now.size(), [&](std::size_t i) { return (now[i] - before[i]) * (now[i] - before[i]); });
     const double all = sum_over(now.size(), [&](std::size_t i) { return now[i] * now[i]; });
     return all > 0.0 ? std::sqrt(squares / all) : 0.0;
 }
@@ -203,7 +203,8 @@ void Diffusion::solve_colour(Colour& colour, std::span<const Rgb> intensity, std
     double change = 0.0;
     int limiters = 0;
     // Coarsely until the limiter has settled, then finely until it has settled again.
-    for (bool fine = !limit, settled = false; !settled && limiters < (limit ? settings_.most_limiters : 1); ++limiters) {
+    for (bool fine = !limit, settled = false; !settled && limiters < (limit ? settings_.most_limiters : 1);
+         ++limiters) {
         set_constants(colour, limiters > 0);
         set_system(colour);
         before = colour.fluence;
@@ -219,8 +220,7 @@ void Diffusion::solve_colour(Colour& colour, std::span<const Rgb> intensity, std
     counts_.limiters = std::max(counts_.limiters, limiters);
     counts_.residual = std::max(counts_.residual, found.residual);
     counts_.change = std::max(counts_.change, change);
-    counts_.converged =
-        counts_.converged && found.residual <= settings_.tolerance && change <= settings_.most_change;
+    counts_.converged = counts_.converged && found.residual <= settings_.tolerance && change <= settings_.most_change;
 }
 
 void Diffusion::write(const Colour& colour, std::span<const Rgb> intensity, std::span<const float> directional,

@@ -198,9 +198,7 @@ Convergence Multigrid::solve(const std::vector<double>& right, std::vector<doubl
     Level& finest = levels_.front();
     const Cells& cells = finest.cells;
     const std::size_t n = cells.count();
-    const auto times = [&](const std::vector<double>& v, std::size_t i) {
-        return outflow(cells, finest.system, v, i);
-    };
+    const auto times = [&](const std::vector<double>& v, std::size_t i) { return outflow(cells, finest.system, v, i); };
     const double norm = sum_over(n, [&](std::size_t i) { return std::abs(right[i]); });
     Convergence c;
     if (!(norm > 0.0)) {

@@ -1,5 +1,6 @@
 #include "scattering/diffused_light.h"
 
+#include "lighting_grid/voxel_lights.h"
 #include "medium/coarse_medium.h"
 
 namespace brisance {
@@ -10,10 +11,12 @@ DiffusedLight diffused_light(const ExtinctionPyramid& fine, int level, const Sca
     ExtinctionPyramid pyramid(medium, 1);
     pyramid.set_occluders(fine.occluders());
     const ScatteredLight source = restricted(once, fine.medium().lattice, level);
-    std::vector<std::uint8_t> smoke(medium.extinction.size());
+    const std::vector<Rgb> unit =
+        project_extinction_times(medium, std::vector<Rgb>(medium.extinction.size(), Rgb(1.0f)));
+    std::vector<std::uint8_t> smoke(unit.size());  // in the hat of a node
     DiffusedLight out;
     for (std::size_t i = 0; i < smoke.size(); ++i)
-        out.nodes += smoke[i] = medium.extinction[i] > 0.0f;
+        out.nodes += smoke[i] = unit[i].x > 0.0f;
 
     Diffusion diffusion(pyramid, settings);
     const Gathered arriving = diffusion.solve(source.intensity, source.directional);

@@ -21,9 +21,9 @@ DiffusionSettings classical() {
 }
 
 // A cube of even smoke, nodes 0.25 m apart.
-Recipe even_cube(float extinction, float albedo, float mean_cosine) {
+Recipe even_cube(float extinction, float albedo, float mean_cosine, int half = 32) {
     Recipe r;
-    r.box = cube(-32, 31);
+    r.box = cube(-half, half - 1);
     r.world_from_index = cubic(0.25);
     r.density = [=](const ivec3&) { return extinction; };
     r.flame = [](const ivec3&) { return 1.0f; };
@@ -65,41 +65,60 @@ TEST_P(PointSource, FallsOffAsTheGreensFunction) {
 
 INSTANTIATE_TEST_SUITE_P(MeanCosines, PointSource, ::testing::Values(0.0f, 0.5f));
 
-// A layer that emits evenly: phi = Q / sigma_a (1 - B cosh(mu z)) with phi / 2 leaving at its faces.
+// A layer that emits evenly: phi = Q / sigma_a (1 - B cosh(mu z)) with phi / 2 leaving at its faces, in the middle of
+// a layer that is much wider than thick.
 TEST(Diffusion, OfALayerIsTheClosedForm) {
-    constexpr int kNodes = 48;
+    constexpr int kNodes = 46;
     for (const double depth : {1.0, 6.0, 24.0})
         for (const double albedo : {0.5, 0.9, 0.99}) {
-            const Lit lit(make_medium(slab(kNodes, depth, Rgb(float(albedo)))));
+            Recipe r;
+            r.box = {ivec3(0), ivec3(7, 7, kNodes + 1)};
+            r.world_from_index = transform(dmat3(1000, 0, 0, 0, 1000, 0, 0, 0, 1), dvec3(0.0));
+            r.density = [](const ivec3& n) { return n.z >= 1 && n.z <= kNodes ? 1.0f : 0.0f; };
+            r.settings = black_smoke();
+            r.settings.smoke.albedo = Rgb(float(albedo));
+            r.settings.smoke.extinction_per_metre = float(depth / kNodes);
+            const Lit lit(make_medium(r));
             const std::vector<Rgb> even =
                 project_extinction_times(lit.medium, std::vector<Rgb>(lit.medium.extinction.size(), Rgb(1.0f)));
-            Diffusion diffusion(lit.pyramid, classical());
-            diffusion.solve(even, {});
+            // Voxels as flat as these are what coarser cells represent worst.
+            DiffusionSettings settings = classical();
+            settings.most_iterations = 5000;
+            Diffusion diffusion(lit.pyramid, settings);
+            const Gathered light = diffusion.solve(even, {});
+            EXPECT_TRUE(diffusion.counts().converged);
+            EXPECT_LT(diffusion.counts().unbalanced, 1e-4);
             const double mu = std::sqrt(3.0 * (1.0 - albedo)), half = 0.5 * depth;  // lengths in mean free paths
             const double b = 1.0 / (std::cosh(mu * half) + 2.0 / 3.0 * mu * std::sinh(mu * half));
-            const double truth = 1.0 - b * std::sinh(mu * half) / (mu * half);
-            const DiffusionBalance& found = diffusion.balance();
-            std::printf("depth %g albedo %g: absorbed %.5f, closed form %.5f\n", depth, albedo,
-                        found.absorbed.x / found.emitted.x, truth);
-            EXPECT_NEAR(found.absorbed.x / found.emitted.x, truth, 0.005 + 0.01 * truth);
-            EXPECT_LT(diffusion.counts().unbalanced, 1e-4);
+            double worst = 0.0;
+            for (int z = 3; z <= kNodes - 2; ++z) {
+                const double at = (z - 0.5 * (kNodes + 1)) * depth / kNodes;
+                const double truth = 4.0 * kPi64 / (1.0 - albedo) * (1.0 - b * std::cosh(mu * at));
+                worst = std::max(worst, std::abs(light.fluence[lit.medium.lattice.find_node({4, 4, z})] / truth - 1.0));
+            }
+            std::printf("depth %g albedo %g: largest error %.4f, %d iterations\n", depth, albedo, worst,
+                        diffusion.counts().iterations);
+            EXPECT_LT(worst, 0.02);
         }
 }
 
 // Light that leaves a source with mean cosine c is absorbed c / sigma_t' further on, on average.
 TEST(Diffusion, OfADirectedSourceIsShifted) {
     const float g = 0.5f, albedo = 0.5f;
-    const Lit lit(make_medium(even_cube(2.0f, albedo, g)));
+    const Lit lit(make_medium(even_cube(2.0f, albedo, g, 24)));
     std::vector<float> directional(lit.medium.extinction.size() * 24, 0.0f);
-    const std::size_t middle = lit.medium.lattice.find_node({0, 0, 0});
+    std::vector<Rgb> source(lit.medium.extinction.size());
     const double cosine = 0.3;
-    for (int c = 0; c < 3; ++c)
-        directional[middle * 24 + 3 * 2 + c] = float(3.0 * cosine / kSh1);  // 1 + 3 c w_x
+    for (std::size_t i = 0; i < source.size(); ++i) {
+        source[i] = Rgb(ball(lit.medium.lattice.node(i), dvec3(0.0), 3.0));
+        for (int c = 0; c < 3; ++c)
+            directional[i * 24 + 3 * 2 + c] = float(3.0 * cosine / kSh1) * source[i][c];  // 1 + 3 c w_x
+    }
     for (const bool limit : {false, true}) {
         DiffusionSettings settings;
         settings.flux_limiter = limit;
         Diffusion diffusion(lit.pyramid, settings);
-        const Gathered light = diffusion.solve(point_light(lit), directional);
+        const Gathered light = diffusion.solve(source, directional);
         dvec3 moment(0.0);
         double sum = 0.0;
         for (std::size_t i = 0; i < lit.medium.extinction.size(); ++i) {
@@ -116,8 +135,8 @@ TEST(Diffusion, OfADirectedSourceIsShifted) {
         EXPECT_LT(diffusion.counts().unbalanced, 1e-4);
         // On the far side light travels on, on the near side it travels back.
         const std::size_t n = lit.medium.extinction.size();
-        EXPECT_GT(light.moments[3 * 2 * n + lit.medium.lattice.find_node({6, 0, 0})], 0.0f);
-        EXPECT_LT(light.moments[3 * 2 * n + lit.medium.lattice.find_node({-6, 0, 0})], 0.0f);
+        EXPECT_GT(light.moments[3 * 2 * n + lit.medium.lattice.find_node({8, 0, 0})], 0.0f);
+        EXPECT_LT(light.moments[3 * 2 * n + lit.medium.lattice.find_node({-8, 0, 0})], 0.0f);
     }
 }
 
@@ -162,7 +181,7 @@ TEST(Diffusion, ConservesEnergyColourByColour) {
 
 // In almost clear air light flies: power / (4 pi r^2). Unlimited, it would fall off as 1 / (D r).
 TEST(Diffusion, FluxLimitedLightFliesThroughClearAir) {
-    const Lit lit(make_medium(even_cube(1e-6f, 0.5f, 0.0f)));
+    const Lit lit(make_medium(even_cube(1e-6f, 0.5f, 0.0f, 24)));
     double errors[2];
     for (const bool limit : {false, true}) {
         DiffusionSettings settings;
@@ -223,7 +242,7 @@ struct Wall : Occluders {
 };
 
 TEST(Diffusion, WallsStopLight) {
-    Lit lit(make_medium(even_cube(1.0f, 0.9f, 0.0f)));
+    Lit lit(make_medium(even_cube(1.0f, 0.9f, 0.0f, 16)));
     const Wall wall(-0.4f);
     lit.pyramid.set_occluders(&wall);
     Diffusion diffusion(lit.pyramid, {});
@@ -235,7 +254,7 @@ TEST(Diffusion, WallsStopLight) {
     EXPECT_LT(behind, 1e-6f * light.fluence[lit.medium.lattice.find_node({0, 0, 0})]);
     EXPECT_LT(diffusion.counts().unbalanced, 1e-4);
     // What the wall swallows is missing on its bright side, too.
-    const Lit open(make_medium(even_cube(1.0f, 0.9f, 0.0f)));
+    const Lit open(make_medium(even_cube(1.0f, 0.9f, 0.0f, 16)));
     const Gathered without = Diffusion(open.pyramid, {}).solve(point_light(open), {});
     const std::size_t at = lit.medium.lattice.find_node({4, 0, 0});
     EXPECT_LT(light.fluence[at], without.fluence[at]);
