@@ -59,18 +59,17 @@ private:
         vec3 begin, end;  // from the probe [nodes of the marched level]
     };
 
-    Segment segment(int direction, const ivec3& corner) const {
+    Segment segment(int direction) const {
         const vec3 d = index_from_local_ * all_.directions_->of(index_)[direction];
-        return {cascade_.begin * d, cascade_.end * d + vec3(corner * cascade_.stride)};
+        return {cascade_.begin * d, cascade_.end * d};
     }
 
     void fill(FieldBlock& block, std::size_t brick, const std::vector<ProbeClass>& classes, int first, int last) const {
         vec3 low(1e30f), high(-1e30f);
-        const float reach = last_ || !all_.settings_.meets_probes ? 0.0f : float(cascade_.stride);
         for (int d = first; d < last; ++d) {
-            const Segment s = segment(d, ivec3(0));
-            low = glm::min(low, glm::min(s.begin, s.end - reach));
-            high = glm::max(high, glm::max(s.begin, s.end + reach));
+            const Segment s = segment(d);
+            low = glm::min(low, glm::min(s.begin, s.end));
+            high = glm::max(high, glm::max(s.begin, s.end));
         }
         ivec3 from(BrickLattice::kSize), to(-1);
         for (const ProbeClass& c : classes)
@@ -84,9 +83,7 @@ private:
                    (origin + to) * cascade_.stride + ivec3(glm::floor(high)) + 1);
     }
 
-    // Marches the same segment from all probes of a class. Without extinction on its way, nothing happens. A segment
-    // that leads to a probe beside the ray counts as long as the ray's: on average over the probes around, it is
-    // longer.
+    // Marches the same segment from all probes of a class. Without extinction on its way, nothing happens.
     void march(const FieldBlock& block, Task& task, const ProbeClass& c, const Segment& s, bool occluded, bool make,
                std::size_t& cursor, Intervals& out) const {
         const vec3 way = s.end - s.begin;
@@ -143,21 +140,17 @@ private:
         Rgb sum[kProbesAtOnce] = {}, far[kProbesAtOnce] = {};
         float seen[kProbesAtOnce] = {};
         Intervals intervals;
-        const bool meets = !last_ && all_.settings_.meets_probes;
-        const int corners = last_ ? 0 : corner_count(c.axes), marches = meets ? corners : 1;
-        for (int k = 0; k < std::max(corners, 1); ++k) {
-            const Segment to_corner = segment(d, corner_offset(c.axes, k));
-            if (k < marches) {
-                march(block, task, c, meets ? to_corner : segment(d, ivec3(0)), occluded, make, cursor, intervals);
-                for (int p = 0; p < c.count; ++p)
-                    sum[p] += Rgb(intervals.red[p], intervals.green[p], intervals.blue[p]) / float(marches);
-            }
-            if (k >= corners)
-                continue;
+        const Segment ray = segment(d);
+        march(block, task, c, ray, occluded, make, cursor, intervals);
+        for (int p = 0; p < c.count; ++p)
+            sum[p] = {intervals.red[p], intervals.green[p], intervals.blue[p]};
+        const int corners = last_ ? 0 : corner_count(c.axes);
+        for (int k = 0; k < corners; ++k) {
             const std::uint8_t* unhidden = nullptr;
-            if (occluded && !meets && c.axes != 0) {
+            if (occluded && c.axes != 0) {
                 if (make)
-                    look_for_surfaces(task, c, {segment(d, ivec3(0)).end, to_corner.end}, 0);
+                    look_for_surfaces(task, c, {ray.end, ray.end + vec3(corner_offset(c.axes, k) * cascade_.stride)},
+                                      0);
                 unhidden = task.unhidden.data() + cursor;
                 cursor += c.nodes.size();
             }

@@ -8,10 +8,6 @@ struct CascadeSettings {
     int side = 8;
     // Intervals of cascade i reach from near * (2^i - 1) to near * (2^(i + 1) - 1) spacings of the lattice.
     float near = 4.0f;
-    // Whether each interval ends where the intervals of the coarser probe begin that continues it, instead of beside
-    // them. It costs 3.4 times as many marches, and the skewed segments err more than the parallax that they remove:
-    // off.
-    bool meets_probes = false;
     // Cascade i marches the medium averaged to voxels 2^(i - finer) wide.
     int finer = 1;
     // Directions grow by 4 per cascade up to about so many. Beyond, they would resolve more than the averaged medium

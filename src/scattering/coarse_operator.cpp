@@ -78,6 +78,27 @@ ScatteredLight scattered_light(const Medium& medium, const Gathered& arriving, c
     return light;
 }
 
+std::vector<float> scattered_source(const Medium& medium, const Gathered& arriving,
+                                    const std::vector<std::uint8_t>& mask) {
+    const std::size_t n = mask.size();
+    const int channels = arriving.moments.empty() ? 3 : 27;
+    std::vector<float> source(n * channels, 0.0f);
+    parallel_for(
+        n,
+        [&](std::size_t i) {
+            if (!mask[i])
+                return;
+            for (int c = 0; c < channels; ++c) {
+                const float light =
+                    c < 3 ? arriving.fluence[c * n + i] / (4.0f * kPi)
+                          : arriving.moments[(c - 3) * n + i] * sh_phase_factor(c / 3 - 1, medium.mean_cosine);
+                source[i * channels + c] = medium.albedo_at(i)[c % 3] * light;
+            }
+        },
+        4096);
+    return source;
+}
+
 CoarseOperator::CoarseOperator(const ExtinctionPyramid& fine, int level, const LightingSettings& lighting,
                                const ScatteringSettings& scattering)
     : level_(level), medium_(coarse_medium(fine, level)), lighting_(lighting), alpha_(scattering.alpha) {
@@ -195,26 +216,6 @@ Gathered CoarseOperator::gather_by_cascades(const ScatteredLight& lights) {
     return cascades_->gather(source, channels);
 }
 
-std::vector<float> CoarseOperator::source_of(const Gathered& arriving) const {
-    const std::size_t n = mask_.size();
-    const int channels = arriving.moments.empty() ? 3 : 27;
-    std::vector<float> source(n * channels, 0.0f);
-    parallel_for(
-        n,
-        [&](std::size_t i) {
-            if (!mask_[i])
-                return;
-            for (int c = 0; c < channels; ++c) {
-                const float light =
-                    c < 3 ? arriving.fluence[c * n + i] / (4.0f * kPi)
-                          : arriving.moments[(c - 3) * n + i] * sh_phase_factor(c / 3 - 1, medium_.mean_cosine);
-                source[i * channels + c] = medium_.albedo_at(i)[c % 3] * light;
-            }
-        },
-        4096);
-    return source;
-}
-
 ScatteredLight restricted(const ScatteredLight& fine, const BrickLattice& fine_lattice, int levels) {
     ScatteredLight coarse;
     coarse.intensity = as_colours(splat_down(fine_lattice, flattened(fine.intensity), 3, levels));
@@ -265,17 +266,17 @@ ScatteredLight CoarseOperator::bounce(const ScatteredLight& lights, FlightPower&
     ScatteredLight next = scattered_light(medium_, arriving, mask_);
     next.sharpen(medium_.lattice);
     if (cascades_)
-        next.source = source_of(arriving);
+        next.source = scattered_source(medium_, arriving, mask_);
     return next;
 }
 
-ScatteredLight CoarseOperator::spread_to_fine(const ScatteredLight& coarse, const Medium& fine) const {
+ScatteredLight spread_to_fine(const ScatteredLight& coarse, const CoarseNodes& nodes, const Medium& fine) {
     const std::size_t n = fine.lattice.node_count();
-    const CoarseSampler sampler{medium_.lattice, level_};
+    const CoarseSampler sampler{nodes.lattice, nodes.level};
     const bool directional = !coarse.directional.empty();
     const int channels = directional ? 27 : 3;
     // The source function is the light leaving per volume and extinction. Where a coarse node has no extinction, its
-    // neighbours determine it. A node that sharpening has emptied has almost no weight: its quotient would be rounding.
+    // neighbours determine it.
     std::vector<std::vector<Rgb>> source(channels / 3, std::vector<Rgb>(n, Rgb(0.0f)));
     parallel_for(
         fine.lattice.brick_count(),
@@ -284,14 +285,14 @@ ScatteredLight CoarseOperator::spread_to_fine(const ScatteredLight& coarse, cons
                 const std::size_t i = b * BrickLattice::kNodes + k;
                 float sum[27] = {}, mass = 0.0f;
                 sampler.at(fine.lattice.first_node(b) + BrickLattice::node_in_brick(k), [&](std::size_t q, float w) {
-                    if (!mask_[q])
+                    if (!nodes.mask[q])
                         return;
                     mass += w;
                     for (int c = 0; c < channels && !coarse.source.empty(); ++c)
                         sum[c] += w * coarse.source[q * channels + c];
                     if (!coarse.source.empty())
                         return;
-                    const float per_mass = w / std::max(weight_[q], least_weight_[q]);
+                    const float per_mass = w / nodes.unit_light[q];
                     for (int c = 0; c < 3; ++c)
                         sum[c] += per_mass * coarse.intensity[q][c];
                     for (int c = 0; c < channels - 3; ++c)
@@ -322,6 +323,15 @@ ScatteredLight CoarseOperator::spread_to_fine(const ScatteredLight& coarse, cons
                 light.directional[i * 24 + 3 * m + c] = scale[c] * part[i][c];
     }
     return light;
+}
+
+ScatteredLight CoarseOperator::spread_to_fine(const ScatteredLight& coarse, const Medium& fine) const {
+    CoarseNodes nodes{medium_.lattice, level_, mask_};
+    // A node that sharpening has emptied has almost no weight: its quotient would be rounding.
+    nodes.unit_light.resize(weight_.size());
+    for (std::size_t i = 0; i < weight_.size(); ++i)
+        nodes.unit_light[i] = std::max(weight_[i], least_weight_[i]);
+    return brisance::spread_to_fine(coarse, nodes, fine);
 }
 
 }  // namespace brisance

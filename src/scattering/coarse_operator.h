@@ -29,6 +29,23 @@ ScatteredLight scattered_light(const Medium& medium, const Gathered& arriving, c
 // Lights splatted to the nodes of the lattice 2^levels coarser, not sharpened.
 ScatteredLight restricted(const ScatteredLight& fine, const BrickLattice& fine_lattice, int levels);
 
+// The source function of light that arriving light scatters into: 3 values per node, or 27 where there are moments.
+std::vector<float> scattered_source(const Medium& medium, const Gathered& arriving,
+                                    const std::vector<std::uint8_t>& mask);
+
+// Nodes of a coarse lattice. `unit_light`: the light of each for a source function of 1, by which an intensity is
+// divided; unused for light with a source function.
+struct CoarseNodes {
+    const BrickLattice& lattice;
+    int level;
+    const std::vector<std::uint8_t>& mask;  // with extinction
+    std::vector<float> unit_light = {};
+};
+
+// Scattered light of coarse nodes as fine lights: the source function is interpolated, the fine extinction decides
+// where it leaves from.
+ScatteredLight spread_to_fine(const ScatteredLight& light, const CoarseNodes& nodes, const Medium& fine);
+
 // Where the power of one flight went, over 4 pi [W/sr].
 struct FlightPower {
     dvec3 gathered{0.0};  // collisions as gathered, before they were scaled
@@ -51,8 +68,6 @@ public:
     ScatteredLight bounce(const ScatteredLight& lights, FlightPower& flight, std::vector<LevelCost>& costs,
                           Progress& progress);
 
-    // Scattered light of the coarse nodes as fine lights: the source function is interpolated, the fine extinction
-    // decides where it leaves from.
     ScatteredLight spread_to_fine(const ScatteredLight& coarse, const Medium& fine) const;
 
 private:
@@ -60,7 +75,6 @@ private:
     Gathered gather(const ScatteredLight& lights, std::vector<LevelCost>& costs, Progress& progress);
     Gathered gather_from_hierarchy(const ScatteredLight& lights, std::vector<LevelCost>& costs, Progress& progress);
     Gathered gather_by_cascades(const ScatteredLight& lights);
-    std::vector<float> source_of(const Gathered& arriving) const;
     void balance_nodes(const ExtinctionPyramid& fine);
     dvec3 expected_collisions(const ScatteredLight& lights) const;  // power over 4 pi
 

@@ -144,6 +144,28 @@ std::vector<ScatteredLight> solve_series(const ScatteringInput& input, const Sca
     return orders;
 }
 
+// The same by diffusion.
+std::vector<ScatteredLight> solve_diffusion(const ScatteringInput& input, const ScatteredLight& once, int level,
+                                            ScatteringCosts& costs) {
+    const Stopwatch watch;
+    DiffusionSettings settings;
+    settings.flux_limiter = input.settings.flux_limiter;
+    DiffusedLight diffused = diffused_light(*input.pyramid, level, once, settings);
+    costs.lattice_level = level;
+    costs.coarse_nodes = diffused.nodes;
+    costs.diffusion = diffused.counts;
+    costs.series_seconds = watch.seconds();
+    costs.bytes = diffused.bytes;
+    return {std::move(diffused.light)};
+}
+
+std::vector<ScatteredLight> solve(const ScatteringInput& input, const ScatteredLight& once, int level, int bounces,
+                                  ScatteringCosts& costs, Progress& progress) {
+    return input.settings.solver == ScatteringSolver::Diffusion
+               ? solve_diffusion(input, once, level, costs)
+               : solve_series(input, once, level, bounces, costs, progress);
+}
+
 // Moves `share` of the light of `orders` to that of a second solution.
 void blend_orders(std::vector<ScatteredLight>& orders, const std::vector<ScatteredLight>& other, float share) {
     for (ScatteredLight& order : orders)
@@ -192,14 +214,16 @@ std::vector<ScatteredLight> solve_scattering(const ScatteringInput& input, Scatt
         return orders;
 
     const LatticeChoice lattice = choose_lattice(input);
-    std::vector<ScatteredLight> further = solve_series(input, orders[0], lattice.level, 0, costs, progress);
+    std::vector<ScatteredLight> further = solve(input, orders[0], lattice.level, 0, costs, progress);
     if (lattice.share_of_coarser > 0.0f) {
         ScatteringCosts coarser;
-        blend_orders(further, solve_series(input, orders[0], lattice.level + 1, costs.bounces, coarser, progress),
+        blend_orders(further, solve(input, orders[0], lattice.level + 1, costs.bounces, coarser, progress),
                      lattice.share_of_coarser);
         costs.share_of_coarser = lattice.share_of_coarser;
         costs.operator_seconds += coarser.operator_seconds;
         costs.series_seconds += coarser.series_seconds;
+        if (coarser.diffusion && !coarser.diffusion->converged)
+            costs.diffusion = coarser.diffusion;
     }
     if (!input.separate_orders)
         orders[0].add(further[0], Rgb(1.0f));

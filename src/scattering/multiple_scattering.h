@@ -16,6 +16,8 @@
 // bounce's error against that table is scaled out. Rays that share nothing with the table measure the series as a whole
 // (bounce_balance.h).
 //
+// Diffusion (diffusion.h) solves for the sum of all orders above the first instead: no bounce, no tail, no balance.
+//
 // Anisotropic phase functions: radiance arriving is kept as moments up to degree 2 (sh.h), lights are directional, and
 // the last scattering uses the phase function itself.
 #pragma once
@@ -28,6 +30,7 @@
 #include "scattering/balance.h"
 #include "scattering/bounce_balance.h"
 #include "scattering/coarse_operator.h"
+#include "scattering/diffused_light.h"
 #include "scattering/settings.h"
 
 namespace brisance {
@@ -38,13 +41,14 @@ struct ScatteringCosts {
     std::size_t coarse_nodes = 0;   // of lattice_level
     double operator_seconds = 0.0;  // escape probabilities and balance factors
     double series_seconds = 0.0;
-    std::vector<LevelCost> levels;          // of the first bounce
-    std::optional<CascadeCounts> cascades;  // none: the solver is another
-    std::optional<BounceBalance> balance;   // of all flights together; none: not measured
-    int bounces = 0;                        // computed one by one
-    double tail_ratio = 0.0;                // of successive bounces' power at the end, the largest of the colours'
-    double tail_share = 0.0;                // of the scattered power that the extrapolated tail makes up
-    double remainder = 0.0;                 // estimated share still missing
+    std::vector<LevelCost> levels;             // of the first bounce
+    std::optional<CascadeCounts> cascades;     // none: the solver is another
+    std::optional<DiffusionCounts> diffusion;  // the same
+    std::optional<BounceBalance> balance;      // of all flights together; none: not measured
+    int bounces = 0;                           // computed one by one
+    double tail_ratio = 0.0;                   // of successive bounces' power at the end, the largest of the colours'
+    double tail_share = 0.0;                   // of the scattered power that the extrapolated tail makes up
+    double remainder = 0.0;                    // estimated share still missing
     std::uint64_t bytes = 0;
 };
 
@@ -58,7 +62,8 @@ struct ScatteringInput {
 };
 
 // Light leaving the medium's nodes after one or more scatterings, ready to be gathered a last time: one entry, or one
-// per order (scattered once, twice, ..., and the tail) where orders are to be kept apart.
+// per order (scattered once, twice, ..., and the tail; with diffusion once, and all others) where orders are to be kept
+// apart.
 std::vector<ScatteredLight> solve_scattering(const ScatteringInput& input, ScatteringCosts& costs, Progress& progress);
 
 // Lights of all levels made from light leaving nodes.

@@ -3,10 +3,11 @@
 
 namespace brisance {
 
-// What makes the light of one bounce on the coarse lattice.
+// What makes the light of one bounce on the coarse lattice, or of all.
 enum class ScatteringSolver {
-    Hierarchy,        // of lights, with shadow maps
-    RadianceCascades  // of probes (radiance_cascades.h)
+    Hierarchy,         // of lights, with shadow maps
+    RadianceCascades,  // of probes (radiance_cascades.h)
+    Diffusion          // all bounces at once (diffusion.h)
 };
 
 struct ScatteringSettings {
@@ -16,7 +17,8 @@ struct ScatteringSettings {
     float escape = -1.0f;     // the mean escape probability by which methods are chosen; below 0: the medium's own
     float alpha = 1.5f;       // as LightingSettings::alpha, for scattered light
     ScatteringSolver solver = ScatteringSolver::Hierarchy;
-    int cascade_side = 8;  // side^2 directions at the nodes, with radiance cascades
+    int cascade_side = 8;      // side^2 directions at the nodes, with radiance cascades
+    bool flux_limiter = true;  // with diffusion: DiffusionSettings::flux_limiter
 };
 
 }  // namespace brisance

@@ -68,6 +68,12 @@ void check_tracing(const Given& given, const Shot& shot) {
         reject(given, "tracing.samples", "is none: the render would never end; give tracing.seconds or tracing.error");
 }
 
+void check_scattering(const Given& given, const ScatteringSettings& scattering) {
+    if (scattering.solver == ScatteringSolver::Diffusion && scattering.bounces > 2)
+        reject(given, "scattering.bounces",
+               "scattering.solver=diffusion knows the sum of all bounces only; give all, or at most 2");
+}
+
 void check_lights(const Given& given, const SceneSettings& scene) {
     int environments = 0;
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
@@ -123,6 +129,7 @@ void check_shot(const Shot& shot, const Given& given, const std::string& source)
         check_look_at(given, shot.camera);
     check_fire(given, shot.medium.fire);
     check_tracing(given, shot);
+    check_scattering(given, shot.scattering);
 }
 
 }  // namespace brisance

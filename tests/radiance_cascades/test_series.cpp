@@ -5,69 +5,18 @@
 #include <cstring>
 
 #include "core/parallel.h"
-#include "fixtures/tracing_fixture.h"
-#include "radiance_cascades/radiance_cascades.h"
-#include "scattering/multiple_scattering.h"
+#include "fixtures/glowing_series.h"
 
 namespace brisance {
 namespace {
 
 using namespace testing;
 
-// A ball that glows evenly and scatters, and the light of its fire at its nodes.
-struct Fire {
-    Lit lit;
-    std::vector<std::uint8_t> smoke;
-    Gathered first;
-
-    Fire(int nodes, float optical_radius, float albedo, float mean_cosine)
-        : lit(make_medium([&] {
-              Recipe r = scattering_ball(nodes, optical_radius, Rgb(albedo));
-              r.settings.smoke.mean_cosine = mean_cosine;
-              return r;
-          }())) {
-        const int channels = mean_cosine == 0.0f ? 3 : 27;
-        std::vector<float> source(lit.medium.extinction.size() * channels, 0.0f);
-        for (std::size_t i = 0; i < lit.medium.extinction.size(); ++i) {
-            smoke.push_back(lit.medium.extinction[i] > 0.0f);
-            for (int c = 0; c < 3; ++c)
-                source[i * channels + c] = lit.medium.source[i][c];
-        }
-        CascadeSettings settings;
-        settings.side = 16;
-        first = RadianceCascades(lit.pyramid, smoke, settings).gather(source, channels);
-        first.scale(energy_balance_factor(lit.pyramid, {lit.intensity, {}}, fluence_at_nodes(first, smoke)));
-    }
-
-    std::vector<ScatteredLight> solved(const ScatteringSettings& settings, ScatteringCosts& costs, bool balance = true,
-                                       bool apart = false) const {
-        LightingSettings lighting;
-        lighting.energy_balance = balance;
-        Progress silent;
-        return solve_scattering({&lit.pyramid, &first, &smoke, lighting, settings, apart}, costs, silent);
-    }
-};
-
 ScatteringSettings by_cascades(int level = 0) {
     ScatteringSettings settings;
     settings.solver = ScatteringSolver::RadianceCascades;
     settings.lattice_level = level;
     return settings;
-}
-
-// Power that leaves the ball, of what is emitted: by paths through a disc around it.
-Estimate escaped_by_paths(float optical_radius, float albedo, float mean_cosine, int nodes) {
-    Recipe r = scattering_ball(nodes, optical_radius, Rgb(albedo));
-    r.settings.smoke.mean_cosine = mean_cosine;
-    const Traced traced(r);
-    const double radius = 1.2, emitted = emitted_power(*traced.medium).x;
-    Estimate e = estimate(3, 40, [&](const dvec3& u, Rng& rng, double* out) {
-        traced.look(ray_through_disc(radius, u.x, u.y, rng), u.z, rng, out);
-    });
-    for (auto* values : {&e.mean, &e.error})
-        for (double& v : *values)
-            v *= 4.0 * kPi64 * kPi64 * radius * radius / emitted;
-    return e;
 }
 
 struct Case {

@@ -121,6 +121,17 @@ TEST(Methods, OfCascadesHaveALadderOfTheirDirections) {
     EXPECT_FALSE(owns(methods[0], "MV"));
 }
 
+TEST(Methods, OfDiffusionHaveALadderOfTheirLattices) {
+    const std::vector<Method> methods =
+        parse({"diffusion", "fine=diffusion,scattering.flux_limiter=false"}, {"fine:0"});
+    EXPECT_EQ(labels(methods[0]), (Strings{"lattice level 2", "lattice level 1", "lattice level 0"}));
+    EXPECT_EQ(methods[1].steps[0].settings, (Strings{"scattering.lattice_level=0"}));
+    EXPECT_HAS(joined(methods[1].settings), "scattering.solver=diffusion");
+    EXPECT_HAS(joined(methods[1].settings), "scattering.flux_limiter=false");
+    EXPECT_TRUE(owns(methods[0], "MM"));
+    EXPECT_FALSE(owns(methods[0], "MV"));
+}
+
 TEST(Methods, ThatFilterNoiseTakePathsButAreBiased) {
     const std::vector<Method> methods = parse({"path_filtered", "path", "p=path,tracing.denoising_radius=2", "q=path"},
                                               {"4,8"}, {"q:tracing.denoising_radius=0,3"});

@@ -94,6 +94,7 @@ std::vector<Shot> unusual_shots() {
                                              "scattering.escape=0.3",
                                              "scattering.solver=radiance_cascades",
                                              "scattering.cascade_side=4",
+                                             "scattering.flux_limiter=false",
                                              "output.exposure_stops=0",
                                              "output.layers.bounces=true",
                                              "output.frames_per_second=23.976"};

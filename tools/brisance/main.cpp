@@ -155,7 +155,7 @@ void add_report_options(CLI::App& command, ReportOptions& options) {
         .add_option("--budgets", options.methods.budgets,
                     "Paths per pixel of the path methods: 4,16,64,256; of one method alone: path:16,64; steps 1 to 4, "
                     "from coarse to fine, of the other one: lighting_grid:2,3; lamps: fire_clusters:4,64; directions: "
-                    "radiance_cascades:4,8")
+                    "radiance_cascades:4,8; lattice levels: diffusion:2,1")
         ->type_name("[METHOD:]LIST ...")
         ->excludes(suite);
     command

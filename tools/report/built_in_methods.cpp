@@ -60,6 +60,10 @@ std::vector<BuiltIn> make_built_ins() {
         {"radiance_cascades",
          {"method=lighting_grid", "scattering.method=lighting_grid", "scattering.solver=radiance_cascades"},
          StepsOf::Directions,
+         kCellsOfScatteringMethods},
+        {"diffusion",
+         {"method=lighting_grid", "scattering.method=lighting_grid", "scattering.solver=diffusion"},
+         StepsOf::Lattices,
          kCellsOfScatteringMethods}};
     add_scattering_methods(methods);
     return methods;

@@ -27,6 +27,7 @@ const std::vector<Settings>& grid_ladder() {
 
 const std::vector<std::string> kNumbersOfLamps = {"4", "16", "64", "256"};
 const std::vector<std::string> kSidesOfCascades = {"4", "8", "16"};
+const std::vector<std::string> kLevelsOfLattices = {"2", "1", "0"};
 const std::vector<std::string> kPathBudgets = {"4", "16", "64", "256"};
 const std::vector<std::string> kSidesOfSamples = {"1", "2", "4", "8"};
 
@@ -180,6 +181,13 @@ std::vector<MethodStep> direction_steps(const std::vector<std::string>& sides) {
     return steps;
 }
 
+std::vector<MethodStep> lattice_steps(const std::vector<std::string>& levels) {
+    std::vector<MethodStep> steps(levels.size());
+    for (std::size_t i = 0; i < levels.size(); ++i)
+        steps[i] = {"lattice level " + levels[i], {"scattering.lattice_level=" + levels[i]}};
+    return steps;
+}
+
 bool stops(const Settings& settings) {
     return sets(settings, "tracing.samples") || sets(settings, "tracing.seconds") || sets(settings, "tracing.error");
 }
@@ -277,6 +285,8 @@ std::vector<MethodStep> built_in_steps(const std::optional<std::vector<std::stri
             return lamp_steps(budgets.value_or(kNumbersOfLamps));
         case StepsOf::Directions:
             return direction_steps(budgets.value_or(kSidesOfCascades));
+        case StepsOf::Lattices:
+            return lattice_steps(budgets.value_or(kLevelsOfLattices));
         case StepsOf::Grid:
             break;
     }

@@ -1,15 +1,16 @@
 // The methods that a report compares, each with a ladder of steps from cheap to accurate.
 //
 // A method:  NAME, or LABEL=NAME, followed by settings:    exact=path,tracing.free_flight=exact
-//   NAME is lighting_grid; fire_clusters (its fire as a few lamps); radiance_cascades (its bounces by probes); path,
-//   path_plain (the path tracer without its acceleration techniques), or path_filtered (its picture after a noise
-//   filter); a preset of one of the scattering methods (scattering_methods/list.h), such as ray_lights or
-//   volumetric_vpls_bounded; or a preset of virtual lights (virtual_lights/choices.h): vbnl (virtual blue noise
-//   lighting), vbnl_GATHERER (the same lights, sampled otherwise), vpl, vsl and others like them.
+//   NAME is lighting_grid; fire_clusters (its fire as a few lamps); radiance_cascades (its bounces by probes);
+//   diffusion (its bounces by a diffusion equation); path, path_plain (the path tracer without its acceleration
+//   techniques), or path_filtered (its picture after a noise filter); a preset of one of the scattering methods
+//   (scattering_methods/list.h), such as ray_lights or volumetric_vpls_bounded; or a preset of virtual lights
+//   (virtual_lights/choices.h): vbnl (virtual blue noise lighting), vbnl_GATHERER (the same lights, sampled otherwise),
+//   vpl, vsl and others like them.
 // A budget:  LIST for all path methods, or LABEL:LIST:     4,16,64,256    path:16,64    lighting_grid:2,4
 //   For path methods samples per pixel, for lighting_grid numbers of steps of the built-in ladder, 1 to 4, for those
-//   of fire_clusters numbers of lamps, for those of radiance_cascades scattering.cascade_side, for those of virtual
-//   lights samples along a pixel's side.
+//   of fire_clusters numbers of lamps, for those of radiance_cascades scattering.cascade_side, for those of
+//   diffusion scattering.lattice_level, for those of virtual lights samples along a pixel's side.
 // A ladder:  LABEL:KEY=LIST, several of one label side by side, instead of the built-in steps:
 //   lighting_grid:lighting.alpha=1,1.5,2,3   lighting_grid:lighting.shadow_resolution=8,12,20,24
 #pragma once
@@ -26,9 +27,9 @@ struct MethodStep {
     std::vector<std::string> settings;  // "tracing.samples=16", over those of the method
 };
 
-// What makes a method better, and dearer: the fineness of its grids, lamps, directions, paths, or samples along a
-// pixel's side.
-enum class StepsOf { Grid, Lamps, Directions, Paths, Samples };
+// What makes a method better, and dearer: the fineness of its grids, lamps, directions, lattices, paths, or samples
+// along a pixel's side.
+enum class StepsOf { Grid, Lamps, Directions, Lattices, Paths, Samples };
 
 struct Method {
     std::string label;

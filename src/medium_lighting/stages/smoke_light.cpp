@@ -1,5 +1,7 @@
 #include "medium_lighting/stages/smoke_light.h"
 
+#include <fmt/format.h>
+
 #include "core/stopwatch.h"
 #include "medium_lighting/adaptive_gather.h"
 #include "medium_lighting/balance_table.h"
@@ -35,6 +37,11 @@ std::vector<ScatteredLight> orders_of_scattering(const LitLattice& lattice, cons
                                               {"probes", costs.cascades->probes},
                                               {"intervals", costs.cascades->intervals},
                                               {"directions_of_coarsest", costs.cascades->directions}};
+    if (const auto& d = costs.diffusion)
+        series.detail["diffusion"] = {
+            {"cells", d->cells},           {"multigrid_levels", d->levels}, {"flux_limiters", d->limiters},
+            {"iterations", d->iterations}, {"residual", d->residual},       {"last_change", d->change},
+            {"unbalanced", d->unbalanced}, {"converged", d->converged}};
     if (costs.balance)
         series.detail["balance"].push_back(
             balance_row(*costs.balance, "1-" + std::to_string(costs.balance->last_order)));
@@ -43,6 +50,11 @@ std::vector<ScatteredLight> orders_of_scattering(const LitLattice& lattice, cons
         progress.warning("series", "multiple scattering stopped after " + std::to_string(costs.bounces) +
                                        " bounces with an estimated " + std::to_string(100.0 * costs.remainder) +
                                        " % of its light missing");
+    if (costs.diffusion && !costs.diffusion->converged)
+        progress.warning("diffusion",
+                         fmt::format("the diffusion of scattered light has not converged: residual {:.1e} of "
+                                     "the source, last change of the fluence {:.1e}",
+                                     costs.diffusion->residual, costs.diffusion->change));
     return orders;
 }
 

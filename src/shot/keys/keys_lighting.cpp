@@ -64,15 +64,19 @@ void add_lighting_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "scattering.solver",
         "what makes the bounces above one: hierarchy: lights with shadow maps; radiance_cascades: probes that look "
-        "ahead "
-        "by intervals",
-        choice<ScatteringSolver>(
-            {{"hierarchy", ScatteringSolver::Hierarchy}, {"radiance_cascades", ScatteringSolver::RadianceCascades}}),
+        "ahead by intervals; diffusion: all bounces at once, as heat that spreads",
+        choice<ScatteringSolver>({{"hierarchy", ScatteringSolver::Hierarchy},
+                                  {"radiance_cascades", ScatteringSolver::RadianceCascades},
+                                  {"diffusion", ScatteringSolver::Diffusion}}),
         [](Shot & s) -> auto& { return s.scattering.solver; }));
     keys.push_back(make_key(
         "scattering.cascade_side",
         "with radiance_cascades: directions of the finest probes, n * n; coarser ones have up to 4 times as many each",
         whole(2, 32), [](Shot & s) -> auto& { return s.scattering.cascade_side; }));
+    keys.push_back(make_key(
+        "scattering.flux_limiter",
+        "with diffusion: no more light flows than can travel; without, thin smoke spreads it too fast", flag(),
+        [](Shot & s) -> auto& { return s.scattering.flux_limiter; }));
     add_scattering_method_keys(keys);
 }
 

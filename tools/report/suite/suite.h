@@ -18,6 +18,7 @@ struct SuiteSize {
     std::string path_samples;           // of the path tracers: "16,64"
     std::string grid_steps;             // of the ladder of lighting_grid: "1,3"
     std::string cascade_sides;          // of radiance cascades: "4,8"
+    std::string lattice_levels;         // of diffusion: "2,1"
     std::string lamps;                  // of methods that put lamps in the place of the fire: "4,16"
     std::string sides;                  // samples along a pixel's side, of all other methods: "1,2"
     std::vector<std::string> settings;  // over those of every shot, for every method
