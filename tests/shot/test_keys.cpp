@@ -150,6 +150,13 @@ TEST(Keys, ValuesAtTheBoundsAreAccepted) {
         EXPECT_EQ(message_of_overrides({setting}), "") << setting;
 }
 
+// Diffusion solves for all bounces together.
+TEST(Keys, DiffusionRefusesANumberOfBounces) {
+    EXPECT_NE(message_of_overrides({"scattering.solver=diffusion", "scattering.bounces=3"}), "");
+    EXPECT_EQ(message_of_overrides({"scattering.solver=diffusion", "scattering.bounces=2"}), "");
+    EXPECT_EQ(message_of_overrides({"scattering.solver=hierarchy", "scattering.bounces=3"}), "");
+}
+
 // Nobody has to guess what an old key has become.
 TEST(Keys, OldNamesAreErrorsThatNameTheNew) {
     const std::vector<std::pair<std::string, std::string>> renamed = {
