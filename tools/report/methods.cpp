@@ -184,7 +184,7 @@ std::vector<MethodStep> direction_steps(const std::vector<std::string>& sides) {
 std::vector<MethodStep> lattice_steps(const std::vector<std::string>& levels) {
     std::vector<MethodStep> steps(levels.size());
     for (std::size_t i = 0; i < levels.size(); ++i)
-        steps[i] = {"lattice level " + levels[i], {"scattering.lattice_level=" + levels[i]}};
+        steps[i] = {fmt::format("lattice level {}", levels[i]), {"scattering.lattice_level=" + levels[i]}};
     return steps;
 }
 
