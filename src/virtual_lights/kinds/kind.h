@@ -20,12 +20,15 @@ struct Connection {
 // Lights are given by their index in the set.
 template <class Kind>
 concept VirtualLightKind = requires(const Kind& kind, LightSet& set, std::size_t light, const PathVertex& vertex,
-                                    const dvec3& direction, const Connection& connection, double factor, Rng& rng) {
+                                    const dvec3& direction, const glm::dvec2& numbers, const Connection& connection,
+                                    double factor, Rng& rng) {
     // Sets what the kind decides of the lights: their radius.
     Kind::fit(set);
     Kind(set);
     // A unit direction toward the light.
     { kind.sample(light, vertex, rng) } -> std::same_as<dvec3>;
+    // The one that sample() makes of two random numbers in [0, 1).
+    { kind.direction(light, vertex, numbers) } -> std::same_as<dvec3>;
     // Of a direction that leads to the light [1/sr]; 1 for a kind that has only one direction.
     { kind.pdf(light, vertex, direction) } -> std::same_as<double>;
     // What the light sends to the vertex, without occlusion [W/(m^2 sr)]; of a kind with one direction the irradiance

@@ -29,6 +29,10 @@ struct PointKind {
         explicit Of(const LightSet& set) : set_(set), flux_(set) {}
 
         dvec3 sample(std::size_t light, const PathVertex& vertex, Rng&) const {
+            return direction(light, vertex, glm::dvec2(0.0));
+        }
+
+        dvec3 direction(std::size_t light, const PathVertex& vertex, const glm::dvec2&) const {
             return glm::normalize(set_.lights[light].position - vertex.position());
         }
 

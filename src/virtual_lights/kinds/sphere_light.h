@@ -55,6 +55,10 @@ struct SphereKind {
             return sample_toward(set_.lights[light], vertex.lit(), rng);
         }
 
+        dvec3 direction(std::size_t light, const PathVertex& vertex, const glm::dvec2& numbers) const {
+            return direction_toward(set_.lights[light], vertex.lit(), numbers);
+        }
+
         double pdf(std::size_t light, const PathVertex& vertex, const dvec3& direction) const {
             return pdf_toward(set_.lights[light], vertex.lit(), direction);
         }
