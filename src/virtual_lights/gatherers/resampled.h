@@ -12,10 +12,9 @@
 // section 2.2): a direction toward a light has the density N_light P(light) pdf_cone + N_ray pdf_bsdf.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <optional>
 
+#include "light_selection/medium_light_tree.h"
 #include "tracking/medium_trackers.h"
 #include "virtual_lights/gatherers/gatherer.h"
 #include "virtual_lights/gatherers/light_choosers.h"
@@ -106,7 +105,7 @@ struct Resampled {
             if (!smoke_)
                 return 1.0;
             const double distance = glm::distance(set_.lights[c.light].position, vertex.position());
-            return std::exp(-std::min(kMostDepth, coarse_depth(set_.scene().field(), vertex.leaving(c.direction), distance)));
+            return guessed_transmittance(coarse_depth(set_.scene().field(), vertex.leaving(c.direction), distance));
         }
 
         // None: the target is 0.
@@ -178,9 +177,6 @@ struct Resampled {
                 visit(found);
             }
         }
-
-        // The chosen light is divided by its target: behind opaque smoke it keeps some.
-        static constexpr double kMostDepth = 7.0;
 
         const LightSet& set_;
         Kind kind_;

@@ -36,6 +36,8 @@ concept VirtualLightKind = requires(const Kind& kind, LightSet& set, std::size_t
     { kind.radiance(light, vertex, direction) } -> std::same_as<Rgb>;
     // The connection's scattered light with occlusion, times a factor.
     { kind.connect(connection, vertex, float(factor), rng) } -> std::same_as<Rgb>;
+    // Whether surfaces let any of it through.
+    { kind.reaches(connection, vertex) } -> std::same_as<bool>;
     // An estimate of what the vertex scatters of the whole light, over the probability of having chosen that.
     { kind.estimate(light, factor, vertex, rng) } -> std::same_as<Rgb>;
 };

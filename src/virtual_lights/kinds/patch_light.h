@@ -13,6 +13,9 @@ namespace brisance {
 // surface that it covers.
 Rgb incident_from_patch(const LightSet& set, const Connection& connection, const PathVertex& vertex, Rng& rng);
 
+// Whether that is more than nothing, smoke aside.
+bool patch_is_met(const LightSet& set, const Connection& connection, const PathVertex& vertex);
+
 struct PatchKind {
     static constexpr const char* kNeeds = kSurfaceFlux;
 
@@ -50,6 +53,10 @@ struct PatchKind {
 
         Rgb connect(const Connection& connection, const PathVertex& vertex, float factor, Rng& rng) const {
             return factor * incident(connection, vertex, rng);
+        }
+
+        bool reaches(const Connection& connection, const PathVertex& vertex) const {
+            return patch_is_met(set_, connection, vertex);
         }
 
         Rgb estimate(std::size_t light, double probability, const PathVertex& vertex, Rng& rng) const {

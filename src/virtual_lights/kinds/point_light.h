@@ -53,6 +53,10 @@ struct PointKind {
             return connect_by_shadow_ray(set_.scene(), vertex, set_.lights[c.light], c, factor, rng);
         }
 
+        bool reaches(const Connection& c, const PathVertex& vertex) const {
+            return shadow_ray(set_.scene(), vertex, set_.lights[c.light]).clear;
+        }
+
         Rgb estimate(std::size_t index, double probability, const PathVertex& vertex, Rng& rng) const {
             const dvec3 direction = sample(index, vertex, rng);
             const Rgb reflected = radiance(index, vertex, direction);

@@ -72,6 +72,10 @@ struct SphereKind {
             return connect_by_shadow_ray(set_.scene(), vertex, set_.lights[c.light], c, factor, rng);
         }
 
+        bool reaches(const Connection& c, const PathVertex& vertex) const {
+            return shadow_ray(set_.scene(), vertex, set_.lights[c.light]).clear;
+        }
+
         Rgb estimate(std::size_t index, double probability, const PathVertex& vertex, Rng& rng) const {
             const VirtualLight& light = set_.lights[index];
             const ShadowRay shadow = shadow_ray(set_.scene(), vertex, light);
