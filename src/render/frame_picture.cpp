@@ -117,7 +117,7 @@ std::optional<LightReuse> FramePicture::light_reuse(const Camera& camera, Shared
     if (!lights || s.resampling_neighbours == 0)
         return std::nullopt;
     return LightReuse(*lights, camera.settings().width, camera.settings().height,
-                      {s.resampling_neighbours, s.resampling_radius}, shared);
+                      {s.resampling_neighbours, s.resampling_radius, s.resampling_visibility}, shared);
 }
 
 Image FramePicture::picture(const InScattering* estimator, int number, const MomentLights& lights, const Camera& camera,

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "core/parallel.h"
-#include "virtual_lights/gatherers/reservoir.h"
 
 namespace brisance {
 
@@ -100,28 +99,72 @@ const LightReuse::Sample* LightReuse::choose_around(const Sample& sample, Rng& r
     return nullptr;
 }
 
-Rgb LightReuse::light(const Sample& sample) const {
-    Rng rng(kReuse, sample.pixel, 3 * sample.number + static_cast<std::uint64_t>(sample.lobes));
+// The sample itself, and neighbours.
+std::vector<const LightReuse::Sample*> LightReuse::set_of(const Sample& sample, Rng& rng) const {
     std::vector<const Sample*> set{&sample};
     for (int n = 0; n < settings_.neighbours; ++n)
         if (const Sample* other = choose_around(sample, rng);
             other && std::find(set.begin(), set.end(), other) == set.end())
             set.push_back(other);
-    Reservoir<LightReservoir> kept;
+    return set;
+}
+
+// The first of the set reuses what all chose. What is kept has 1 / t_x(y) for its weight.
+void LightReuse::offer_unoccluded(const std::vector<const Sample*>& set, Reservoir<LightReservoir>& kept,
+                                  Rng& rng) const {
+    const Sample* const x = set.front();
     for (const Sample* from : set) {
-        const LightReservoir& y = from->reservoir;
-        if (!(y.weight > 0.0))
-            continue;
-        const double here = from == &sample ? y.target : lights_.target(y, sample.vertex);
+        LightReservoir y = from->reservoir;
+        const double here = !(y.weight > 0.0) ? 0.0 : from == x ? y.target : lights_.target(y, x->vertex);
         if (!(here > 0.0))
             continue;
         double all = 0.0;
         for (const Sample* other : set)
-            all += other == from ? y.target : other == &sample ? here : lights_.target(y, other->vertex);
-        LightReservoir there = y;
-        there.weight = 1.0 / here;
-        kept.offer(there, y.target / all * here * y.weight, rng);
+            all += other == from ? y.target : other == x ? here : lights_.target(y, other->vertex);
+        const double w = y.target / all * here * y.weight;
+        y.weight = 1.0 / here;
+        kept.offer(y, w, rng);
     }
+}
+
+void LightReuse::offer_visible(const std::vector<const Sample*>& set, Reservoir<LightReservoir>& kept,
+                               Rng& rng) const {
+    const Sample* const x = set.front();
+    const auto neighbours = double(set.size() - 1);
+    if (LightReservoir y = x->reservoir; y.weight > 0.0) {
+        double share = 1.0;
+        if (set.size() > 1) {
+            const auto i = std::min(static_cast<std::size_t>(rng.next_double() * neighbours), set.size() - 2);
+            const PathVertex& there = set[1 + i]->vertex;
+            double a = lights_.target(y, there);
+            if (a > 0.0 && !lights_.reaches(y, there))
+                a = 0.0;
+            const double b = y.target / neighbours;
+            share = b / (a + b);
+        }
+        const double w = share * y.target * y.weight;
+        y.weight = 1.0 / y.target;
+        kept.offer(y, w, rng);
+    }
+    for (std::size_t i = 1; i < set.size(); ++i) {
+        LightReservoir y = set[i]->reservoir;
+        const double here = y.weight > 0.0 ? lights_.target(y, x->vertex) : 0.0;
+        if (!(here > 0.0))
+            continue;
+        const double w = y.target / (y.target + here / neighbours) / neighbours * here * y.weight;
+        y.weight = 1.0 / here;
+        kept.offer(y, w, rng);
+    }
+}
+
+Rgb LightReuse::light(const Sample& sample) const {
+    Rng rng(kReuse, sample.pixel, 3 * sample.number + static_cast<std::uint64_t>(sample.lobes));
+    const std::vector<const Sample*> set = set_of(sample, rng);
+    Reservoir<LightReservoir> kept;
+    if (settings_.visibility)
+        offer_visible(set, kept, rng);
+    else
+        offer_unoccluded(set, kept, rng);
     if (!(kept.sum() > 0.0))
         return Rgb(0.0f);
     LightReservoir y = kept.kept();

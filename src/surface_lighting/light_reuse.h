@@ -15,8 +15,16 @@
 // The mean is sum over i of E[m_i(y_i) F_x(y_i) W_i] = sum over i of the integral of m_i F_x, taken where t_i > 0. There
 // the m_i of all i sum to 1 wherever any t_i > 0, t_x among them, and F_x is 0 where t_x is: it is the integral of F_x,
 // whichever neighbours S has, as long as no choice of light decided that. F_x is evaluated once, with the exact
-// visibility and transmittance of x. Visibility is in no target, so that no ray is needed to tell which neighbour could
-// have chosen y.
+// visibility and transmittance of x. Visibility is in no target so far, and no ray is needed to tell which neighbour
+// could have chosen y.
+//
+// With visibility, a sample that does not see what it chose gives it away to nobody: its target is t_i V_i. Telling who
+// could have chosen y takes rays then. Of k neighbours, each is paired with x alone ([2], section 5.4):
+//
+//     m_i(y) = 1/k a_i / (a_i + b),    m_x(y) = 1/k sum over i of b / (a_i + b),    a_i = t_i V_i, b = t_x / k
+//
+// V_i(y_i) is 1, and takes no ray. m_x enters the estimate linearly, so that one term of its sum, of a random i, keeps
+// the mean: three rays for a sample, however many neighbours it has.
 //
 // Departs from [1]: no reuse from frame to frame, frames stay independent; one round, in which all choices are the
 // samples' own; the generalized balance heuristic of [2] instead of the weights 1/Z of algorithm 6, which divides by
@@ -29,6 +37,7 @@
 
 #include "surface_lighting/shared_bounce.h"
 #include "virtual_lights/gatherers/light_reservoir.h"
+#include "virtual_lights/gatherers/reservoir.h"
 
 namespace brisance {
 
@@ -52,6 +61,7 @@ public:
     struct Settings {
         int neighbours;  // of each sample, at most
         double radius;   // in which they lie [pixels]; 0: in the same pixel
+        bool visibility = false;  // what samples chose reaches them
     };
 
     // Keeps references. `shared`: gets the light of samples that have something to share; null where none has.
@@ -73,6 +83,9 @@ private:
     void light_rows(int end);
     void count_samples(Row& row) const;
     Rgb light(const Sample& sample) const;
+    std::vector<const Sample*> set_of(const Sample& sample, Rng& rng) const;
+    void offer_unoccluded(const std::vector<const Sample*>& set, Reservoir<LightReservoir>& kept, Rng& rng) const;
+    void offer_visible(const std::vector<const Sample*>& set, Reservoir<LightReservoir>& kept, Rng& rng) const;
     const Sample* choose_around(const Sample& sample, Rng& rng) const;
     void show(Sample& sample, const Rgb& light);
 

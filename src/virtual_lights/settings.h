@@ -48,6 +48,7 @@ struct VirtualLightSettings {
     int resampling_rays = 1;         // sampling resampled_combined: candidates by BSDF beside them
     int resampling_neighbours = 0;   // both: samples of pixels around whose lights are reused; 0: none
     double resampling_radius = 8.0;  // ... from how far [pixels]
+    bool resampling_visibility = true;     // ... as far as they are seen by those that chose them
     bool resampling_transmittance = true;  // both: candidates count the smoke before them, coarsely
     double lightcuts_error = 0.02;   // sampling lightcuts: what a node may err, over the sum of all
     int lightcuts_most = 1000;       // ... and the most nodes of a cut

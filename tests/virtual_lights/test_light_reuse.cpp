@@ -119,15 +119,18 @@ TEST(LightReuse, HasTheMeanOfAllLights) {
         const Pixels truth = pixels_of(shot_of(sampled_by("all"), picture), surroundings);
         for (const std::string sampling : {"resampled", "resampled_combined"})
             for (const int neighbours : {0, 1, 5})
-                for (const double radius : {0.0, 3.0, 40.0}) {
-                    if (neighbours == 0 && radius > 0.0)
-                        continue;
-                    VirtualLightSettings s = sampled_by(sampling, neighbours);
-                    s.resampling_radius = radius;
-                    expect_no_bias(difference(pixels_of(shot_of(s, picture), surroundings), truth, picture),
-                                   (glossy ? "glossy, " : "diffuse, ") + sampling + ", " +
-                                       std::to_string(neighbours) + " in " + std::to_string(int(radius)));
-                }
+                for (const double radius : {0.0, 3.0, 40.0})
+                    for (const bool visibility : {false, true}) {
+                        if (neighbours == 0 && (radius > 0.0 || visibility))
+                            continue;
+                        VirtualLightSettings s = sampled_by(sampling, neighbours);
+                        s.resampling_radius = radius;
+                        s.resampling_visibility = visibility;
+                        expect_no_bias(difference(pixels_of(shot_of(s, picture), surroundings), truth, picture),
+                                       (glossy ? "glossy, " : "diffuse, ") + sampling + ", " +
+                                           std::to_string(neighbours) + " in " + std::to_string(int(radius)) +
+                                           (visibility ? ", visible" : ""));
+                    }
     }
 }
 
@@ -141,7 +144,10 @@ TEST(LightReuse, HasTheMeanOfAllLightsOfEveryKind) {
         const Pixels truth = pixels_of(shot_of(s, picture), surroundings);
         s.sampling = "resampled";
         s.resampling_neighbours = 4;
-        expect_no_bias(difference(pixels_of(shot_of(s, picture), surroundings), truth, picture), kind);
+        for (const bool visibility : {false, true}) {
+            s.resampling_visibility = visibility;
+            expect_no_bias(difference(pixels_of(shot_of(s, picture), surroundings), truth, picture), kind);
+        }
     }
 }
 
@@ -149,15 +155,17 @@ TEST(LightReuse, LowersTheNoise) {
     const Picture picture;
     const Surroundings surroundings(room(false), {});
     const Pixels truth = pixels_of(shot_of(sampled_by("all"), picture), surroundings);
-    const auto variance = [&](int neighbours) {
-        return difference(pixels_of(shot_of(sampled_by("resampled", neighbours), picture), surroundings), truth,
-                          picture)
-            .variance;
-    };
-    const double none = variance(0), two = variance(2), six = variance(6);
-    std::printf("variance of 0, 2, 6 neighbours: 1, %.3f, %.3f\n", two / none, six / none);
-    EXPECT_LT(two, 0.8 * none);
-    EXPECT_LT(six, 0.9 * two);
+    for (const bool visibility : {false, true}) {
+        const auto variance = [&](int neighbours) {
+            VirtualLightSettings s = sampled_by("resampled", neighbours);
+            s.resampling_visibility = visibility;
+            return difference(pixels_of(shot_of(s, picture), surroundings), truth, picture).variance;
+        };
+        const double none = variance(0), two = variance(2), six = variance(6);
+        std::printf("variance of 0, 2, 6 neighbours: 1, %.3f, %.3f\n", two / none, six / none);
+        EXPECT_LT(two, 0.8 * none);
+        EXPECT_LT(six, 0.9 * two);
+    }
 }
 
 // What is shared among pixels is shared after it was reused. Their means blur alike: 1 % for what borders see of it.
@@ -180,8 +188,11 @@ TEST(LightReuse, GoesWithSharingAmongPixels) {
 TEST(LightReuse, OfALonePixelIsPlainResampling) {
     const Picture lone{1, 1, 1};
     const Surroundings surroundings(room(true), {});
-    const Pixels plain = pixels_of(shot_of(sampled_by("resampled", 0), lone), surroundings),
-                 reused = pixels_of(shot_of(sampled_by("resampled", 4), lone), surroundings);
+    VirtualLightSettings alone = sampled_by("resampled", 4);
+    alone.resampling_candidates = 64;
+    const Pixels reused = pixels_of(shot_of(alone, lone), surroundings);
+    alone.resampling_neighbours = 0;
+    const Pixels plain = pixels_of(shot_of(alone, lone), surroundings);
     ASSERT_EQ(reused.size(), 1u);
     EXPECT_GT(plain[0], 0.0);
     EXPECT_NEAR(reused[0], plain[0], 1e-4 * plain[0]);
@@ -262,6 +273,8 @@ TEST(LightReuse, IsRefusedWhereNothingIsResampled) {
 // some lights. The target is not the light itself, as where something is hidden.
 class Numbers : public ReservoirLights {
 public:
+    bool visibility = false;
+
     static constexpr int kLights = 5, kCandidates = 2;
 
     double bright(std::size_t light, const glm::dvec2& u, double x) const {
@@ -271,15 +284,16 @@ public:
     double target(const LightReservoir& y, const PathVertex& vertex) const override {
         return bright(y.light, y.numbers, vertex.position().x);
     }
-    // Some of it is hidden.
+    // Some of it is hidden, elsewhere in every column.
+    static double hidden(double x) { return 0.5 + 0.4 * std::sin(5.0 * x); }
     double shown(const LightReservoir& y, double x) const {
-        return y.numbers.y < 0.3 ? 0.0 : bright(y.light, y.numbers, x) * (0.5 + y.numbers.y);
+        return y.numbers.y < hidden(x) ? 0.0 : bright(y.light, y.numbers, x) * (0.5 + y.numbers.y);
     }
-    // Over both numbers: the means of 0.2 + u and of 0.5 + v, from 0.3 on.
+    // Over both numbers: the means of 0.2 + u, and of 0.5 + v where that is not hidden.
     double truth(double x) const {
         double sum = 0.0;
         for (std::size_t light = 0; light < kLights; ++light)
-            sum += bright(light, {0.5, 0.0}, x) * (0.5 * 0.7 + 0.5 * (1.0 - 0.09));
+            sum += bright(light, {0.5, 0.0}, x) * (0.5 * (1.0 - hidden(x)) + 0.5 * (1.0 - hidden(x) * hidden(x)));
         return sum;
     }
     Rgb fill(const PathVertex& vertex, LightReservoir& out, Rng& rng) const override {
@@ -296,8 +310,11 @@ public:
                 kept = y;
         }
         out = kept;
-        out.weight = sum > 0.0 ? sum / kept.target : 0.0;
+        out.weight = sum > 0.0 && (!visibility || reaches(kept, vertex)) ? sum / kept.target : 0.0;
         return Rgb(0.0f);
+    }
+    bool reaches(const LightReservoir& y, const PathVertex& vertex) const override {
+        return shown(y, vertex.position().x) > 0.0;
     }
     Rgb from_reservoir(const LightReservoir& y, const PathVertex& vertex, Rng&) const override {
         return Rgb(float(y.weight * shown(y, vertex.position().x)));
@@ -340,17 +357,20 @@ struct ByNumbers {
 
 // Each column of pixels has a closed form.
 TEST(LightReuse, HasTheMeanThatIsKnown) {
-    const ByNumbers scene;
     const Picture picture{ByNumbers::kWidth, ByNumbers::kHeight};
-    const std::vector<Rgb> pixels = scene.pixels({6, 5.0}, 1);
-    Pixels relative, one(pixels.size(), 1.0);
-    for (std::size_t p = 0; p < pixels.size(); ++p)
-        relative.push_back(pixels[p].x / scene.lights.truth(ByNumbers::place(int(p % ByNumbers::kWidth))));
-    expect_no_bias(difference(relative, one, picture), "numbers");
+    for (const bool visibility : {false, true})
+        for (const double radius : {5.0, 30.0}) {
+            const ByNumbers scene{Numbers{visibility}};
+            const std::vector<Rgb> pixels = scene.pixels({6, radius, visibility}, 1);
+            Pixels relative, one(pixels.size(), 1.0);
+            for (std::size_t p = 0; p < pixels.size(); ++p)
+                relative.push_back(pixels[p].x / scene.lights.truth(ByNumbers::place(int(p % ByNumbers::kWidth))));
+            expect_no_bias(difference(relative, one, picture), visibility ? "visible numbers" : "numbers");
+        }
 }
 
 TEST(LightReuse, DoesNotKnowHowManyRowsCameTogether) {
-    const ByNumbers scene;
+    const ByNumbers scene{};
     const std::vector<Rgb> one = scene.pixels({4, 7.5}, 1);
     for (const int rows : {2, 7, 64, 192})
         EXPECT_EQ(one, scene.pixels({4, 7.5}, rows)) << rows;

@@ -134,6 +134,10 @@ void add_resampling_keys(std::vector<Key>& keys) {
         "virtual_lights.resampling_radius", "for resampling_neighbours: how far they may lie [pixels]",
         real_in(Ranges::resampling_radius), [](Shot & s) -> auto& { return s.virtual_lights.resampling_radius; }));
     keys.push_back(make_key(
+        "virtual_lights.resampling_visibility",
+        "for resampling_neighbours: lights are reused only where the sample that chose them sees them", flag(),
+        [](Shot & s) -> auto& { return s.virtual_lights.resampling_visibility; }));
+    keys.push_back(make_key(
         "virtual_lights.resampling_transmittance",
         "for sampling resampled and resampled_combined: lights are chosen by what a coarse medium lets through", flag(),
         [](Shot & s) -> auto& { return s.virtual_lights.resampling_transmittance; }));

@@ -31,11 +31,14 @@ class ReservoirLights {
 public:
     virtual ~ReservoirLights() = default;
 
-    // Chooses one of the vertex's candidates by its target. Returns the part of the light that rays of the vertex have
+    // Chooses one of the vertex's candidates by its target. With settings.resampling_visibility the reservoir is empty
+    // where that does not reach the vertex. Returns the part of the light that rays of the vertex have
     // found themselves [W/(m^2 sr)], by the balance heuristic; the target holds the weight of the rest.
     virtual Rgb fill(const PathVertex& vertex, LightReservoir& reservoir, Rng& rng) const = 0;
     // What the sample would add at the vertex if nothing stood between, luminance [W/(m^2 sr)].
     virtual double target(const LightReservoir& sample, const PathVertex& vertex) const = 0;
+    // Whether surfaces let any of it through.
+    virtual bool reaches(const LightReservoir& sample, const PathVertex& vertex) const = 0;
     // What it adds, times its weight, with exact visibility and transmittance [W/(m^2 sr)].
     virtual Rgb from_reservoir(const LightReservoir& sample, const PathVertex& vertex, Rng& rng) const = 0;
 };

@@ -47,6 +47,7 @@ struct Resampled {
               chooser_(set.lights, importance),
               candidates_(set.settings().resampling_candidates),
               rays_(rays),
+              visibility_(set.settings().resampling_visibility),
               smoke_(set.settings().resampling_transmittance && !set.scene().field().bricks().empty()) {}
 
         Rgb from_lights(const PathVertex& vertex, Rng& rng) const override {
@@ -71,8 +72,8 @@ struct Resampled {
             Rgb found(0.0f);
             for_found_by_rays(vertex, rng, [&](const CandidateLight& c) { found += c.seen / float(c.density); });
             out = {};
-            if (reservoir.sum() > 0.0) {
-                const CandidateLight& kept = reservoir.kept();
+            if (const CandidateLight& kept = reservoir.kept();
+                reservoir.sum() > 0.0 && (!visibility_ || kind_.reaches(kept.connection, vertex))) {
                 const double target = kept.target * share_of_lights(kept);
                 out = {kept.connection.light, kept.numbers, reservoir.sum() / target, target};
             }
@@ -82,6 +83,11 @@ struct Resampled {
         double target(const LightReservoir& sample, const PathVertex& vertex) const override {
             const std::optional<CandidateLight> c = candidate(sample.light, sample.numbers, vertex);
             return c ? c->target * share_of_lights(*c) : 0.0;
+        }
+
+        bool reaches(const LightReservoir& sample, const PathVertex& vertex) const override {
+            const std::optional<CandidateLight> c = candidate(sample.light, sample.numbers, vertex);
+            return c && kind_.reaches(c->connection, vertex);
         }
 
         Rgb from_reservoir(const LightReservoir& sample, const PathVertex& vertex, Rng& rng) const override {
@@ -182,7 +188,8 @@ struct Resampled {
         Kind kind_;
         PowerChooser chooser_;
         int candidates_, rays_;
-        bool smoke_;  // counts in the target
+        bool visibility_;  // of what other vertices may reuse, is tested
+        bool smoke_;       // counts in the target
     };
 };
 
