@@ -12,15 +12,15 @@ namespace {
 
 constexpr Stream kReuse = stream_of("surface_lighting/light_reuse");
 
-constexpr std::size_t kSamplesAtOnce = 64;
+constexpr std::size_t kReusesAtOnce = 64;
 
 // Samples reuse nothing of others whose normal has less than this cosine to theirs, or whose distance from the eye
 // differs by more than this part: 25 degrees and 10 %, as [1] has it.
-constexpr double kSameNormal = 0.906, kOtherDistance = 0.1;
+constexpr double kReusedNormal = 0.906, kOtherDistance = 0.1;
 
 bool alike(const LightReuse::Sample& a, const LightReuse::Sample& b) {
     return a.lobes == b.lobes && a.material == b.material &&
-           glm::dot(a.vertex.lit().normal, b.vertex.lit().normal) > kSameNormal &&
+           glm::dot(a.vertex.lit().normal, b.vertex.lit().normal) > kReusedNormal &&
            std::abs(a.from_eye - b.from_eye) < kOtherDistance * a.from_eye;
 }
 
@@ -65,7 +65,7 @@ void LightReuse::light_rows(int end) {
             samples.push_back(&s);
     std::vector<Rgb> found(samples.size());
     parallel_for(
-        samples.size(), [&](std::size_t i) { found[i] = light(*samples[i]); }, kSamplesAtOnce);
+        samples.size(), [&](std::size_t i) { found[i] = light(*samples[i]); }, kReusesAtOnce);
     for (std::size_t i = 0; i < samples.size(); ++i)
         show(*samples[i], found[i]);
     lit_ = end;

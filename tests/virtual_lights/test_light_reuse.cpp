@@ -360,7 +360,8 @@ TEST(LightReuse, HasTheMeanThatIsKnown) {
     const Picture picture{ByNumbers::kWidth, ByNumbers::kHeight};
     for (const bool visibility : {false, true})
         for (const double radius : {5.0, 30.0}) {
-            const ByNumbers scene{Numbers{visibility}};
+            ByNumbers scene;
+            scene.lights.visibility = visibility;
             const std::vector<Rgb> pixels = scene.pixels({6, radius, visibility}, 1);
             Pixels relative, one(pixels.size(), 1.0);
             for (std::size_t p = 0; p < pixels.size(); ++p)
@@ -370,7 +371,7 @@ TEST(LightReuse, HasTheMeanThatIsKnown) {
 }
 
 TEST(LightReuse, DoesNotKnowHowManyRowsCameTogether) {
-    const ByNumbers scene{};
+    const ByNumbers scene;
     const std::vector<Rgb> one = scene.pixels({4, 7.5}, 1);
     for (const int rows : {2, 7, 64, 192})
         EXPECT_EQ(one, scene.pixels({4, 7.5}, rows)) << rows;
