@@ -127,8 +127,7 @@ void LightReuse::offer_unoccluded(const std::vector<const Sample*>& set, Reservo
     }
 }
 
-void LightReuse::offer_visible(const std::vector<const Sample*>& set, Reservoir<LightReservoir>& kept,
-                               Rng& rng) const {
+void LightReuse::offer_visible(const std::vector<const Sample*>& set, Reservoir<LightReservoir>& kept, Rng& rng) const {
     const Sample* const x = set.front();
     const auto neighbours = double(set.size() - 1);
     if (LightReservoir y = x->reservoir; y.weight > 0.0) {

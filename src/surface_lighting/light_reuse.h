@@ -12,9 +12,9 @@
 //     w_i = m_i(y_i) t_x(y_i) W_i,    m_i(y) = t_i(y) / sum over j in S of t_j(y)
 //     y = y_i with probability w_i / sum w,    W = (sum w) / t_x(y),    estimate = F_x(y) W
 //
-// The mean is sum over i of E[m_i(y_i) F_x(y_i) W_i] = sum over i of the integral of m_i F_x, taken where t_i > 0. There
-// the m_i of all i sum to 1 wherever any t_i > 0, t_x among them, and F_x is 0 where t_x is: it is the integral of F_x,
-// whichever neighbours S has, as long as no choice of light decided that. F_x is evaluated once, with the exact
+// The mean is sum over i of E[m_i(y_i) F_x(y_i) W_i] = sum over i of the integral of m_i F_x, taken where t_i > 0.
+// There the m_i of all i sum to 1 wherever any t_i > 0, t_x among them, and F_x is 0 where t_x is: it is the integral
+// of F_x, whichever neighbours S has, as long as no choice of light decided that. F_x is evaluated once, with the exact
 // visibility and transmittance of x. Visibility is in no target so far, and no ray is needed to tell which neighbour
 // could have chosen y.
 //
@@ -59,8 +59,8 @@ public:
     };
 
     struct Settings {
-        int neighbours;  // of each sample, at most
-        double radius;   // in which they lie [pixels]; 0: in the same pixel
+        int neighbours;           // of each sample, at most
+        double radius;            // in which they lie [pixels]; 0: in the same pixel
         bool visibility = false;  // what samples chose reaches them
     };
 

@@ -63,8 +63,8 @@ private:
                                        const std::vector<ShadedPoint>& points) const;
     void shade_point(const SurfaceSample& sample, const BaseLight& base, ShadedPoint& at, CellSum& light) const;
     Rgb from_virtual_lights(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng, ShadedPoint& at) const;
-    SharedBounce::Sample shared_sample(const SurfaceSample& sample, const Bsdf& lobes, Lobes which,
-                                       const Rgb& colour, float lobe, Rng& rng, ShadedPoint& at) const;
+    SharedBounce::Sample shared_sample(const SurfaceSample& sample, const Bsdf& lobes, Lobes which, const Rgb& colour,
+                                       float lobe, Rng& rng, ShadedPoint& at) const;
     VirtualLights::Shading shading(ShadedPoint& at) const;
     Rgb shade_vertex(const SurfaceSample& sample, const PathVertex& vertex, Lobes which, VirtualLights::Shading how,
                      Rng& rng, ShadedPoint& at) const;

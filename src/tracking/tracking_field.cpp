@@ -1,9 +1,9 @@
 #include "tracking/tracking_field.h"
 
 #include <algorithm>
-#include <numeric>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 
 #include "core/parallel.h"
 
@@ -190,7 +190,8 @@ double TrackingField::smoke_volume() const {
 }
 
 std::uint64_t TrackingField::bytes() const {
-    return (extinction_.size() + minimum_.size() + majorant_.size() + mean_.size() + fire_index_.size()) * sizeof(float) +
+    return (extinction_.size() + minimum_.size() + majorant_.size() + mean_.size() + fire_index_.size()) *
+               sizeof(float) +
            (albedo_.size() + source_.size() + emission_.size()) * sizeof(Rgb) + burning_voxel_.size() + bricks_.bytes();
 }
 

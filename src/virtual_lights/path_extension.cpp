@@ -125,10 +125,10 @@ private:
 
     const VirtualLights& lights_;
     Panes panes_;
-    const LitSmoke* smoke_;     // null: paths walk through the smoke
-    LightReservoir* reservoir_; // of the receiver; null: it gathers its light at once
-    bool lamps_along_;          // estimate lamps along segments, not at vertices in the medium
-    bool receiver_lit_ = true;  // by the medium along the current segment
+    const LitSmoke* smoke_;      // null: paths walk through the smoke
+    LightReservoir* reservoir_;  // of the receiver; null: it gathers its light at once
+    bool lamps_along_;           // estimate lamps along segments, not at vertices in the medium
+    bool receiver_lit_ = true;   // by the medium along the current segment
     Rgb sum_{0.0f};
     int vertices_ = 0;
     std::optional<double> first_end_;

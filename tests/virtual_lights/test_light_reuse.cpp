@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -124,6 +125,7 @@ TEST(LightReuse, HasTheMeanOfAllLights) {
                         if (neighbours == 0 && (radius > 3.0 || visibility))
                             continue;
                         VirtualLightSettings s = sampled_by(sampling, neighbours);
+                        s.resampling_candidates = 16;
                         s.resampling_radius = radius;
                         s.resampling_visibility = visibility;
                         expect_no_bias(difference(pixels_of(shot_of(s, picture), surroundings), truth, picture),
@@ -263,8 +265,9 @@ TEST(LightReuse, IsRefusedWhereNothingIsResampled) {
         ADD_FAILURE();
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ExitCode::Usage);
-        EXPECT_NE(std::string(error.what()).find("resampling_neighbours needs a sampling that resamples: resampled, "
-                                                 "resampled_combined; sampling power goes with resampling_neighbours=0"),
+        EXPECT_NE(std::string(error.what())
+                      .find("resampling_neighbours needs a sampling that resamples: resampled, "
+                            "resampled_combined; sampling power goes with resampling_neighbours=0"),
                   std::string::npos)
             << error.what();
     }
@@ -346,10 +349,9 @@ struct ByNumbers {
         point.position = {place(int(pixel % kWidth)), 0.0, 0.0};
         point.geometric_normal = {0.0, 0.0, 1.0};
         point.frame = frame_around(point.geometric_normal);
-        LightReuse::Sample s{
-            .pixel = pixel, .vertex = PathVertex(point, dvec3(0.0, 0.0, -1.0)), .reservoir = {}};
+        LightReuse::Sample s{.pixel = pixel, .vertex = PathVertex(point, dvec3(0.0, 0.0, -1.0)), .reservoir = {}};
         s.from_eye = 1.0;
-        Rng rng(Stream::Surface, pixel);
+        Rng rng(Stream::Points, pixel);
         lights.fill(s.vertex, s.reservoir, rng);
         return s;
     }
@@ -360,10 +362,10 @@ struct ByNumbers {
 TEST(LightReuse, HasTheMeanThatIsKnown) {
     const Picture picture{ByNumbers::kWidth, ByNumbers::kHeight};
     for (const bool visibility : {false, true})
-        for (const double radius : {5.0, 30.0}) {
+        for (const auto& [neighbours, radius] : {std::pair(0, 0.0), std::pair(6, 5.0), std::pair(6, 30.0)}) {
             ByNumbers scene;
             scene.lights.visibility = visibility;
-            const std::vector<Rgb> pixels = scene.pixels({6, radius, visibility}, 1);
+            const std::vector<Rgb> pixels = scene.pixels({neighbours, radius, visibility}, 1);
             Pixels relative, one(pixels.size(), 1.0);
             for (std::size_t p = 0; p < pixels.size(); ++p)
                 relative.push_back(pixels[p].x / scene.lights.truth(ByNumbers::place(int(p % ByNumbers::kWidth))));

@@ -1,5 +1,5 @@
-// Weighted reservoir sampling of one (M.-T. Chao, A General Purpose Unequal Probability Sampling Plan, Biometrika 69(3),
-// 1982).
+// Weighted reservoir sampling of one (M.-T. Chao, A General Purpose Unequal Probability Sampling Plan, Biometrika
+// 69(3), 1982).
 #pragma once
 
 #include "core/rng.h"
