@@ -9,7 +9,8 @@
 // A candidate is a light and a direction toward it; the target is what that would contribute without occlusion by
 // surfaces. Where the target is 0 the contribution is 0 too, so that the mean is that of sampling one light. Candidates
 // come from power, or also from rays by BSDF, which have found their light. The balance heuristic weights both ([2],
-// section 2.2): a direction toward a light has the density N_light P(light) pdf_cone + N_ray pdf_bsdf.
+// section 2.2): lights and N rays have the density P(light) pdf_cone + N pdf_bsdf. All lights together count as one
+// here, however many candidates they are: the visibility of one alone is tested.
 #pragma once
 
 #include <optional>
@@ -27,7 +28,7 @@ struct CandidateLight {
     Connection connection;
     glm::dvec2 numbers{0.0};   // of the connection's direction; unknown of one that a ray has found
     double probability = 0.0;  // of the light
-    double density = 0.0;      // of all candidates together [1/sr]
+    double density = 0.0;      // of one light by power and all rays [1/sr]
     double target = 0.0;       // luminance of what would be scattered
     Rgb seen{0.0f};            // what is scattered, of a candidate that a ray has found
     bool found_by_ray = false;
@@ -100,10 +101,10 @@ struct Resampled {
     private:
         // The balance heuristic's weight of lights over the density of the direction: what turns f_x into the part of
         // F_x that is left to lights [sr] (light_reservoir.h).
-        double share_of_lights(const CandidateLight& c) const { return candidates_ * c.probability / c.density; }
+        double share_of_lights(const CandidateLight& c) const { return c.probability / c.density; }
 
         double density(const Connection& c, double probability, const PathVertex& vertex) const {
-            return candidates_ * probability * kind_.pdf(c.light, vertex, c.direction) + rays_ * c.scattered.pdf;
+            return probability * kind_.pdf(c.light, vertex, c.direction) + rays_ * c.scattered.pdf;
         }
 
         // Of the way to the light's centre, in a medium of one extinction in every brick.
@@ -144,7 +145,7 @@ struct Resampled {
                     return;
                 const double x = rng.next_double(), y = rng.next_double();
                 if (const std::optional<CandidateLight> c = candidate(choice->light, {x, y}, vertex))
-                    reservoir.offer(*c, c->target / c->density, rng);
+                    reservoir.offer(*c, c->target / (candidates_ * c->density), rng);
             }
         }
 
