@@ -45,7 +45,7 @@ struct VirtualLightSettings {
     std::string sampling = "combined";
     int light_samples = 1;                 // sampling power, plain_power, uniform, light_tree: lights at every vertex
     int resampling_candidates = 32;        // sampling resampled, resampled_combined: lights to choose from
-    int resampling_rays = 1;               // sampling resampled_combined: candidates by BSDF beside them
+    int resampling_rays = 1;               // sampling resampled_combined: rays by BSDF beside them
     int resampling_neighbours = 0;         // both: samples of pixels around whose lights are reused; 0: none
     double resampling_radius = 8.0;        // ... from how far [pixels]
     bool resampling_visibility = true;     // ... as far as they are seen by those that chose them

@@ -6,11 +6,12 @@
 // [3] D. Lin, C. Wyman, C. Yuksel, Fast Volume Rendering with Spatiotemporal Reservoir Resampling, ACM Transactions on
 //     Graphics 40(6), 2021: transmittance of a coarse medium in the target, exact tracking for what is chosen.
 //
-// A candidate is a light and a direction toward it; the target is what that would contribute without occlusion by
-// surfaces. Where the target is 0 the contribution is 0 too, so that the mean is that of sampling one light. Candidates
-// come from power, or also from rays by BSDF, which have found their light. The balance heuristic weights both ([2],
-// section 2.2): lights and N rays have the density P(light) pdf_cone + N pdf_bsdf. All lights together count as one
-// here, however many candidates they are: the visibility of one alone is tested.
+// A candidate is a light by power and a direction toward it; the target is what that would contribute without occlusion
+// by surfaces. Where the target is 0 the contribution is 0 too, so that the mean is that of sampling one light. Rays by
+// BSDF may find lights besides. They need no shadow ray, and what they find is added: resampled among candidates that
+// may be hidden, most of it would be lost. The balance heuristic weights both ([2], section 2.2): lights and N rays
+// have the density P(light) pdf_cone + N pdf_bsdf. All lights together count as one here, however many candidates they
+// are: the visibility of one alone is tested.
 #pragma once
 
 #include <optional>
@@ -26,12 +27,10 @@ namespace brisance {
 
 struct CandidateLight {
     Connection connection;
-    glm::dvec2 numbers{0.0};   // of the connection's direction; unknown of one that a ray has found
+    glm::dvec2 numbers{0.0};   // of the connection's direction
     double probability = 0.0;  // of the light
     double density = 0.0;      // of one light by power and all rays [1/sr]
     double target = 0.0;       // luminance of what would be scattered
-    Rgb seen{0.0f};            // what is scattered, of a candidate that a ray has found
-    bool found_by_ray = false;
 };
 
 struct Resampled {
@@ -41,7 +40,7 @@ struct Resampled {
     template <VirtualLightKind Kind>
     class Of : public Gatherer, public ReservoirLights {
     public:
-        // `rays`: as many candidates are rays by BSDF, besides those by power.
+        // `rays`: as many rays by BSDF find lights besides.
         Of(const LightSet& set, LightImportance importance, int rays = 0)
             : set_(set),
               kind_(set),
@@ -54,14 +53,12 @@ struct Resampled {
         Rgb from_lights(const PathVertex& vertex, Rng& rng) const override {
             Reservoir<CandidateLight> reservoir;
             offer_lights(vertex, reservoir, rng);
-            for_found_by_rays(vertex, rng, [&](const CandidateLight& found) {
-                reservoir.offer(found, found.target / found.density, rng);
-            });
+            const Rgb found = by_rays(vertex, rng);
             if (!(reservoir.sum() > 0.0))
-                return Rgb(0.0f);
+                return found;
             const CandidateLight& kept = reservoir.kept();
-            const auto weight = static_cast<float>(reservoir.sum() / kept.target);
-            return kept.found_by_ray ? weight * kept.seen : kind_.connect(kept.connection, vertex, weight, rng);
+            return found +
+                   kind_.connect(kept.connection, vertex, static_cast<float>(reservoir.sum() / kept.target), rng);
         }
         std::uint64_t bytes() const override { return chooser_.bytes(); }
         const ReservoirLights* reservoirs() const override { return this; }
@@ -70,8 +67,7 @@ struct Resampled {
         Rgb fill(const PathVertex& vertex, LightReservoir& out, Rng& rng) const override {
             Reservoir<CandidateLight> reservoir;
             offer_lights(vertex, reservoir, rng);
-            Rgb found(0.0f);
-            for_found_by_rays(vertex, rng, [&](const CandidateLight& c) { found += c.seen / float(c.density); });
+            const Rgb found = by_rays(vertex, rng);
             out = {};
             if (const CandidateLight& kept = reservoir.kept();
                 reservoir.sum() > 0.0 && (!visibility_ || kind_.reaches(kept.connection, vertex))) {
@@ -149,40 +145,37 @@ struct Resampled {
             }
         }
 
-        // Calls visit(candidate) for the lights where rays by BSDF end, each of them a candidate.
-        template <class Visit>
-        void for_found_by_rays(const PathVertex& vertex, Rng& rng, const Visit& visit) const {
+        // What rays by BSDF find, weighted against lights by power.
+        Rgb by_rays(const PathVertex& vertex, Rng& rng) const {
+            Rgb sum(0.0f);
             if constexpr (Hittable<Kind>)
                 for (int i = 0; i < rays_; ++i)
-                    visit_found(vertex, rng, visit);
+                    sum += by_ray(vertex, rng);
+            return sum;
         }
 
-        template <class Visit>
-        void visit_found(const PathVertex& vertex, Rng& rng, const Visit& visit) const {
+        Rgb by_ray(const PathVertex& vertex, Rng& rng) const {
             const std::optional<PathVertex::Sample> sample = vertex.sample(rng);
             if (!sample || sample->delta)
-                return;
+                return Rgb(0.0f);
             const RaySegment segment = set_.scene().segment_along(vertex.leaving(sample->wi));
             if (!segment.point)
-                return;
+                return Rgb(0.0f);
             const CoveredHit hit = set_.covered(segment);
             if (hit.shares.count == 0)
-                return;
-            const double ended = set_.termination_probability(hit, sample->pdf);
-            const auto reached = float(ended * set_.scene().lines().transmittance(segment.ray, segment.end, rng));
+                return Rgb(0.0f);
+            Connection c;
+            c.direction = sample->wi;
+            c.scattered = {sample->weight * float(sample->pdf), sample->pdf};
+            Rgb sum(0.0f);
             for (int i = 0; i < hit.shares.count; ++i) {
-                CandidateLight found;
-                found.found_by_ray = true;
-                Connection& c = found.connection;
                 c.light = hit.shares.light[i];
-                c.direction = sample->wi;
-                c.scattered = {sample->weight * float(sample->pdf), sample->pdf};
-                found.seen = c.scattered.value * kind_.radiance_at(hit, i) * reached;
-                found.target = luminance(found.seen);
-                found.probability = chooser_.probability(vertex.lit(), c.light);
-                found.density = density(c, found.probability, vertex);
-                visit(found);
+                sum +=
+                    kind_.radiance_at(hit, i) / float(density(c, chooser_.probability(vertex.lit(), c.light), vertex));
             }
+            const double ended = set_.termination_probability(hit, sample->pdf);
+            const double transmittance = set_.scene().lines().transmittance(segment.ray, segment.end, rng);
+            return c.scattered.value * sum * float(ended * transmittance);
         }
 
         const LightSet& set_;
@@ -194,7 +187,7 @@ struct Resampled {
     };
 };
 
-// With settings.resampling_rays candidates by BSDF.
+// With settings.resampling_rays by BSDF.
 struct ResampledCombined {
     static constexpr const char* kNeeds = kHittable;
     static constexpr bool kResamples = true;
