@@ -122,6 +122,17 @@ Image FramePicture::pass(const InScattering* estimator, int number) {
     });
 }
 
+// None where samples reuse nothing.
+std::optional<LightReuse> FramePicture::light_reuse(const Camera& camera, SharedBounce* shared) const {
+    const VirtualLightSettings& s = input_.shot.virtual_lights;
+    const ReservoirLights* const lights =
+        lights_.virtual_lights() && input_.plan.needs(Cell::SS) ? lights_.virtual_lights()->reservoirs() : nullptr;
+    if (!lights || s.resampling_neighbours == 0)
+        return std::nullopt;
+    return LightReuse(*lights, camera.settings().width, camera.settings().height,
+                      {s.resampling_neighbours, s.resampling_radius, s.resampling_visibility}, shared);
+}
+
 Image FramePicture::picture(const InScattering* estimator, int number, const MomentLights& lights, const Camera& camera,
                             const Surroundings* surroundings) {
     settings_.pass = number;
@@ -134,12 +145,15 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
     const double radius = input_.shot.virtual_lights.sharing_radius;
     if (lights_.virtual_lights() && input_.plan.needs(Cell::SS) && radius > 0.0)
         shared.emplace(camera.settings().width, camera.settings().height, radius, rays_of_pixel());
+    std::optional<LightReuse> reuse = light_reuse(camera, shared ? &*shared : nullptr);
     const SurfaceShader shader({input_.plan.needed, lights.field(), *lights.paths(), lights_.medium().lighting(),
                                 lights_.virtual_lights(), estimator, input_.plan.emitters_by_rays, settings_.parts,
                                 camera.settings().width, rays_of_pixel(), lengths_ ? &*lengths_ : nullptr,
-                                shared ? &*shared : nullptr, camera.pixel_angle()});
+                                shared ? &*shared : nullptr, camera.pixel_angle(), reuse ? &*reuse : nullptr});
     Image image = render_picture(lights.field(), camera, settings_, progress_,
                                  [&](const auto& samples, auto& light) { shader.shade(samples, light); });
+    if (reuse)
+        add_to_cell(image, Cell::SS, reuse->take_pixels());
     if (shared)
         add_to_cell(image, Cell::SS, shared->take_pixels());
     return image;

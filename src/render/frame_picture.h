@@ -6,6 +6,7 @@
 
 #include "camera_rays/picture.h"
 #include "render/shutter/moment_lights.h"
+#include "surface_lighting/light_reuse.h"
 #include "surface_lighting/path_lengths.h"
 
 namespace brisance {
@@ -38,6 +39,7 @@ private:
     Image pass(const InScattering* estimator, int number);
     Image picture(const InScattering* estimator, int number, const MomentLights& lights, const Camera& camera,
                   const Surroundings* surroundings);
+    std::optional<LightReuse> light_reuse(const Camera& camera, SharedBounce* shared) const;
     Image order_picture(const NodeSources& order, PictureSettings settings);
 
     const DrawInput& input_;

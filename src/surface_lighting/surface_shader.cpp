@@ -67,6 +67,7 @@ struct SurfaceShader::ShadedPoint {
     Rng ray_rng;  // for rays through the medium
     int vertices;
     std::optional<SharedBounce::Sample> base = std::nullopt, gloss = std::nullopt;  // left to all pixels
+    std::vector<LightReuse::Sample> chosen = {};                                    // left to samples around
 };
 
 // The samples of a pixel divide the emitters among themselves: a sequence of evenly spread choices runs through them
@@ -210,31 +211,50 @@ Rgb SurfaceShader::from_virtual_lights(const SurfaceSample& sample, const PathVe
                                        ShadedPoint& at) const {
     const SurfacePoint& point = at.seen.point;
     if (!input_.shared || at.seen.mirrors > 0)
-        return input_.virtual_lights->shade(vertex, rng, shading(at));
+        return shade_vertex(sample, vertex, Lobes::All, shading(at), rng, at);
     if (has_base(point.material)) {
         const Bsdf base(point.material, point.frame, Lobes::Base);
         if (const Rgb albedo = base.base_albedo(-at.seen.arriving); albedo != Rgb(0.0f))
-            at.base = shared_sample(sample, base, albedo, 1.0f, rng, at);
+            at.base = shared_sample(sample, base, Lobes::Base, albedo, 1.0f, rng, at);
     }
     if (!has_specular(point.material))
         return Rgb(0.0f);
     const Bsdf others(point.material, point.frame, Lobes::Specular);
     if (point.material.transmission > 0.0f || !has_wide_lobes(point.material))
-        return input_.virtual_lights->shade(PathVertex(point, others, at.seen.arriving), rng, shading(at));
+        return shade_vertex(sample, PathVertex(point, others, at.seen.arriving), Lobes::Specular, shading(at), rng, at);
     const Rgb colour =
         glm::max(glm::mix(Rgb(1.0f), point.material.base_colour, point.material.metallic), Rgb(kLeastColour));
-    at.gloss = shared_sample(sample, others, colour, width_of_gloss(point.material.roughness), rng, at);
+    at.gloss =
+        shared_sample(sample, others, Lobes::Specular, colour, width_of_gloss(point.material.roughness), rng, at);
     return Rgb(0.0f);
 }
 
+// By some lobes of the sample's surface. What they choose of the lights is left to samples around, where they reuse it.
+Rgb SurfaceShader::shade_vertex(const SurfaceSample& sample, const PathVertex& vertex, Lobes which,
+                                VirtualLights::Shading how, Rng& rng, ShadedPoint& at) const {
+    if (!input_.reuse || at.seen.mirrors > 0 || vertex.only_delta())
+        return input_.virtual_lights->shade(vertex, rng, how);
+    LightReuse::Sample chosen{.pixel = sample.pixel, .number = sample.number, .vertex = vertex, .reservoir = {}};
+    chosen.lobes = which;
+    chosen.material = surroundings_.scene().meshes[sample.hit.mesh].material;
+    chosen.from_eye = glm::distance(vertex.position(), sample.ray.origin);
+    chosen.share = sample.share;
+    how.reservoir = &chosen.reservoir;
+    const Rgb light = input_.virtual_lights->shade(vertex, rng, how);
+    at.chosen.push_back(std::move(chosen));
+    return light;
+}
+
 // Of some lobes of the sample's surface. `colour`: of them; `lobe`: their width.
-SharedBounce::Sample SurfaceShader::shared_sample(const SurfaceSample& sample, const Bsdf& lobes, const Rgb& colour,
-                                                  float lobe, Rng& rng, ShadedPoint& at) const {
+SharedBounce::Sample SurfaceShader::shared_sample(const SurfaceSample& sample, const Bsdf& lobes, Lobes which,
+                                                  const Rgb& colour, float lobe, Rng& rng, ShadedPoint& at) const {
     const SurfacePoint& point = at.seen.point;
     VirtualLights::Shading how = shading(at);
     double distance = std::numeric_limits<double>::infinity();
     how.distance = &distance;
-    const Rgb light = input_.virtual_lights->shade(PathVertex(point, lobes, at.seen.arriving), rng, how);
+    const Rgb light = shade_vertex(sample, PathVertex(point, lobes, at.seen.arriving), which, how, rng, at);
+    if (!at.chosen.empty())
+        at.chosen.back().colour = colour;
     const double from_eye = glm::distance(point.position, sample.ray.origin);
     SharedBounce::Sample out;
     out.pixel = sample.pixel;
@@ -298,10 +318,27 @@ void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector
         kSamplesAtOnce);
     for (std::size_t i = 0; input_.lengths && i < samples.size(); ++i)
         input_.lengths->add(samples[i].pixel, points[i].vertices);
-    for (std::size_t i = 0; i < samples.size(); ++i)
-        for (const std::optional<SharedBounce::Sample>& s : {points[i].base, points[i].gloss})
-            if (s && samples[i].share > 0.0f && !input_.shared->add(*s))
+    hand_over(samples, points, light);
+}
+
+// To all pixels, and to samples around first.
+void SurfaceShader::hand_over(const std::vector<SurfaceSample>& samples, std::vector<ShadedPoint>& points,
+                              std::vector<CellSum>& light) const {
+    std::vector<LightReuse::Sample> chosen;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        ShadedPoint& at = points[i];
+        if (!(samples[i].share > 0.0f))
+            continue;
+        for (LightReuse::Sample& c : at.chosen) {
+            c.shared.swap(c.lobes == Lobes::Base ? at.base : at.gloss);
+            chosen.push_back(std::move(c));
+        }
+        for (const std::optional<SharedBounce::Sample>& s : {at.base, at.gloss})
+            if (s && !input_.shared->add(*s))
                 light[i].at(Cell::SS) += s->light * s->weight / samples[i].share;
+    }
+    if (input_.reuse)
+        input_.reuse->add(std::move(chosen));
 }
 
 }  // namespace brisance

@@ -21,6 +21,7 @@
 #include "medium_lighting/medium_lighting.h"
 #include "reference/path_tracer.h"
 #include "surface_lighting/base_lighting.h"
+#include "surface_lighting/light_reuse.h"
 #include "surface_lighting/mirrors.h"
 #include "surface_lighting/panes.h"
 #include "surface_lighting/path_lengths.h"
@@ -44,6 +45,7 @@ struct SurfaceLightingInput {
     PathLengths* lengths = nullptr;                   // counts the paths of virtual lights; null: not counted
     SharedBounce* shared = nullptr;                   // gets SS of bases and rough lobes; null: samples keep it
     double pixel_angle = 0.0;                         // [rad], for `shared`
+    LightReuse* reuse = nullptr;                      // gets what samples chose of the lights; null: they keep it
 };
 
 class SurfaceShader {
@@ -61,9 +63,13 @@ private:
                                        const std::vector<ShadedPoint>& points) const;
     void shade_point(const SurfaceSample& sample, const BaseLight& base, ShadedPoint& at, CellSum& light) const;
     Rgb from_virtual_lights(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng, ShadedPoint& at) const;
-    SharedBounce::Sample shared_sample(const SurfaceSample& sample, const Bsdf& lobes, const Rgb& colour, float lobe,
-                                       Rng& rng, ShadedPoint& at) const;
+    SharedBounce::Sample shared_sample(const SurfaceSample& sample, const Bsdf& lobes, Lobes which, const Rgb& colour,
+                                       float lobe, Rng& rng, ShadedPoint& at) const;
     VirtualLights::Shading shading(ShadedPoint& at) const;
+    Rgb shade_vertex(const SurfaceSample& sample, const PathVertex& vertex, Lobes which, VirtualLights::Shading how,
+                     Rng& rng, ShadedPoint& at) const;
+    void hand_over(const std::vector<SurfaceSample>& samples, std::vector<ShadedPoint>& points,
+                   std::vector<CellSum>& light) const;
     Rgb from_emitters(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng) const;
     Rgb from_chosen_emitters(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng) const;
     void reflect_scattered(const SurfacePoint& point, const dvec3& toward_viewer, Rng& rng, Rng& ray_rng,

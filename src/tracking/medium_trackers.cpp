@@ -155,6 +155,15 @@ double optical_depth(const TrackingField& field, const Ray& ray, double end) {
     return depth;
 }
 
+double coarse_depth(const TrackingField& field, const Ray& ray, double end) {
+    double depth = 0.0;
+    walk_bricks(field.bricks(), field.enter(ray, end), [&](const VoxelSegment& s) {
+        depth += field.mean(s.brick) * (s.end - s.begin);
+        return true;
+    });
+    return depth;
+}
+
 // The exponential distribution has no memory: every brick may sample it anew.
 std::optional<Collision> null_collision_in_brick(const TrackingField& field, const VoxelSegment& brick, Rng& rng) {
     if (!stiff(field, brick))

@@ -15,6 +15,8 @@ double invert_depth(const Cubic& extinction, double metres, double depth);
 
 // Optical depth of [0, end], exact up to rounding.
 double optical_depth(const TrackingField& field, const Ray& ray, double end);
+// Of a medium whose bricks have their mean extinction throughout: a guess, at the cost of a step for every brick.
+double coarse_depth(const TrackingField& field, const Ray& ray, double end);
 
 struct Collision {
     double distance;

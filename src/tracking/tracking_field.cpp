@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 
 #include "core/parallel.h"
 
@@ -86,7 +87,8 @@ TrackingField::TrackingField(const Medium& medium)
       albedo_(medium.albedo_nodes.empty() ? 0 : padded(bricks_.brick_count() * kRecords)),
       fire_index_(bricks_.brick_count(), -1),
       minimum_(bricks_.brick_count()),
-      majorant_(bricks_.brick_count()) {
+      majorant_(bricks_.brick_count()),
+      mean_(bricks_.brick_count()) {
     parallel_for(bricks_.brick_count(), [&](std::size_t b) { copy_brick(b); });
     std::int32_t burning = 0;
     for (std::int32_t& f : fire_index_)
@@ -105,6 +107,7 @@ void TrackingField::copy_brick(std::size_t brick) {
     const auto [least, greatest] = std::minmax_element(sigma, sigma + kRecords);
     minimum_[brick] = *least;
     majorant_[brick] = *greatest;
+    mean_[brick] = float(std::accumulate(sigma, sigma + kRecords, 0.0) / kRecords);
     for (int i = 0; i < kRecords; ++i) {
         const ivec3 node = low + ivec3(i / (kSide * kSide), i / kSide % kSide, i % kSide);
         if (!albedo_.empty()) {
@@ -187,7 +190,8 @@ double TrackingField::smoke_volume() const {
 }
 
 std::uint64_t TrackingField::bytes() const {
-    return (extinction_.size() + minimum_.size() + majorant_.size() + fire_index_.size()) * sizeof(float) +
+    return (extinction_.size() + minimum_.size() + majorant_.size() + mean_.size() + fire_index_.size()) *
+               sizeof(float) +
            (albedo_.size() + source_.size() + emission_.size()) * sizeof(Rgb) + burning_voxel_.size() + bricks_.bytes();
 }
 

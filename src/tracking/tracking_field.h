@@ -30,6 +30,7 @@ public:
 
     float minimum(std::size_t brick) const { return minimum_[brick]; }    // of extinction over the brick's voxels
     float majorant(std::size_t brick) const { return majorant_[brick]; }  // [1/m]
+    float mean(std::size_t brick) const { return mean_[brick]; }          // of its nodes
     bool burns(std::size_t brick) const { return fire_index_[brick] >= 0; }
     // Whether all voxels of the brick have one extinction, and nothing glows in them.
     bool homogeneous(std::size_t brick) const { return minimum_[brick] == majorant_[brick] && !burns(brick); }
@@ -66,7 +67,7 @@ private:
     std::vector<std::int32_t> fire_index_;     // position of a brick's records in source_ and emission_, or -1
     std::vector<Rgb> source_, emission_;       // empty: none
     std::vector<std::uint8_t> burning_voxel_;  // 8^3 to a burning brick
-    std::vector<float> minimum_, majorant_;
+    std::vector<float> minimum_, majorant_, mean_;
 };
 
 // Calls visit(part) for the parts of a brick's segment along which the extinction is one cubic, in order, until visit

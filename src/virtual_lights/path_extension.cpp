@@ -43,16 +43,19 @@ double VirtualLights::share_kept(const PathVertex& vertex, const RaySegment& seg
 // what surfaces reflect toward it; later vertices gather all light.
 class VirtualLights::ExtendedPath : public PlainPath {
 public:
-    ExtendedPath(const VirtualLights& lights, Panes panes, const LitSmoke* smoke)
+    ExtendedPath(const VirtualLights& lights, const Shading& how, const LitSmoke* smoke)
         : PlainPath(lights.scene_),
           lights_(lights),
-          panes_(panes),
+          panes_(how.panes),
           smoke_(smoke),
+          reservoir_(how.reservoir),
           lamps_along_(scene_.has_emitters() && aims_at_lamps(scene_) && !scene_.field().bricks().empty()) {}
 
     Rgb own_lights(const PathState& state, Rng& rng) const {
         if (!lights_.samples_lights() || state.vertex.only_delta())
             return Rgb(0.0f);
+        if (reservoir_ && state.order == 1)
+            return lights_.reservoirs()->fill(state.vertex, *reservoir_, rng);
         return lights_.from_lights(state.vertex, rng);
     }
 
@@ -122,9 +125,10 @@ private:
 
     const VirtualLights& lights_;
     Panes panes_;
-    const LitSmoke* smoke_;     // null: paths walk through the smoke
-    bool lamps_along_;          // estimate lamps along segments, not at vertices in the medium
-    bool receiver_lit_ = true;  // by the medium along the current segment
+    const LitSmoke* smoke_;      // null: paths walk through the smoke
+    LightReservoir* reservoir_;  // of the receiver; null: it gathers its light at once
+    bool lamps_along_;           // estimate lamps along segments, not at vertices in the medium
+    bool receiver_lit_ = true;   // by the medium along the current segment
     Rgb sum_{0.0f};
     int vertices_ = 0;
     std::optional<double> first_end_;
@@ -134,7 +138,7 @@ Rgb VirtualLights::shade(const PathVertex& vertex, Rng& rng, const Shading& how)
     if (!shines_)
         return Rgb(0.0f);
     const bool walks = how.walks > 0.0f && rng.next() < how.walks;
-    ExtendedPath path(*this, how.panes, walks ? nullptr : how.smoke);
+    ExtendedPath path(*this, how, walks ? nullptr : how.smoke);
     walk_path(scene_, {vertex, Rgb(1.0f), 0.0f, 1}, path, rng);
     if (how.vertices)
         *how.vertices += path.vertices();

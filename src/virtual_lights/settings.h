@@ -43,17 +43,21 @@ struct VirtualLightSettings {
     int photons = 1000000;        // particles from fire and emitters; 0: no lights
     int profile_resolution = 16;  // of directions of lights that are not plain Lambert: texels along a side
     std::string sampling = "combined";
-    int light_samples = 1;           // sampling power, plain_power, uniform, light_tree: lights at every vertex
-    int resampling_candidates = 32;  // sampling resampled, resampled_combined: lights to choose from
-    int resampling_rays = 1;         // sampling resampled_combined: candidates by BSDF beside them
-    double lightcuts_error = 0.02;   // sampling lightcuts: what a node may err, over the sum of all
-    int lightcuts_most = 1000;       // ... and the most nodes of a cut
-    int stochastic_cut_size = 10;    // sampling stochastic_lightcuts: nodes of a cut, each with one light
-    bool path_extension = true;      // paths continue where a ray's footprint covers few lights
-    double n_min = 40.0;             // lights in the footprint: with fewer the path continues, ...
-    double n_max = 80.0;             // ... with more it ends; between them it does both in part
-    double sharing_radius = 0.2;     // pixels share light on matt surfaces: over the distance to others; 0: none does
-    std::uint32_t seed = 0;          // other seeds draw other random numbers
+    int light_samples = 1;                 // sampling power, plain_power, uniform, light_tree: lights at every vertex
+    int resampling_candidates = 32;        // sampling resampled, resampled_combined: lights to choose from
+    int resampling_rays = 1;               // sampling resampled_combined: rays by BSDF beside them
+    int resampling_neighbours = 0;         // both: samples of pixels around whose lights are reused; 0: none
+    double resampling_radius = 8.0;        // ... from how far [pixels]
+    bool resampling_visibility = true;     // ... as far as they are seen by those that chose them
+    bool resampling_transmittance = true;  // both: candidates count the smoke before them, coarsely
+    double lightcuts_error = 0.02;         // sampling lightcuts: what a node may err, over the sum of all
+    int lightcuts_most = 1000;             // ... and the most nodes of a cut
+    int stochastic_cut_size = 10;          // sampling stochastic_lightcuts: nodes of a cut, each with one light
+    bool path_extension = true;            // paths continue where a ray's footprint covers few lights
+    double n_min = 40.0;                   // lights in the footprint: with fewer the path continues, ...
+    double n_max = 80.0;                   // ... with more it ends; between them it does both in part
+    double sharing_radius = 0.2;  // pixels share light on matt surfaces: over the distance to others; 0: none does
+    std::uint32_t seed = 0;       // other seeds draw other random numbers
 };
 
 // The values that a setting may have, both ends included unless the flag says otherwise.
@@ -82,6 +86,8 @@ struct VirtualLightRanges {
     static constexpr SettingRange<double> importance_floor{0.0, 1.0, true};
     static constexpr SettingRange<int> light_samples{1, 65536};
     static constexpr SettingRange<int> resampling_rays{1, 65536};
+    static constexpr SettingRange<int> resampling_neighbours{0, 32};
+    static constexpr SettingRange<double> resampling_radius{0.0, 128.0};
     static constexpr SettingRange<double> lightcuts_error{0.0, 1.0};
     static constexpr SettingRange<int> lightcuts_most{1, 100000000};
     static constexpr SettingRange<int> stochastic_cut_size{1, 1000000};

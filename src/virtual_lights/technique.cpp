@@ -202,6 +202,18 @@ constexpr auto needs_of(const std::tuple<Rows...>&) {
 constexpr auto kGathererNeeds = needs_of(kGatherers);
 constexpr auto kKindNeeds = needs_of(kKinds);
 
+// Whether vertices can reuse what others chose.
+template <class Family>
+constexpr bool resamples() {
+    if constexpr (requires { Family::kResamples; })
+        return Family::kResamples;
+    else
+        return false;
+}
+constexpr auto kResamples = std::apply(
+    [](const auto&... row) { return std::array{resamples<typename std::decay_t<decltype(row)>::Type>()...}; },
+    kGatherers);
+
 // In the order of the table.
 template <class Rows, class Holds>
 std::string names_where(const Rows& rows, const Holds& holds) {
@@ -284,6 +296,17 @@ std::string compensation_complaint(const Chosen& c, bool compensation) {
            " goes with compensation=false";
 }
 
+std::string reuse_complaint(const Chosen& c, int neighbours) {
+    if (neighbours == 0 || kResamples[c.gatherer])
+        return {};
+    return "resampling_neighbours needs a sampling that resamples: " +
+           names_where(light_gatherers(), [](std::size_t i) { return kResamples[i]; }) + "; sampling " +
+           light_gatherers()[c.gatherer].name + " goes with resampling_neighbours=0";
+}
+
+// Neighbours whose choices a preset reuses.
+constexpr const char* kNeighbours = "4";
+
 std::vector<TechniquePreset> make_presets() {
     std::vector<TechniquePreset> out;
     for (const TechniqueChoice& gatherer : light_gatherers())
@@ -293,6 +316,13 @@ std::vector<TechniquePreset> make_presets() {
             out.push_back({"vbnl_" + gatherer.name,
                            "the same lights, sampling " + gatherer.name + ": " + gatherer.help,
                            {{"sampling", gatherer.name}}});
+    for (std::size_t i = 0; i < kGathererCount; ++i)
+        if (kResamples[i]) {
+            const std::string name = light_gatherers()[i].name;
+            out.push_back({"vbnl_" + name + "_reused",
+                           "vbnl_" + name + ", where pixels reuse what others around them chose",
+                           {{"sampling", name}, {"resampling_neighbours", kNeighbours}}});
+        }
     out.insert(out.end(), baselines().begin(), baselines().end());
     return out;
 }
@@ -342,7 +372,7 @@ std::string why_not_together(const VirtualLightSettings& settings) {
     std::string out;
     for (const std::string& complaint :
          {flux_complaint(c), kind_complaint(c), gatherer_complaint(c), extension_complaint(c, settings.path_extension),
-          compensation_complaint(c, settings.compensation)})
+          compensation_complaint(c, settings.compensation), reuse_complaint(c, settings.resampling_neighbours)})
         if (!complaint.empty())
             out += (out.empty() ? "" : "; and ") + complaint;
     return out;

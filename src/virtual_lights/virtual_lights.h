@@ -42,6 +42,8 @@ public:
     // smoke finds it then, and always without `smoke`.
     // `vertices`: is raised by the number of vertices of the path, this one among them. `distance`: becomes that of the
     // surface which the first ray of the path meets [m], or stays as it is.
+    // `reservoir`: becomes what the vertex itself has chosen of the lights, where reservoirs() is not null; that light
+    // is missing in the sum then.
     enum class Panes { Followed, Sampled };
     struct Shading {
         Panes panes = Panes::Followed;
@@ -49,9 +51,13 @@ public:
         float walks = 0.0f;
         int* vertices = nullptr;
         double* distance = nullptr;
+        LightReservoir* reservoir = nullptr;
     };
     Rgb shade(const PathVertex& vertex, Rng& rng, const Shading& how) const;
     Rgb shade(const PathVertex& vertex, Rng& rng) const { return shade(vertex, rng, Shading{}); }
+
+    // Null: the sampling does not resample, or there are no lights.
+    const ReservoirLights* reservoirs() const { return set_->lights.empty() ? nullptr : gatherer_->reservoirs(); }
 
     const std::vector<VirtualLight>& lights() const { return set_->lights; }
     // Radiance of a light of its own surface's colour [W/(m^2 sr)]. `toward`: unit, world.

@@ -73,6 +73,36 @@ TEST(OpticalDepth, IsTheSumOfTheNodes) {
     }
 }
 
+// Inside smoke of one density every brick has its mean.
+TEST(CoarseDepth, IsExactInEvenSmoke) {
+    Recipe r;
+    r.box = cube(0, 40);
+    r.world_from_index = transform(some_linear_map(), dvec3(3.0, -7.0, 1.0));
+    r.density = [](const ivec3&) { return 2.0f; };
+    r.settings = black_smoke();
+    const Field f(r);
+    const dvec3 begin(f.medium.local_of_node({10, 12, 17})), end(f.medium.local_of_node({30, 27, 11}));
+    const double distance = glm::length(end - begin);
+    const Ray ray{begin, (end - begin) / distance};
+    EXPECT_NEAR(coarse_depth(f.field, ray, distance), optical_depth(f.field, ray, distance),
+                1e-5 * optical_depth(f.field, ray, distance));
+}
+
+// Through a whole brick of noise it is near: 81 nodes of the way's cross-section, or 729, have the same mean.
+TEST(CoarseDepth, IsAboutTheOpticalDepth) {
+    Recipe r;
+    r.box = cube(0, 64);
+    r.density = [](const ivec3& n) { return 5.0f * testing::noise(n, 1); };
+    r.settings = black_smoke();
+    const Field f(r);
+    const dvec3 begin(f.medium.local_of_node({16, 20, 20})), end(f.medium.local_of_node({48, 44, 44}));
+    const double distance = glm::length(end - begin);
+    const Ray ray{begin, (end - begin) / distance};
+    const double exact = optical_depth(f.field, ray, distance);
+    EXPECT_NEAR(coarse_depth(f.field, ray, distance), exact, 0.2 * exact);
+    EXPECT_NE(coarse_depth(f.field, ray, distance), exact);
+}
+
 TEST(OpticalDepth, OfPartsAddsUp) {
     for (const OneDimensional& p : kPipes) {
         const Field f(pipe(p.extinction));

@@ -111,6 +111,8 @@ VirtualLightSettings with(const std::string& name, const Json& value) {
     Shot shot;
     shot.virtual_lights.n_min = 0.0;
     shot.virtual_lights.n_max = name == "n_min" ? std::numeric_limits<double>::max() : 80.0;
+    if (name == "resampling_neighbours")
+        shot.virtual_lights.sampling = "resampled";
     EXPECT_TRUE(key_of(name).set(shot, value)) << name << "=" << value;
     return shot.virtual_lights;
 }
@@ -142,7 +144,8 @@ INSTANTIATE_TEST_SUITE_P(OfVirtualLights, Ranges,
                                            "candidates_per_pixel", "neighbours", "radius_factor", "photons",
                                            "profile_resolution", "resampling_candidates", "n_min", "n_max",
                                            "importance_floor", "light_samples", "resampling_rays", "lightcuts_error",
-                                           "lightcuts_most", "stochastic_cut_size", "sharing_radius"));
+                                           "lightcuts_most", "stochastic_cut_size", "sharing_radius",
+                                           "resampling_neighbours", "resampling_radius"));
 
 // Every key with numbers is in the list above, but for the seed, of which the renderer takes any.
 TEST(AllRanges, AreTested) {
@@ -151,7 +154,7 @@ TEST(AllRanges, AreTested) {
         if (key.path.starts_with("virtual_lights.") && key.path != "virtual_lights.seed" &&
             (key.schema.value("type", "") == "integer" || key.schema.value("type", "") == "number"))
             ++numbers;
-    EXPECT_EQ(numbers, 20);
+    EXPECT_EQ(numbers, 22);
 }
 
 // What the check takes the renderer can build, where it does not take long.

@@ -116,6 +116,33 @@ void add_cut_keys(std::vector<Key>& keys) {
         whole_in(Ranges::stochastic_cut_size), [](Shot & s) -> auto& { return s.virtual_lights.stochastic_cut_size; }));
 }
 
+void add_resampling_keys(std::vector<Key>& keys) {
+    keys.push_back(make_key(
+        "virtual_lights.resampling_candidates",
+        "for sampling resampled and resampled_combined: lights of which one is chosen",
+        whole_in(Ranges::resampling_candidates),
+        [](Shot & s) -> auto& { return s.virtual_lights.resampling_candidates; }));
+    keys.push_back(make_key(
+        "virtual_lights.resampling_rays", "for sampling resampled_combined: rays by BSDF beside those lights",
+        whole_in(Ranges::resampling_rays), [](Shot & s) -> auto& { return s.virtual_lights.resampling_rays; }));
+    keys.push_back(make_key(
+        "virtual_lights.resampling_neighbours",
+        "for sampling resampled and resampled_combined: camera samples around whose chosen lights are reused; 0: none",
+        whole_in(Ranges::resampling_neighbours),
+        [](Shot & s) -> auto& { return s.virtual_lights.resampling_neighbours; }));
+    keys.push_back(make_key(
+        "virtual_lights.resampling_radius", "for resampling_neighbours: how far they may lie [pixels]",
+        real_in(Ranges::resampling_radius), [](Shot & s) -> auto& { return s.virtual_lights.resampling_radius; }));
+    keys.push_back(make_key(
+        "virtual_lights.resampling_visibility",
+        "for resampling_neighbours: lights are reused only where the sample that chose them sees them", flag(),
+        [](Shot & s) -> auto& { return s.virtual_lights.resampling_visibility; }));
+    keys.push_back(make_key(
+        "virtual_lights.resampling_transmittance",
+        "for sampling resampled and resampled_combined: lights are chosen by what a coarse medium lets through", flag(),
+        [](Shot & s) -> auto& { return s.virtual_lights.resampling_transmittance; }));
+}
+
 void add_gathering_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "virtual_lights.sampling", help_of(light_gatherers()), name_in(light_gatherers()),
@@ -126,14 +153,7 @@ void add_gathering_keys(std::vector<Key>& keys) {
         whole_in(Ranges::light_samples), [](Shot & s) -> auto& { return s.virtual_lights.light_samples; }));
     add_sharing_key(keys);
     add_cut_keys(keys);
-    keys.push_back(make_key(
-        "virtual_lights.resampling_candidates",
-        "for sampling resampled and resampled_combined: lights of which one is chosen",
-        whole_in(Ranges::resampling_candidates),
-        [](Shot & s) -> auto& { return s.virtual_lights.resampling_candidates; }));
-    keys.push_back(make_key(
-        "virtual_lights.resampling_rays", "for sampling resampled_combined: rays by BSDF beside those lights",
-        whole_in(Ranges::resampling_rays), [](Shot & s) -> auto& { return s.virtual_lights.resampling_rays; }));
+    add_resampling_keys(keys);
     keys.push_back(make_key(
         "virtual_lights.path_extension", "camera paths continue where a ray's footprint covers few lights", flag(),
         [](Shot & s) -> auto& { return s.virtual_lights.path_extension; }));

@@ -2,6 +2,7 @@
 // called for every light is a template over its kind.
 #pragma once
 
+#include "virtual_lights/gatherers/light_reservoir.h"
 #include "virtual_lights/light_set.h"
 #include "virtual_lights/placement/placement.h"
 
@@ -19,6 +20,8 @@ public:
     // The radiance that a ray finds at its end, weighted against sampling the lights. `pdf`: of the ray, which the
     // vertex sampled [1/sr].
     virtual Rgb from_ray(const PathVertex&, const CoveredHit&, double /*pdf*/) const { return Rgb(0.0f); }
+    // Null: the gatherer does not resample.
+    virtual const ReservoirLights* reservoirs() const { return nullptr; }
     virtual std::uint64_t bytes() const { return 0; }
 };
 

@@ -20,12 +20,15 @@ struct Connection {
 // Lights are given by their index in the set.
 template <class Kind>
 concept VirtualLightKind = requires(const Kind& kind, LightSet& set, std::size_t light, const PathVertex& vertex,
-                                    const dvec3& direction, const Connection& connection, double factor, Rng& rng) {
+                                    const dvec3& direction, const glm::dvec2& numbers, const Connection& connection,
+                                    double factor, Rng& rng) {
     // Sets what the kind decides of the lights: their radius.
     Kind::fit(set);
     Kind(set);
     // A unit direction toward the light.
     { kind.sample(light, vertex, rng) } -> std::same_as<dvec3>;
+    // The one that sample() makes of two random numbers in [0, 1).
+    { kind.direction(light, vertex, numbers) } -> std::same_as<dvec3>;
     // Of a direction that leads to the light [1/sr]; 1 for a kind that has only one direction.
     { kind.pdf(light, vertex, direction) } -> std::same_as<double>;
     // What the light sends to the vertex, without occlusion [W/(m^2 sr)]; of a kind with one direction the irradiance
@@ -33,6 +36,8 @@ concept VirtualLightKind = requires(const Kind& kind, LightSet& set, std::size_t
     { kind.radiance(light, vertex, direction) } -> std::same_as<Rgb>;
     // The connection's scattered light with occlusion, times a factor.
     { kind.connect(connection, vertex, float(factor), rng) } -> std::same_as<Rgb>;
+    // Whether surfaces let any of it through.
+    { kind.reaches(connection, vertex) } -> std::same_as<bool>;
     // An estimate of what the vertex scatters of the whole light, over the probability of having chosen that.
     { kind.estimate(light, factor, vertex, rng) } -> std::same_as<Rgb>;
 };

@@ -2,7 +2,12 @@
 
 namespace brisance {
 
-Rgb incident_from_patch(const LightSet& set, const Connection& connection, const PathVertex& vertex, Rng& rng) {
+namespace {
+
+// Calls visit(hit, share, terminated) where the connection's ray meets surface that the light covers and where paths
+// end in part at least.
+template <class Visit>
+void meet_patch(const LightSet& set, const Connection& connection, const PathVertex& vertex, const Visit& visit) {
     const VirtualLight& light = set.lights[connection.light];
     const DirectLight& scene = set.scene();
     // Surface beyond the sphere, or in front of it, is not the light's.
@@ -10,20 +15,34 @@ Rgb incident_from_patch(const LightSet& set, const Connection& connection, const
     RaySegment segment{vertex.leaving(connection.direction), 0.0, std::nullopt, std::nullopt};
     segment.hit = scene.surroundings()->intersector().first_hit(segment.ray, distance + light.radius);
     if (!segment.hit || segment.hit->distance < 0.999 * distance - light.radius)
-        return Rgb(0.0f);
+        return;
     segment.end = segment.hit->distance;
     segment.point = surface_point(scene.surroundings()->scene(), *segment.hit, -connection.direction);
     const CoveredHit hit = set.covered(segment);
     for (int i = 0; i < hit.shares.count; ++i) {
         if (hit.shares.light[i] != connection.light)
             continue;
-        const double terminated = set.termination_probability(hit, connection.scattered.pdf);
-        if (terminated == 0.0)
-            break;
-        const double transmittance = scene.lines().transmittance(segment.ray, segment.end, rng);
-        return connection.scattered.value * set.reflected(hit, i) * float(terminated * transmittance);
+        if (const double terminated = set.termination_probability(hit, connection.scattered.pdf); terminated > 0.0)
+            visit(hit, i, terminated);
+        return;
     }
-    return Rgb(0.0f);
+}
+
+}  // namespace
+
+Rgb incident_from_patch(const LightSet& set, const Connection& connection, const PathVertex& vertex, Rng& rng) {
+    Rgb out(0.0f);
+    meet_patch(set, connection, vertex, [&](const CoveredHit& hit, int share, double terminated) {
+        const double transmittance = set.scene().lines().transmittance(hit.segment.ray, hit.segment.end, rng);
+        out = connection.scattered.value * set.reflected(hit, share) * float(terminated * transmittance);
+    });
+    return out;
+}
+
+bool patch_is_met(const LightSet& set, const Connection& connection, const PathVertex& vertex) {
+    bool met = false;
+    meet_patch(set, connection, vertex, [&](const CoveredHit&, int, double) { met = true; });
+    return met;
 }
 
 }  // namespace brisance

@@ -13,6 +13,9 @@ namespace brisance {
 // surface that it covers.
 Rgb incident_from_patch(const LightSet& set, const Connection& connection, const PathVertex& vertex, Rng& rng);
 
+// Whether that is more than nothing, smoke aside.
+bool patch_is_met(const LightSet& set, const Connection& connection, const PathVertex& vertex);
+
 struct PatchKind {
     static constexpr const char* kNeeds = kSurfaceFlux;
 
@@ -25,6 +28,10 @@ struct PatchKind {
 
         dvec3 sample(std::size_t light, const PathVertex& vertex, Rng& rng) const {
             return sample_toward(set_.lights[light], vertex.lit(), rng);
+        }
+
+        dvec3 direction(std::size_t light, const PathVertex& vertex, const glm::dvec2& numbers) const {
+            return direction_toward(set_.lights[light], vertex.lit(), numbers);
         }
 
         double pdf(std::size_t light, const PathVertex& vertex, const dvec3& direction) const {
@@ -46,6 +53,10 @@ struct PatchKind {
 
         Rgb connect(const Connection& connection, const PathVertex& vertex, float factor, Rng& rng) const {
             return factor * incident(connection, vertex, rng);
+        }
+
+        bool reaches(const Connection& connection, const PathVertex& vertex) const {
+            return patch_is_met(set_, connection, vertex);
         }
 
         Rgb estimate(std::size_t light, double probability, const PathVertex& vertex, Rng& rng) const {

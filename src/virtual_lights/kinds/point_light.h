@@ -29,6 +29,10 @@ struct PointKind {
         explicit Of(const LightSet& set) : set_(set), flux_(set) {}
 
         dvec3 sample(std::size_t light, const PathVertex& vertex, Rng&) const {
+            return direction(light, vertex, glm::dvec2(0.0));
+        }
+
+        dvec3 direction(std::size_t light, const PathVertex& vertex, const glm::dvec2&) const {
             return glm::normalize(set_.lights[light].position - vertex.position());
         }
 
@@ -47,6 +51,10 @@ struct PointKind {
 
         Rgb connect(const Connection& c, const PathVertex& vertex, float factor, Rng& rng) const {
             return connect_by_shadow_ray(set_.scene(), vertex, set_.lights[c.light], c, factor, rng);
+        }
+
+        bool reaches(const Connection& c, const PathVertex& vertex) const {
+            return shadow_ray(set_.scene(), vertex, set_.lights[c.light]).clear;
         }
 
         Rgb estimate(std::size_t index, double probability, const PathVertex& vertex, Rng& rng) const {

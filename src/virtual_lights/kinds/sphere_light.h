@@ -55,6 +55,10 @@ struct SphereKind {
             return sample_toward(set_.lights[light], vertex.lit(), rng);
         }
 
+        dvec3 direction(std::size_t light, const PathVertex& vertex, const glm::dvec2& numbers) const {
+            return direction_toward(set_.lights[light], vertex.lit(), numbers);
+        }
+
         double pdf(std::size_t light, const PathVertex& vertex, const dvec3& direction) const {
             return pdf_toward(set_.lights[light], vertex.lit(), direction);
         }
@@ -66,6 +70,10 @@ struct SphereKind {
 
         Rgb connect(const Connection& c, const PathVertex& vertex, float factor, Rng& rng) const {
             return connect_by_shadow_ray(set_.scene(), vertex, set_.lights[c.light], c, factor, rng);
+        }
+
+        bool reaches(const Connection& c, const PathVertex& vertex) const {
+            return shadow_ray(set_.scene(), vertex, set_.lights[c.light]).clear;
         }
 
         Rgb estimate(std::size_t index, double probability, const PathVertex& vertex, Rng& rng) const {

@@ -23,8 +23,8 @@ double cap_height(double radius, double square_distance) {
 
 }  // namespace
 
-dvec3 sample_toward(const VirtualLight& light, const LitPoint& point, Rng& rng) {
-    const double u = rng.next_double(), azimuth = 2.0 * pi * rng.next_double();
+dvec3 direction_toward(const VirtualLight& light, const LitPoint& point, const glm::dvec2& numbers) {
+    const double u = numbers.x, azimuth = 2.0 * pi * numbers.y;
     const dvec3 offset = light.position - point.position;
     const double square_distance = glm::dot(offset, offset);
     if (square_distance > light.radius * light.radius)
@@ -32,6 +32,11 @@ dvec3 sample_toward(const VirtualLight& light, const LitPoint& point, Rng& rng) 
     if (point.kind == LitPoint::Kind::Surface)
         return around(point.normal, std::sqrt(u), azimuth);
     return around({0.0, 0.0, 1.0}, 1.0 - 2.0 * u, azimuth);
+}
+
+dvec3 sample_toward(const VirtualLight& light, const LitPoint& point, Rng& rng) {
+    const double x = rng.next_double(), y = rng.next_double();
+    return direction_toward(light, point, {x, y});
 }
 
 bool leads_into(const VirtualLight& light, const LitPoint& point, const dvec3& direction) {

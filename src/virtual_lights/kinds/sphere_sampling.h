@@ -7,7 +7,9 @@
 
 namespace brisance {
 
-// Uniform over the solid angle of the sphere; from inside it any direction that the point can be lit from.
+// Uniform over the solid angle of the sphere; from inside it any direction that the point can be lit from. `numbers`:
+// in [0, 1)^2; from any point they reach all directions.
+dvec3 direction_toward(const VirtualLight& light, const LitPoint& point, const glm::dvec2& numbers);
 dvec3 sample_toward(const VirtualLight& light, const LitPoint& point, Rng& rng);
 // Whether a direction leads into the sphere.
 bool leads_into(const VirtualLight& light, const LitPoint& point, const dvec3& direction);
