@@ -26,6 +26,7 @@ PictureSettings picture_settings(const DrawInput& input, const ManyLights& light
     settings.edge_refinement = camera.edge_refinement;
     settings.cells = input.shot.output.cell_layers;
     settings.layers = input.plan.needed;
+    settings.fire_by_rays = input.plan.fire_by_rays != nullptr;
     if (!input.medium.lattice.empty())
         settings.layers.set(Cell::V, true);
     return settings;
@@ -112,7 +113,7 @@ Image FramePicture::pass(const InScattering* estimator, int number) {
 Image FramePicture::picture(const InScattering* estimator, int number, const MomentLights& lights, const Camera& camera,
                             const Surroundings* surroundings) {
     settings_.pass = number;
-    settings_.light_rays = light_rays_by(estimator, lights.direct(), input_.plan.emitters_by_rays);
+    settings_.light_rays = light_rays_by(estimator, lights.direct(), input_.plan.emitters_by_rays, lights.fire_on_rays());
     settings_.surroundings = surroundings;
     settings_.once = lights.once();
     if (!input_.plan.surfaces)
@@ -151,6 +152,8 @@ void FramePicture::add_order_layers(Image& image) {
     PictureSettings settings = settings_;
     settings.cells = true;
     settings.once = nullptr;
+    settings.light_rays = {};
+    settings.fire_by_rays = false;
     const auto add = [&](const std::string& name, const Layer& from) {
         Layer layer = from;
         layer.name = name;

@@ -33,7 +33,8 @@ const char* const kOtherSeed = "104729";
 const std::vector<std::string>& seed_keys() {
     static const std::vector<std::string> keys = {"tracing.seed",         "virtual_lights.seed",
                                                   "ray_lights.seed",      "volumetric_photons.seed",
-                                                  "volumetric_vpls.seed", "photon_density.seed"};
+                                                  "volumetric_vpls.seed", "photon_density.seed",
+                                                  "fire_lights.seed"};
     return keys;
 }
 

@@ -1,12 +1,11 @@
+#include "transport/light_cut.h"
+
 #include "core/rng.h"
-#include "virtual_lights/gatherers/lightcuts.h"
-#include "virtual_lights/gatherers/stochastic_lightcuts.h"
 
 namespace brisance {
 
 namespace {
 
-// Beside other streams of the module.
 constexpr Stream kRepresentatives = stream_of("virtual_lights/representatives");
 
 // Of the left one. Both weights are above 0 or not finite only where distances are 0.

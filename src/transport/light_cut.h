@@ -1,4 +1,5 @@
-// Cuts through a light tree: nodes that together hold every light which can reach a vertex.
+// Cuts through a light tree: nodes that together hold every light which can reach a vertex. Whatever kind of light is
+// in the tree, its owner says what a vertex scatters of one light (lightcuts.h, stochastic_lightcuts.h).
 #pragma once
 
 #include <algorithm>
@@ -23,6 +24,16 @@ struct NodeBound {
     }
 };
 
+// For all points of a box with that middle and half that size [m].
+inline NodeBound bound_in_box(const LightCone& lights, const ScatteringBound& scattering, const dvec3& middle,
+                              const dvec3& half) {
+    const LightsInView view = lights.seen_from(middle, half);
+    NodeBound out{0.0, view.nearest2, view.farthest2};
+    if (view.intensity > 0.0)
+        out.scattered = view.intensity * scattering.over(view.direction, view.cos_around);
+    return out;
+}
+
 // The bounds of all nodes for one vertex.
 class VertexBounds {
 public:
@@ -31,11 +42,7 @@ public:
         : tree_(tree), vertex_(vertex), bsdf_(vertex.bound()) {}
 
     NodeBound of(std::uint32_t node) const {
-        const LightsInView view = tree_.lights(node).seen_from(vertex_.position());
-        NodeBound out{0.0, view.nearest2, view.farthest2};
-        if (view.intensity > 0.0)
-            out.scattered = view.intensity * bsdf_.over(view.direction, view.cos_around);
-        return out;
+        return bound_in_box(tree_.lights(node), bsdf_, vertex_.position(), dvec3(0.0));
     }
 
 private:
@@ -68,5 +75,34 @@ void refine_cut(std::vector<Node>& cut, std::size_t most, const Enough& enough, 
         });
     }
 }
+
+// The light of all nodes of a cut, which is divided until no node may err by more than `error` of the sum, or it has
+// `most` nodes. contribution(node); divide(node, add) as replace() above.
+template <class Node, class Contribution, class Divide>
+Rgb sum_of_cut(std::vector<Node>& cut, double error, std::size_t most, const Contribution& contribution,
+               const Divide& divide) {
+    double sum = 0.0;
+    for (const Node& node : cut)
+        sum += luminance(contribution(node));
+    refine_cut(
+        cut, most, [&](double largest) { return largest <= error * sum; },
+        [&](const Node& divided, const auto& add) {
+            sum -= luminance(contribution(divided));
+            divide(divided, [&](const Node& child) {
+                sum += luminance(contribution(child));
+                add(child);
+            });
+        });
+    Rgb total(0.0f);
+    for (const Node& node : cut)
+        total += contribution(node);
+    return total;
+}
+
+// For every node of the tree a light of it, drawn in proportion to intensity.
+std::vector<std::uint32_t> representatives(const LightTree& tree, std::uint32_t seed);
+
+// Probability of the left of two nodes; below 0 where neither has any.
+double share_by_distances(const NodeBound& left, const NodeBound& right);
 
 }  // namespace brisance
