@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "fire_lights/samplings.h"
 #include "scattering_methods/methods.h"
 #include "virtual_lights/choices.h"
 
@@ -23,6 +24,16 @@ BuiltIn by_virtual_lights(const TechniquePreset& preset) {
     for (const auto& [key, value] : preset.settings)
         method.settings.push_back("virtual_lights." + key + "=" + value);
     return method;
+}
+
+// Every way to choose among the lights of the fire.
+void add_fire_lights(std::vector<BuiltIn>& methods) {
+    for (const FireLightSampling& row : fire_light_samplings())
+        methods.push_back({std::string("fire_") + row.name,
+                           {"method=lighting_grid", "scattering.method=lighting_grid",
+                            std::string("fire_lights.sampling=") + row.name},
+                           StepsOf::Samples,
+                           {Cell::MV}});
 }
 
 // The presets of all scattering methods.
@@ -55,6 +66,7 @@ std::vector<BuiltIn> make_built_ins() {
          {"method=lighting_grid", "scattering.method=lighting_grid", "scattering.solver=radiance_cascades"},
          StepsOf::Directions,
          kCellsOfScatteringMethods}};
+    add_fire_lights(methods);
     add_scattering_methods(methods);
     return methods;
 }
