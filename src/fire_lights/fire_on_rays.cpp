@@ -26,7 +26,7 @@ Rgb FireOnRays::along(const RayMedium& seen, const Ray& ray, Rng& rng) const {
             continue;
         const Rgb weight = part * scene_.field().albedo(c->brick, c->position);
         if (weight != Rgb(0.0f))
-            points.push_back({scene_.in_smoke(ray, *c), weight});
+            points.push_back({scene_.in_smoke(ray, *c), weight, scene_.field().extinction(c->brick, c->position)});
     }
     return gatherer_->at(points, rng);
 }

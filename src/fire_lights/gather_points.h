@@ -10,7 +10,8 @@ namespace brisance {
 
 struct GatherPoint {
     PathVertex vertex;
-    Rgb weight;  // of what it scatters, by its phase function alone, in the light of the ray
+    Rgb weight;         // of what it scatters, by its phase function alone, in the light of the ray
+    double extinction;  // there [1/m]
 };
 
 class FireGatherer {

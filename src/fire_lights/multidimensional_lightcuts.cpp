@@ -1,5 +1,7 @@
 #include "fire_lights/multidimensional_lightcuts.h"
 
+#include <algorithm>
+
 namespace brisance {
 
 namespace {
@@ -10,6 +12,7 @@ struct PointNode {
     std::uint32_t representative = 0;
     std::uint32_t left = 0, right = 0;  // left == 0: a leaf
     dvec3 low{0.0}, high{0.0};
+    double extinction = 0.0;  // the least at them [1/m]
     dvec3 middle() const { return 0.5 * (low + high); }
     dvec3 half() const { return 0.5 * (high - low); }
 };
@@ -20,7 +23,7 @@ std::uint32_t build(std::span<const GatherPoint> points, std::uint32_t begin, st
     nodes.emplace_back();
     if (end - begin == 1) {
         const dvec3& p = points[begin].vertex.position();
-        nodes[node] = {luminance(points[begin].weight), begin, 0, 0, p, p};
+        nodes[node] = {luminance(points[begin].weight), begin, 0, 0, p, p, points[begin].extinction};
         return node;
     }
     const std::uint32_t half = begin + (end - begin) / 2;
@@ -28,7 +31,7 @@ std::uint32_t build(std::span<const GatherPoint> points, std::uint32_t begin, st
     const PointNode &l = nodes[left], &r = nodes[right];
     const bool takes_left = rng.next_double() * (l.weight + r.weight) < l.weight;
     nodes[node] = {l.weight + r.weight,       (takes_left ? l : r).representative, left, right,
-                   glm::min(l.low, r.low), glm::max(l.high, r.high)};
+                   glm::min(l.low, r.low), glm::max(l.high, r.high), std::min(l.extinction, r.extinction)};
     return node;
 }
 
@@ -82,7 +85,7 @@ private:
         const PointNode& p = at(points);
         if (cut_.tree().is_leaf(lights) && p.left == 0)
             return {{lights, 0.0}, points, light};
-        const NodeBound bound = bound_in_box(cut_.tree().lights(lights), scattering_, p.middle(), p.half());
+        const NodeBound bound = bound_in_box(cut_.tree().lights(lights), scattering_, p.middle(), p.half(), p.extinction);
         return {{lights, p.weight * bound.largest()}, points, light};
     }
 

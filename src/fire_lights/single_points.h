@@ -1,5 +1,9 @@
 // Gatherers that treat every point of a ray by itself: all lights, lights chosen one by one, and cuts at a vertex, which
 // are those of virtual lights.
+//
+// Most lights of a fire in dense smoke reach no point at all. Cuts that count no smoke are all but blind there: they
+// take the smoke between to be as dense as at the point. A random choice remains right whatever the guess is, and the
+// guess falls off slowly (guessed_transmittance()); a deterministic cut may stop too early by it.
 #pragma once
 
 #include "emitters/weighted_choice.h"
@@ -11,7 +15,7 @@
 
 namespace brisance {
 
-// At: made of lights and settings; at(vertex, rng) is what the vertex scatters.
+// At: made of lights and settings; at(point, rng) is what its vertex scatters.
 template <class At>
 class AtEachPoint : public FireGatherer {
 public:
@@ -19,7 +23,7 @@ public:
     Rgb at(std::span<const GatherPoint> points, Rng& rng) const override {
         Rgb sum(0.0f);
         for (const GatherPoint& p : points)
-            sum += p.weight * each_.at(p.vertex, rng);
+            sum += p.weight * each_.at(p, rng);
         return sum;
     }
     std::uint64_t bytes() const override { return each_.bytes(); }
@@ -31,10 +35,10 @@ private:
 class AllFireLights {
 public:
     AllFireLights(const FireLights& lights, const FireLightSettings&) : lights_(lights) {}
-    Rgb at(const PathVertex& vertex, Rng& rng) const {
+    Rgb at(const GatherPoint& p, Rng& rng) const {
         Rgb sum(0.0f);
         for (std::size_t light = 0; light < lights_.size(); ++light)
-            sum += lights_.estimate(light, 1.0, vertex, rng);
+            sum += lights_.estimate(light, 1.0, p.vertex, rng);
         return sum;
     }
     std::uint64_t bytes() const { return 0; }
@@ -74,11 +78,11 @@ class ChosenFireLights {
 public:
     ChosenFireLights(const FireLights& lights, const FireLightSettings& settings)
         : lights_(lights), chooser_(lights), samples_(settings.samples) {}
-    Rgb at(const PathVertex& vertex, Rng& rng) const {
+    Rgb at(const GatherPoint& p, Rng& rng) const {
         Rgb sum(0.0f);
         for (int i = 0; i < samples_; ++i)
-            if (const auto choice = chooser_.choose(vertex, (i + rng.next_double()) / samples_))
-                sum += lights_.estimate(choice->light, choice->probability * samples_, vertex, rng);
+            if (const auto choice = chooser_.choose(p.vertex, (i + rng.next_double()) / samples_))
+                sum += lights_.estimate(choice->light, choice->probability * samples_, p.vertex, rng);
         return sum;
     }
     std::uint64_t bytes() const { return chooser_.bytes(); }
@@ -93,8 +97,9 @@ class FireLightcuts {
 public:
     FireLightcuts(const FireLights& lights, const FireLightSettings& s)
         : lights_(lights), cut_(LightTree(lights.bounds()), s.seed, s.lightcuts_error, s.lightcuts_most) {}
-    Rgb at(const PathVertex& vertex, Rng& rng) const {
-        return cut_.at(vertex, [&](std::size_t light) { return lights_.estimate(light, 1.0, vertex, rng); });
+    Rgb at(const GatherPoint& p, Rng& rng) const {
+        return cut_.at(
+            p.vertex, [&](std::size_t light) { return lights_.estimate(light, 1.0, p.vertex, rng); }, p.extinction);
     }
     std::uint64_t bytes() const { return cut_.bytes(); }
 
@@ -107,10 +112,13 @@ class FireStochasticLightcuts {
 public:
     FireStochasticLightcuts(const FireLights& lights, const FireLightSettings& s)
         : lights_(lights), cut_(LightTree(lights.bounds()), s.stochastic_cut_size) {}
-    Rgb at(const PathVertex& vertex, Rng& rng) const {
-        return cut_.at(vertex, rng, [&](std::size_t light, double probability) {
-            return lights_.estimate(light, probability, vertex, rng);
-        });
+    Rgb at(const GatherPoint& p, Rng& rng) const {
+        return cut_.at(
+            p.vertex, rng,
+            [&](std::size_t light, double probability) {
+                return lights_.estimate(light, probability, p.vertex, rng);
+            },
+            p.extinction);
     }
     std::uint64_t bytes() const { return cut_.bytes(); }
 

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "emitters/light_tree.h"
+#include "light_selection/medium_light_tree.h"
 #include "transport/path_vertex.h"
 
 namespace brisance {
@@ -15,20 +17,27 @@ namespace brisance {
 struct NodeBound {
     double scattered = 0.0;                  // bound on intensity times BSDF and cosine, luminance [W/sr^2]
     double nearest2 = 0.0, farthest2 = 0.0;  // squared distances to their box [m^2]
+    // Of smoke that is taken to be everywhere between them [1/m]; 0: none, so that the bounds hold.
+    double extinction = 0.0;
+
+    // `scattered` after such a squared distance.
+    double dimmed(double distance2) const {
+        return extinction > 0.0 ? scattered * guessed_transmittance(extinction * std::sqrt(distance2)) : scattered;
+    }
 
     // Upper bound on what the vertex scatters of them without occlusion [W/(m^2 sr)]. It is finite also inside their
     // box: lights count as no nearer than a thousandth of the farthest distance.
     double largest() const {
         constexpr double kLeast = 1e-6;
-        return scattered > 0.0 ? scattered / std::max({nearest2, kLeast * farthest2, 1e-300}) : 0.0;
+        return scattered > 0.0 ? dimmed(nearest2) / std::max({nearest2, kLeast * farthest2, 1e-300}) : 0.0;
     }
 };
 
-// For all points of a box with that middle and half that size [m].
+// For all points of a box with that middle and half that size [m]. `extinction`: of the smoke around them.
 inline NodeBound bound_in_box(const LightCone& lights, const ScatteringBound& scattering, const dvec3& middle,
-                              const dvec3& half) {
+                              const dvec3& half, double extinction) {
     const LightsInView view = lights.seen_from(middle, half);
-    NodeBound out{0.0, view.nearest2, view.farthest2};
+    NodeBound out{0.0, view.nearest2, view.farthest2, extinction};
     if (view.intensity > 0.0)
         out.scattered = view.intensity * scattering.over(view.direction, view.cos_around);
     return out;
@@ -38,17 +47,18 @@ inline NodeBound bound_in_box(const LightCone& lights, const ScatteringBound& sc
 class VertexBounds {
 public:
     // Keeps references.
-    VertexBounds(const LightTree& tree, const PathVertex& vertex)
-        : tree_(tree), vertex_(vertex), bsdf_(vertex.bound()) {}
+    VertexBounds(const LightTree& tree, const PathVertex& vertex, double extinction)
+        : tree_(tree), vertex_(vertex), bsdf_(vertex.bound()), extinction_(extinction) {}
 
     NodeBound of(std::uint32_t node) const {
-        return bound_in_box(tree_.lights(node), bsdf_, vertex_.position(), dvec3(0.0));
+        return bound_in_box(tree_.lights(node), bsdf_, vertex_.position(), dvec3(0.0), extinction_);
     }
 
 private:
     const LightTree& tree_;
     const PathVertex& vertex_;
     ScatteringBound bsdf_;
+    double extinction_;
 };
 
 // One node of a cut. A cut is a heap: the node whose lights may err most stands first. Leaves do not err.

@@ -25,11 +25,12 @@ public:
     StochasticLightcut(LightTree tree, int size) : tree_(std::move(tree)), size_(size) {}
 
     // What the vertex scatters of all lights. estimate(light, probability): of one that is chosen so, weighted.
+    // `extinction`: of smoke that is taken to be all around the vertex [1/m].
     template <class Estimate>
-    Rgb at(const PathVertex& vertex, Rng& rng, const Estimate& estimate) const {
+    Rgb at(const PathVertex& vertex, Rng& rng, const Estimate& estimate, double extinction = 0.0) const {
         if (tree_.empty())
             return Rgb(0.0f);
-        const VertexBounds bounds(tree_, vertex);
+        const VertexBounds bounds(tree_, vertex, extinction);
         thread_local std::vector<CutNode> cut;
         cut.assign(1, {0, tree_.is_leaf(0) ? 0.0 : bounds.of(0).largest()});
         refine_cut(

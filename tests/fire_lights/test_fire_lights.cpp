@@ -87,6 +87,7 @@ TEST(FireOnRays, OneLightInThinSmokeHasTheIntegralOfItsPoint) {
     for (const FireLightSampling& row : fire_light_samplings()) {
         FireLightSettings settings;
         settings.points = 16;
+        settings.lightcuts_error = 0.0;
         const FireOnRays fire(scene, row, settings);
         ASSERT_EQ(fire.lights(), 8u);
         const Estimate found = estimate_to(0.001, 1, [&](const dvec3&, Rng& rng, double* out) {

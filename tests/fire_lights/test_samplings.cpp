@@ -50,7 +50,7 @@ struct SingleScattering {
 Recipe small_fire(float mean_cosine) {
     Recipe r = lumpy_ball(6, 3.0f, mean_cosine);
     const NodeScalar whole = r.flame;
-    r.flame = [whole](const ivec3& n) { return n.x < 0 && n.y < 1 ? whole(n) : 0.0f; };
+    r.flame = [whole](const ivec3& n) { return n.y < 1 && n.z < 2 ? whole(n) : 0.0f; };
     return r;
 }
 
@@ -69,7 +69,6 @@ void expect_all_as_paths(const Recipe& recipe, const Scene& set, const std::stri
     const Estimate paths = scene.by_paths(0.005);
     for (const FireLightSampling& row : fire_light_samplings()) {
         FireLightSettings s;
-        s.points = std::string(row.name) == "all" ? 1 : 4;
         s.lightcuts_error = 0.0;
         s.lightcuts_most = 1000000;
         const bool asks_all = std::string(row.name) == "all" || std::string(row.name).ends_with("lightcuts");
