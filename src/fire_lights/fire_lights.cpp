@@ -43,15 +43,16 @@ FireLights::FireLights(const DirectLight& scene) : scene_(scene) {
         for (std::uint32_t c = 0; c < BrickLattice::kNodes; ++c) {
             double sum = 0.0;
             for (int g = 0; g < 8; ++g)
-                sum += luminance(glow(burning[i], vec3(corner_of(c)) +
-                                                      vec3(kGauss[g >> 2], kGauss[g >> 1 & 1], kGauss[g & 1])));
+                sum += luminance(
+                    glow(burning[i], vec3(corner_of(c)) + vec3(kGauss[g >> 2], kGauss[g >> 1 & 1], kGauss[g & 1])));
             found[i * BrickLattice::kNodes + c] = sum * volume_ / 8.0;
         }
     });
     // A voxel that is not finite is no light, so that it spoils those paths alone that meet it.
     for (std::size_t i = 0; i < found.size(); ++i)
         if (found[i] > 0.0 && std::isfinite(found[i])) {
-            lights_.push_back({burning[i / BrickLattice::kNodes], static_cast<std::uint32_t>(i % BrickLattice::kNodes)});
+            lights_.push_back(
+                {burning[i / BrickLattice::kNodes], static_cast<std::uint32_t>(i % BrickLattice::kNodes)});
             intensity_.push_back(found[i]);
         }
 }
@@ -73,8 +74,8 @@ Rgb FireLights::glow(std::size_t brick, const vec3& in_brick) const {
 }
 
 std::vector<LightBounds> FireLights::bounds() const {
-    const dvec3 half = 0.5 * (glm::abs(local_from_index_[0]) + glm::abs(local_from_index_[1]) +
-                              glm::abs(local_from_index_[2]));
+    const dvec3 half =
+        0.5 * (glm::abs(local_from_index_[0]) + glm::abs(local_from_index_[1]) + glm::abs(local_from_index_[2]));
     std::vector<LightBounds> out(lights_.size());
     for (std::size_t i = 0; i < out.size(); ++i) {
         const dvec3 middle = local(lights_[i].brick, corner_of(lights_[i].offset) + 0.5);
@@ -95,8 +96,8 @@ std::optional<FireLights::Point> FireLights::point_around(const Voxel& voxel, co
                                                           Rng& rng) const {
     const double z = 1.0 - 2.0 * rng.next_double(), azimuth = 2.0 * std::numbers::pi * rng.next_double();
     const double across = std::sqrt(std::max(0.0, (1.0 - z) * (1.0 + z)));
-    const dvec3 position = vertex + farthest * rng.next_double() *
-                                        dvec3(across * std::cos(azimuth), across * std::sin(azimuth), z);
+    const dvec3 position =
+        vertex + farthest * rng.next_double() * dvec3(across * std::cos(azimuth), across * std::sin(azimuth), z);
     const dvec3 corner = corner_of(voxel.offset);
     const dvec3 inside = index_from_local_ * (position - local(voxel.brick, corner));
     for (int a = 0; a < 3; ++a)

@@ -30,8 +30,8 @@ std::uint32_t build(std::span<const GatherPoint> points, std::uint32_t begin, st
     const std::uint32_t left = build(points, begin, half, rng, nodes), right = build(points, half, end, rng, nodes);
     const PointNode &l = nodes[left], &r = nodes[right];
     const bool takes_left = rng.next_double() * (l.weight + r.weight) < l.weight;
-    nodes[node] = {l.weight + r.weight,       (takes_left ? l : r).representative, left, right,
-                   glm::min(l.low, r.low), glm::max(l.high, r.high), std::min(l.extinction, r.extinction)};
+    nodes[node] = {l.weight + r.weight,      (takes_left ? l : r).representative, left, right, glm::min(l.low, r.low),
+                   glm::max(l.high, r.high), std::min(l.extinction, r.extinction)};
     return node;
 }
 
@@ -64,8 +64,8 @@ public:
         const PointNode& points = at(pair.points);
         const LightTree& tree = cut_.tree();
         const dvec3 half = points.half();
-        const bool in_lights = points.left == 0 || (!tree.is_leaf(pair.node) &&
-                                                    tree.lights(pair.node).radius2() >= glm::dot(half, half));
+        const bool in_lights =
+            points.left == 0 || (!tree.is_leaf(pair.node) && tree.lights(pair.node).radius2() >= glm::dot(half, half));
         if (in_lights)
             for (const std::uint32_t child : {tree.left(pair.node), tree.right(pair.node)}) {
                 const bool same = cut_.representative(child) == cut_.representative(pair.node);
@@ -85,7 +85,8 @@ private:
         const PointNode& p = at(points);
         if (cut_.tree().is_leaf(lights) && p.left == 0)
             return {{lights, 0.0}, points, light};
-        const NodeBound bound = bound_in_box(cut_.tree().lights(lights), scattering_, p.middle(), p.half(), p.extinction);
+        const NodeBound bound =
+            bound_in_box(cut_.tree().lights(lights), scattering_, p.middle(), p.half(), p.extinction);
         return {{lights, p.weight * bound.largest()}, points, light};
     }
 

@@ -6,8 +6,9 @@
 // each. Both have a representative, drawn in proportion to weight or intensity, and the pair contributes what these two
 // exchange, times the ratios of weights and of intensities. It errs by at most W I M / d^2, with the largest phase
 // function M over all directions from the box of the points to that of the lights and the least distance d between the
-// boxes (visibility counts as 1, and smoke as dense as where it is thinnest at the points, see single_points.h). The pair that may err most is divided in the tree whose box is
-// larger, until no pair may err by more than settings.lightcuts_error of the sum, or there are settings.lightcuts_most.
+// boxes (visibility counts as 1, and smoke as dense as where it is thinnest at the points, see single_points.h). The
+// pair that may err most is divided in the tree whose box is larger, until no pair may err by more than
+// settings.lightcuts_error of the sum, or there are settings.lightcuts_most.
 //
 // Departs from the paper: the points are those of one ray, not of all rays of a pixel, as rays are integrated one by
 // one; they are put in a tree by their order, without clustering; and the tree that is divided is chosen by size alone.

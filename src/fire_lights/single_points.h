@@ -1,5 +1,5 @@
-// Gatherers that treat every point of a ray by itself: all lights, lights chosen one by one, and cuts at a vertex, which
-// are those of virtual lights.
+// Gatherers that treat every point of a ray by itself: all lights, lights chosen one by one, and cuts at a vertex,
+// which are those of virtual lights.
 //
 // Most lights of a fire in dense smoke reach no point at all. Cuts that count no smoke are all but blind there: they
 // take the smoke between to be as dense as at the point. A random choice remains right whatever the guess is, and the
@@ -115,9 +115,7 @@ public:
     Rgb at(const GatherPoint& p, Rng& rng) const {
         return cut_.at(
             p.vertex, rng,
-            [&](std::size_t light, double probability) {
-                return lights_.estimate(light, probability, p.vertex, rng);
-            },
+            [&](std::size_t light, double probability) { return lights_.estimate(light, probability, p.vertex, rng); },
             p.extinction);
     }
     std::uint64_t bytes() const { return cut_.bytes(); }

@@ -113,7 +113,8 @@ Image FramePicture::pass(const InScattering* estimator, int number) {
 Image FramePicture::picture(const InScattering* estimator, int number, const MomentLights& lights, const Camera& camera,
                             const Surroundings* surroundings) {
     settings_.pass = number;
-    settings_.light_rays = light_rays_by(estimator, lights.direct(), input_.plan.emitters_by_rays, lights.fire_on_rays());
+    settings_.light_rays =
+        light_rays_by(estimator, lights.direct(), input_.plan.emitters_by_rays, lights.fire_on_rays());
     settings_.surroundings = surroundings;
     settings_.once = lights.once();
     if (!input_.plan.surfaces)

@@ -60,8 +60,7 @@ bool lights_medium(const Plan& plan) {
 bool wants_single_scattering_apart(const DrawInput& input) {
     const Plan& plan = input.plan;
     return plan.multiple && !plan.scattering_method && input.shot.scattering.bounces < 0 &&
-           forward_share(input.medium.mean_cosine) > 0.0f &&
-           (input.shot.output.cell_layers || plan.fire_by_rays);
+           forward_share(input.medium.mean_cosine) > 0.0f && (input.shot.output.cell_layers || plan.fire_by_rays);
 }
 
 }  // namespace

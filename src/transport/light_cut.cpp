@@ -23,8 +23,7 @@ double share_by_distances(const NodeBound& left, const NodeBound& right) {
         return left.scattered > 0.0 ? 1.0 : 0.0;
     const double far =
         share(left.dimmed(left.farthest2), right.dimmed(right.farthest2), left.farthest2, right.farthest2);
-    const double near =
-        share(left.dimmed(left.nearest2), right.dimmed(right.nearest2), left.nearest2, right.nearest2);
+    const double near = share(left.dimmed(left.nearest2), right.dimmed(right.nearest2), left.nearest2, right.nearest2);
     // Boxes of no size where the vertex is: by power alone.
     if (far < 0.0)
         return left.scattered / (left.scattered + right.scattered);

@@ -28,8 +28,8 @@ public:
           error_(error),
           most_(static_cast<std::size_t>(most)) {}
 
-    // What the vertex scatters of all lights. light_of(light): of one of them, not weighted. `extinction`: of smoke that
-    // bounds take to be all around the vertex [1/m]; then they may be too low.
+    // What the vertex scatters of all lights. light_of(light): of one of them, not weighted. `extinction`: of smoke
+    // that bounds take to be all around the vertex [1/m]; then they may be too low.
     template <class LightOf>
     Rgb at(const PathVertex& vertex, const LightOf& light_of, double extinction = 0.0) const {
         if (tree_.empty())

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "fire_lights/fire_on_rays.h"
 #include "fixtures/estimate.h"
 #include "fixtures/media.h"
-#include "fire_lights/fire_on_rays.h"
 #include "medium/phase.h"
 
 namespace brisance {
@@ -90,7 +90,7 @@ TEST(FireOnRays, OneLightInThinSmokeHasTheIntegralOfItsPoint) {
         settings.lightcuts_error = 0.0;
         const FireOnRays fire(scene, row, settings);
         ASSERT_EQ(fire.lights(), 8u);
-        const Estimate found = estimate_to(0.001, 1, [&](const dvec3&, Rng& rng, double* out) {
+        const Estimate found = estimate_to(0.003, 1, [&](const dvec3&, Rng& rng, double* out) {
             RayMedium seen;
             seen.look(scene.field(), ray, kEnd);
             out[0] = fire.along(seen, ray, rng).x;
@@ -116,9 +116,8 @@ TEST(FireLights, HaveTheNearFieldOfTheirVoxel) {
         if (glm::all(glm::lessThan(bounds[i].low, middle)) && glm::all(glm::greaterThan(bounds[i].high, middle)))
             own = i;
     ASSERT_LT(own, bounds.size());
-    const Estimate found = estimate_to(0.002, 1, [&](const dvec3&, Rng& rng, double* out) {
-        out[0] = lights.estimate(own, 1.0, vertex, rng).x;
-    });
+    const Estimate found = estimate_to(
+        0.002, 1, [&](const dvec3&, Rng& rng, double* out) { out[0] = lights.estimate(own, 1.0, vertex, rng).x; });
     const double expected = kStrength * 7.6741 * kSpacing / (4.0 * kPi64);
     EXPECT_NEAR(found.mean[0], expected, 4.0 * found.error[0] + 1e-4 * expected);
 }

@@ -58,7 +58,7 @@ void expect_same(const Estimate& lights, const Estimate& paths, const std::strin
     for (int c = 0; c < 3; ++c) {
         const double error = std::hypot(lights.error[c], paths.error[c]);
         EXPECT_NEAR(lights.mean[c], paths.mean[c], 4.0 * error) << what << ", channel " << c;
-        EXPECT_LT(error, 0.02 * paths.mean[c]) << what << ": not sampled enough";
+        EXPECT_LT(error, 0.04 * paths.mean[c]) << what << ": not sampled enough";
     }
     std::printf("%s: paths %.5g +- %.2g %%, lights %.5g +- %.2g %%\n", what.c_str(), paths.mean[0],
                 100.0 * paths.error[0] / paths.mean[0], lights.mean[0], 100.0 * lights.error[0] / lights.mean[0]);
@@ -66,14 +66,14 @@ void expect_same(const Estimate& lights, const Estimate& paths, const std::strin
 
 void expect_all_as_paths(const Recipe& recipe, const Scene& set, const std::string& what) {
     const SingleScattering scene(recipe, set);
-    const Estimate paths = scene.by_paths(0.005);
+    const Estimate paths = scene.by_paths(0.01);
     for (const FireLightSampling& row : fire_light_samplings()) {
         FireLightSettings s;
         s.lightcuts_error = 0.0;
         s.lightcuts_most = 1000000;
         const bool asks_all = std::string(row.name) == "all" || std::string(row.name).ends_with("lightcuts");
         s.points = asks_all ? 1 : 4;
-        expect_same(scene.by_lights(row.name, s, 0.01), paths, what + ", " + row.name);
+        expect_same(scene.by_lights(row.name, s, 0.02), paths, what + ", " + row.name);
     }
 }
 
@@ -101,7 +101,7 @@ TEST(FireSamplings, HaveMeansThatDoNotDependOnCounts) {
         many.points = 7;
         many.samples = 5;
         many.stochastic_cut_size = 23;
-        const Estimate a = scene.by_lights(sampling, one, 0.01), b = scene.by_lights(sampling, many, 0.005);
+        const Estimate a = scene.by_lights(sampling, one, 0.03), b = scene.by_lights(sampling, many, 0.015);
         expect_same(a, b, sampling);
         EXPECT_LT(b.error[0] * std::sqrt(double(b.samples)), a.error[0] * std::sqrt(double(a.samples))) << sampling;
     }
@@ -110,7 +110,7 @@ TEST(FireSamplings, HaveMeansThatDoNotDependOnCounts) {
 // Root of the mean squared difference from all lights at the same points, over their root mean square.
 double error_of_cut(const SingleScattering& scene, const std::string& sampling, double error, int most) {
     FireLightSettings exact, cut;
-    exact.points = cut.points = 6;
+    exact.points = cut.points = 4;
     cut.lightcuts_error = error;
     cut.lightcuts_most = most;
     exact.lightcuts_error = 0.0;
@@ -158,22 +158,25 @@ TEST(FireCuts, OfOneNodeAreOneLight) {
 // Representatives are drawn anew with every seed: the mean over seeds of the coarsest cut is that of all lights.
 TEST(FireCuts, HaveTheRightMeanOverSeeds) {
     const SingleScattering scene(small_fire(0.3f));
-    const Estimate paths = scene.by_paths(0.005);
+    const Estimate paths = scene.by_paths(0.01);
     for (const char* const sampling : {"lightcuts", "multidimensional_lightcuts"}) {
-        const Estimate found = estimate_to(0.015, 3, [&](const dvec3&, Rng& rng, double* out) {
-            FireLightSettings s;
-            s.points = 4;
-            s.lightcuts_most = 1;
-            s.seed = static_cast<std::uint32_t>(rng.next_double() * 0x1p31);
-            const FireOnRays fire(scene.stage.scene(), *find_fire_light_sampling(sampling), s);
-            constexpr int kRays = 16;
-            std::fill(out, out + 3, 0.0);
-            for (int i = 0; i < kRays; ++i) {
-                const Rgb light = scene.along(fire, scene.stage.ray(rng), rng);
-                for (int c = 0; c < 3; ++c)
-                    out[c] += light[c] / double(kRays);
-            }
-        }, 20000);
+        const Estimate found = estimate_to(
+            0.03, 3,
+            [&](const dvec3&, Rng& rng, double* out) {
+                FireLightSettings s;
+                s.points = 4;
+                s.lightcuts_most = 1;
+                s.seed = static_cast<std::uint32_t>(rng.next_double() * 0x1p31);
+                const FireOnRays fire(scene.stage.scene(), *find_fire_light_sampling(sampling), s);
+                constexpr int kRays = 16;
+                std::fill(out, out + 3, 0.0);
+                for (int i = 0; i < kRays; ++i) {
+                    const Rgb light = scene.along(fire, scene.stage.ray(rng), rng);
+                    for (int c = 0; c < 3; ++c)
+                        out[c] += light[c] / double(kRays);
+                }
+            },
+            20000);
         for (int c = 0; c < 3; ++c)
             EXPECT_NEAR(found.mean[c], paths.mean[c], 4.0 * std::hypot(found.error[c], paths.error[c])) << sampling;
         std::printf("%s of one node: %.4g +- %.2g %%, paths %.4g\n", sampling, found.mean[0],

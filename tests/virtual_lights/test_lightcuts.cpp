@@ -4,8 +4,8 @@
 #include <numeric>
 
 #include "room.h"
-#include "virtual_lights/flux/deposit_flux.h"
 #include "transport/light_cut.h"
+#include "virtual_lights/flux/deposit_flux.h"
 #include "virtual_lights/gatherers/lightcuts.h"
 #include "virtual_lights/gatherers/stochastic_lightcuts.h"
 #include "virtual_lights/kinds/point_light.h"

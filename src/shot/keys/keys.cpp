@@ -69,7 +69,8 @@ Affects affected_by(const std::string& path) {
     // Leaving out orders of scattering changes what is true.
     if (path == "scattering.bounces")
         return Affects::Picture;
-    for (const char* section : {"lighting.", "fire_lights.", "scattering.", "virtual_lights.", "tracing.", "certify.", "output."})
+    for (const char* section :
+         {"lighting.", "fire_lights.", "scattering.", "virtual_lights.", "tracing.", "certify.", "output."})
         if (path.starts_with(section))
             return Affects::Method;
     for (const ScatteringMethod& method : scattering_methods())
