@@ -18,7 +18,7 @@ std::unique_ptr<FireGatherer> made(const FireLights& lights, const FireLightSett
 
 const std::vector<FireLightSampling>& fire_light_samplings() {
     static const std::vector<FireLightSampling> table = {
-        {"all", "every light, at every point", made<AtEachPoint<AllFireLights>>},
+        {"all", "every light, at every point", made<AtEachPoint<AllFireLights>>, true},
         {"intensity", "a light by intensity", made<AtEachPoint<ChosenFireLights<FireByIntensity>>>},
         {"light_tree", "a light by a tree of bounds", made<AtEachPoint<ChosenFireLights<FireByTree>>>},
         {"lightcuts", "one light for each node of a cut through a tree, the same for all points",

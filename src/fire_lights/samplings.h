@@ -17,6 +17,7 @@ struct FireLightSampling {
     const char* name;
     const char* help;  // a few words
     std::unique_ptr<FireGatherer> (*make)(const FireLights& lights, const FireLightSettings& settings);
+    bool asks_every_light = false;  // time grows like their number: hours where a whole explosion burns
 };
 
 const std::vector<FireLightSampling>& fire_light_samplings();

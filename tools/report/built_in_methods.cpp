@@ -26,14 +26,15 @@ BuiltIn by_virtual_lights(const TechniquePreset& preset) {
     return method;
 }
 
-// Every way to choose among the lights of the fire.
+// Every way to choose among the lights of the fire that a suite can wait for.
 void add_fire_lights(std::vector<BuiltIn>& methods) {
     for (const FireLightSampling& row : fire_light_samplings())
-        methods.push_back({std::string("fire_") + row.name,
-                           {"method=lighting_grid", "scattering.method=lighting_grid",
-                            std::string("fire_lights.sampling=") + row.name},
-                           StepsOf::Samples,
-                           {Cell::MV}});
+        if (!row.asks_every_light)
+            methods.push_back({std::string("fire_") + row.name,
+                               {"method=lighting_grid", "scattering.method=lighting_grid",
+                                std::string("fire_lights.sampling=") + row.name},
+                               StepsOf::Samples,
+                               {Cell::MV}});
 }
 
 // The presets of all scattering methods.

@@ -1,7 +1,8 @@
 // The methods that a report compares, each with a ladder of steps from cheap to accurate.
 //
 // A method:  NAME, or LABEL=NAME, followed by settings:    exact=path,tracing.free_flight=exact
-//   NAME is lighting_grid; fire_clusters (its fire as a few lamps); radiance_cascades (its bounces by probes); path,
+//   NAME is lighting_grid; fire_clusters (its fire as a few lamps); fire_SAMPLING (its fire by another choice of
+//   lights, fire_lights/samplings.h); radiance_cascades (its bounces by probes); path,
 //   path_plain (the path tracer without its acceleration techniques), or path_filtered (its picture after a noise
 //   filter); a preset of one of the scattering methods (scattering_methods/list.h), such as ray_lights or
 //   volumetric_vpls_bounded; or a preset of virtual lights (virtual_lights/choices.h): vbnl (virtual blue noise
