@@ -20,9 +20,9 @@ struct PixelRay {
     Ray ray;
 };
 
-// Light along a ray up to `end` [m]: MM, and MA where the field does not hold it.
+// Light along a ray up to `end` [m]: MM, MA where the field does not hold it, and MV where it is not the field's.
 struct LightOnRay {
-    Rgb scattered{0.0f}, emitters{0.0f};
+    Rgb scattered{0.0f}, emitters{0.0f}, fire{0.0f};
 };
 using LightRays = std::function<LightOnRay(const PixelRay& ray, double end)>;
 
@@ -37,6 +37,7 @@ struct PictureSettings {
     CellSet layers = {Cell::V};                  // ... of these cells
     const Surroundings* surroundings = nullptr;  // rays end at its surfaces
     LightRays light_rays = {};                   // empty: the field holds MM and MA
+    bool fire_by_rays = false;  // light_rays own MV: the field's, of which MM may be made, is not shown
     // A field of single scattering, or null. Where forward peaks count as no scattering (medium/similar_medium.h), MV
     // and MA of the main field hold light that scattered more than once. This field then holds the light that scattered
     // once, and the rest counts as MM.

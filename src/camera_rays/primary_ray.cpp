@@ -8,16 +8,23 @@ namespace brisance {
 
 RaySum medium_along(const SourceField& field, const PixelRay& ray, double end, const PictureSettings& settings) {
     RaySum sum = integrate(field, ray.ray, settings.parts, end);
+    if (settings.once) {
+        const CellSum once = integrate(*settings.once, ray.ray, settings.parts, end).cells;
+        sum.once_from_fire = once.at(Cell::MV);
+        sum.once_from_emitters = once.at(Cell::MA);
+    }
+    if (settings.fire_by_rays) {
+        // What remains has scattered more than once.
+        sum.cells.at(Cell::MV) = settings.once ? sum.cells.at(Cell::MV) - sum.once_from_fire : Rgb(0.0f);
+        sum.once_from_fire = Rgb(0.0f);
+    }
     if (settings.light_rays) {
         const LightOnRay more = settings.light_rays(ray, end);
         sum.cells.at(Cell::MM) += more.scattered;
         sum.cells.at(Cell::MA) += more.emitters;
-        sum.once_from_emitters = more.emitters;
-    }
-    if (settings.once) {
-        const CellSum once = integrate(*settings.once, ray.ray, settings.parts, end).cells;
-        sum.once_from_fire = once.at(Cell::MV);
-        sum.once_from_emitters += once.at(Cell::MA);
+        sum.cells.at(Cell::MV) += more.fire;
+        sum.once_from_emitters += more.emitters;
+        sum.once_from_fire += more.fire;
     }
     return sum;
 }

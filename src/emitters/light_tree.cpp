@@ -158,22 +158,24 @@ double LightCone::importance(const LitPoint& point) const {
     return std::max(0.0, intensity_ * emitted * received / distance2);
 }
 
-LightsInView LightCone::seen_from(const dvec3& point) const {
+// Offsets from a box of points to the lights' box fill a box as large as both together.
+LightsInView LightCone::seen_from(const dvec3& point, const dvec3& around) const {
     LightsInView out;
-    const dvec3 offset = middle_ - point, apart = glm::abs(offset), half(half_);
+    const dvec3 offset = middle_ - point, apart = glm::abs(offset), half = dvec3(half_) + around;
+    const double radius2 = around == dvec3(0.0) ? radius2_ : glm::dot(half, half);
     const dvec3 near = glm::max(apart - half, dvec3(0.0)), far = apart + half;
     out.nearest2 = glm::dot(near, near);
     out.farthest2 = glm::dot(far, far);
     out.intensity = intensity_;
     const double distance2 = glm::dot(offset, offset);
-    if (distance2 <= radius2_ || !(distance2 > 0.0))
+    if (distance2 <= radius2 || !(distance2 > 0.0))
         return out;
     out.direction = offset / std::sqrt(distance2);
-    const Angle around = Angle::of_sine(std::sqrt(radius2_ / distance2));
-    out.cos_around = around.cosine;
+    const Angle wide = Angle::of_sine(std::sqrt(radius2 / distance2));
+    out.cos_around = wide.cosine;
     const double along = -glm::dot(axis_, out.direction);
     const Angle off =
-        Angle::of_cosine(two_sided_ ? std::abs(along) : along).less({cos_spread_, sin_spread_}).less(around);
+        Angle::of_cosine(two_sided_ ? std::abs(along) : along).less({cos_spread_, sin_spread_}).less(wide);
     const double emitted = cos_reach_ >= -kRightAngle ? off.cosine : 1.0;
     out.intensity = off.cosine <= cos_reach_ ? 0.0 : intensity_ * std::max(0.0, emitted);
     return out;

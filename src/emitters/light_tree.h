@@ -44,9 +44,11 @@ public:
     LightCone() = default;
     explicit LightCone(const LightBounds& lights);
     double importance(const LitPoint& point) const;
-    // Without the cosine of the point's normal, which belongs to its BSDF.
-    LightsInView seen_from(const dvec3& point) const;
+    // Without the cosine of the point's normal, which belongs to its BSDF. `around`: half the size of a box around the
+    // point, for bounds over all points of it [m].
+    LightsInView seen_from(const dvec3& point, const dvec3& around = dvec3(0.0)) const;
     double intensity() const { return intensity_; }
+    double radius2() const { return radius2_; }  // of the ball around the box [m^2]
 
 private:
     dvec3 middle_{0.0}, axis_{0.0, 0.0, 1.0};
@@ -79,6 +81,7 @@ public:
     std::uint32_t left(std::uint32_t node) const { return nodes_[node].left; }  // of inner nodes
     std::uint32_t right(std::uint32_t node) const { return nodes_[node].right; }
     std::size_t light(std::uint32_t leaf) const { return nodes_[leaf].right; }
+    std::uint32_t leaf(std::size_t light) const { return leaf_of_[light]; }
     // A light below `node`, by a number in [0, 1). `share_of_left(left, right)`: the probability of the left of two
     // nodes, below 0 where neither has any. None there.
     template <class ShareOfLeft>

@@ -96,6 +96,8 @@ void skip_with_emission(const Plan& plan, const Shot& shot, const Medium& medium
         skip("MM", scatters ? "scattering.bounces is " + std::to_string(shot.scattering.bounces) : dark);
     if (!plan.single || !many_lights)
         skip("lights, hierarchy, shadow maps", many_lights ? "no cell needs them" : "method is path");
+    else if (plan.fire_by_rays && !plan.multiple && !plan.surfaces)
+        skip("lights, hierarchy, shadow maps", std::string("fire_lights.sampling is ") + plan.fire_by_rays->name);
     else if (plan.scattering_method && !plan.mixed())
         skip("scattered hierarchies", owner);
     else if (!plan.multiple)
@@ -126,6 +128,8 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
     plan.emission = medium.emits();
     decide(plan, medium.scatters(), plan.emitters && surroundings->emitters().visible(), shot.scattering.bounces);
     const std::string owner = choose_owners(plan, shot, medium, skip);
+    if (shot.method != RenderMethod::Path && plan.single)
+        plan.fire_by_rays = find_fire_light_sampling(shot.fire_lights.sampling);
     if (!plan.surfaces)
         skip("row S, column S", "no surfaces in the shot");
     if (!plan.emitters)

@@ -7,6 +7,7 @@
 
 #include "core/cell.h"
 #include "emitters/surroundings.h"
+#include "fire_lights/samplings.h"
 #include "medium/medium.h"
 #include "scattering_methods/methods.h"
 #include "shot/shot.h"
@@ -26,6 +27,8 @@ struct Plan {
     std::string scattering_choice;  // the method that scattering.method resolved to
     float emitters_by_rays = 0.0f;  // of MA: the share on the camera's rays, not at the medium's nodes
     StageCost choice_cost;          // of the choice; no name: there was none to make
+    // How MV is gathered along the camera's rays from the fire's single lights; null: nodes hold it, from hierarchies.
+    const FireLightSampling* fire_by_rays = nullptr;
     // Of MS: what particles carry of the light that virtual lights would hold.
     float reflected_by_particles = 0.0f;
     bool surfaces = false;  // there are some

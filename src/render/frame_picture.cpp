@@ -20,7 +20,9 @@ constexpr float kShareOfSampling = 0.5f;
 // Few rays first, and more where they err. Not where each ray carries random estimates, which want all rays, nor where
 // the layers of bounces have to add up.
 bool looks_twice(const DrawInput& input) {
-    return !input.plan.scattering_method && !input.shot.output.bounce_layers;
+    const Plan& plan = input.plan;
+    return !plan.scattering_method && !plan.fire_by_rays && plan.emitters_by_rays == 0.0f &&
+           !input.shot.output.bounce_layers;
 }
 
 PictureSettings picture_settings(const DrawInput& input, const ManyLights& lights) {
@@ -38,6 +40,7 @@ PictureSettings picture_settings(const DrawInput& input, const ManyLights& light
     settings.edge_refinement = camera.edge_refinement;
     settings.cells = input.shot.output.cell_layers;
     settings.layers = input.plan.needed;
+    settings.fire_by_rays = input.plan.fire_by_rays != nullptr;
     if (!input.medium.lattice.empty())
         settings.layers.set(Cell::V, true);
     return settings;
@@ -136,7 +139,8 @@ std::optional<LightReuse> FramePicture::light_reuse(const Camera& camera, Shared
 Image FramePicture::picture(const InScattering* estimator, int number, const MomentLights& lights, const Camera& camera,
                             const Surroundings* surroundings) {
     settings_.pass = number;
-    settings_.light_rays = light_rays_by(estimator, lights.direct(), input_.plan.emitters_by_rays);
+    settings_.light_rays =
+        light_rays_by(estimator, lights.direct(), input_.plan.emitters_by_rays, lights.fire_on_rays());
     settings_.surroundings = surroundings;
     settings_.once = lights.once();
     if (!input_.plan.surfaces)
@@ -178,6 +182,8 @@ void FramePicture::add_order_layers(Image& image) {
     PictureSettings settings = settings_;
     settings.cells = true;
     settings.once = nullptr;
+    settings.light_rays = {};
+    settings.fire_by_rays = false;
     const auto add = [&](const std::string& name, const Layer& from) {
         Layer layer = from;
         layer.name = name;

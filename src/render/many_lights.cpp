@@ -55,11 +55,12 @@ bool lights_medium(const Plan& plan) {
     return plan.single || plan.needs(Cell::SV) || plan.needs(Cell::MA) || plan.needs(Cell::MS);
 }
 
-// Whether MV and MA of the lighting hold light that scattered more than once, and a layer needs it separately.
+// Whether MV and MA of the lighting hold light that scattered more than once, and it is needed separately: for a layer,
+// or beside an MV that is not the lighting's.
 bool wants_single_scattering_apart(const DrawInput& input) {
     const Plan& plan = input.plan;
     return plan.multiple && !plan.scattering_method && input.shot.scattering.bounces < 0 &&
-           forward_share(input.medium.mean_cosine) > 0.0f && input.shot.output.cell_layers;
+           forward_share(input.medium.mean_cosine) > 0.0f && (input.shot.output.cell_layers || plan.fire_by_rays);
 }
 
 }  // namespace
@@ -108,15 +109,30 @@ ManyLights::ManyLights(const DrawInput& input, Statistics& statistics, Progress&
     }
     if (shot.virtual_lights.count > 0 && (plan.needs(Cell::SS) || plan.needs(Cell::MS)))
         virtual_lights_ = place_virtual_lights(input, paths_->direct(), statistics, progress);
-    if ((plan.scattering_method || plan.emitters_by_rays > 0.0f) && !paths_)
+    if ((plan.scattering_method || plan.emitters_by_rays > 0.0f || plan.fire_by_rays) && !paths_)
         own_direct_.emplace(input.medium, shot.tracing, input.surroundings);
+    if (plan.fire_by_rays)
+        make_fire_lights(input, statistics, progress);
     light_medium(input, statistics, progress);
     if (wants_single_scattering_apart(input))
         light_medium_once(input, statistics, progress);
 }
 
+void ManyLights::make_fire_lights(const DrawInput& input, Statistics& statistics, Progress& progress) {
+    progress.stage("lights of the fire (MV)");
+    const Stopwatch watch;
+    fire_on_rays_.emplace(*direct(), *input.plan.fire_by_rays, input.shot.fire_lights);
+    statistics.stages.push_back({"lights of the fire (MV)",
+                                 watch.seconds(),
+                                 fire_on_rays_->bytes(),
+                                 {{"sampling", input.plan.fire_by_rays->name}, {"lights", fire_on_rays_->lights()}}});
+}
+
 void ManyLights::light_medium(const DrawInput& input, Statistics& statistics, Progress& progress) {
-    const Plan plan = input.plan.scattering_method ? without_scattering_method(input.plan) : input.plan;
+    Plan plan = input.plan.scattering_method ? without_scattering_method(input.plan) : input.plan;
+    // Nodes that nothing but MV asks for need no light of the fire. MM begins with it, and mirrors show it.
+    if (plan.fire_by_rays && !plan.multiple && !input.plan.needs(Cell::SM))
+        plan.single = false;
     const int bounces =
         input.plan.scattering_method ? bounces_beside_scattering_method(input.plan) : input.shot.scattering.bounces;
     if (plan.needs(Cell::MS)) {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "camera_rays/source_field.h"
+#include "fire_lights/fire_on_rays.h"
 #include "medium_lighting/medium_lighting.h"
 #include "reference/path_tracer.h"
 #include "render/draw.h"
@@ -52,15 +53,19 @@ public:
     const DirectLight* direct() const { return paths_ ? &paths_->direct() : own_direct_ ? &*own_direct_ : nullptr; }
     const VirtualLights* virtual_lights() const { return virtual_lights_.get(); }  // null: the shot uses none
     const LitMedium& medium() const { return *medium_; }
+    // The fire's single lights, where they own MV; else null.
+    const FireOnRays* fire_on_rays() const { return fire_on_rays_ ? &*fire_on_rays_ : nullptr; }
     // Field of single scattering, where MV and MA of medium() hold more (PictureSettings::once); else null.
     const LitMedium* once() const { return once_.get(); }
 
 private:
+    void make_fire_lights(const DrawInput& input, Statistics& statistics, Progress& progress);
     void light_medium(const DrawInput& input, Statistics& statistics, Progress& progress);
     void light_medium_once(const DrawInput& input, Statistics& statistics, Progress& progress);
 
     std::optional<PathTracer> paths_;
     std::optional<DirectLight> own_direct_;
+    std::optional<FireOnRays> fire_on_rays_;
     std::unique_ptr<VirtualLights> virtual_lights_;
     std::optional<PointsOfSides> reflecting_;
     std::optional<SpecularPhotons> cast_;

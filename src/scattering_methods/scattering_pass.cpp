@@ -90,8 +90,9 @@ Image mean_of_passes(const ScatteringMethod& method, const ScatteringMethodSetti
     return mean;
 }
 
-LightRays light_rays_by(const InScattering* estimator, const DirectLight* scene, float emitters) {
-    if (!estimator && emitters == 0.0f)
+LightRays light_rays_by(const InScattering* estimator, const DirectLight* scene, float emitters,
+                        const FireOnRays* fire) {
+    if (!estimator && emitters == 0.0f && !fire)
         return {};
     return [=](const PixelRay& r, double end) {
         thread_local RayMedium seen;
@@ -103,6 +104,10 @@ LightRays light_rays_by(const InScattering* estimator, const DirectLight* scene,
             light.scattered = estimator->along_ray(seen, rng);
         if (emitters > 0.0f)
             light.emitters = emitters * emitters_along_ray(*scene, seen, r.ray, kEmitterPoints, rng);
+        if (fire) {
+            Rng of_fire = fire->rng(r.pixel, r.number);
+            light.fire = fire->along(seen, r.ray, of_fire);
+        }
         return light;
     };
 }

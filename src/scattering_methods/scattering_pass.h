@@ -10,6 +10,7 @@
 
 #include "camera/camera.h"
 #include "camera_rays/picture.h"
+#include "fire_lights/fire_on_rays.h"
 #include "scattering_methods/methods.h"
 #include "statistics/statistics.h"
 #include "transport/direct_light.h"
@@ -24,8 +25,9 @@ Image mean_of_passes(const ScatteringMethod& method, const ScatteringMethodSetti
                      const DirectLight& scene, const Camera& camera, const DrawPass& draw, double& seconds,
                      Statistics& statistics, Progress& progress);
 
-// MM by the estimator, or null, and the share `emitters` of MA; empty where there is neither. Keeps references to
-// estimator and scene.
-LightRays light_rays_by(const InScattering* estimator, const DirectLight* scene, float emitters);
+// MM by the estimator, or null, the share `emitters` of MA, and MV by the fire's lights, or null; empty where there is
+// nothing of that. Keeps references to all.
+LightRays light_rays_by(const InScattering* estimator, const DirectLight* scene, float emitters,
+                        const FireOnRays* fire = nullptr);
 
 }  // namespace brisance

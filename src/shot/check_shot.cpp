@@ -61,6 +61,14 @@ void check_fire(const Given& given, const FireSettings& fire) {
         reject(given, "fire.modulate_by_flame", "works with fire.model blackbody or blackbody_normalized only");
 }
 
+// Lamps in the place of the fire are lights of a hierarchy of one level.
+void check_fire_lights(const Given& given, const Shot& shot) {
+    if (shot.fire_lights.sampling != kFireByHierarchy && shot.lighting.clusters > 0)
+        reject(given, given.contains("lighting.clusters") ? "lighting.clusters" : "fire_lights.sampling",
+               "lamps in the place of the fire go with fire_lights.sampling=hierarchy only, not with " +
+                   shot.fire_lights.sampling);
+}
+
 void check_tracing(const Given& given, const Shot& shot) {
     const TracingSettings& t = shot.tracing;
     if (shot.method == RenderMethod::Path && shot.seconds <= 0.0 && t.samples == 0 && t.seconds <= 0.0 &&
@@ -128,6 +136,7 @@ void check_shot(const Shot& shot, const Given& given, const std::string& source)
     else
         check_look_at(given, shot.camera);
     check_fire(given, shot.medium.fire);
+    check_fire_lights(given, shot);
     check_tracing(given, shot);
     check_scattering(given, shot.scattering);
 }

@@ -9,6 +9,7 @@
 #include "camera/settings.h"
 #include "certificate/settings.h"
 #include "film/settings.h"
+#include "fire_lights/settings.h"
 #include "gathering/settings.h"
 #include "medium/settings.h"
 #include "retiming/settings.h"
@@ -52,6 +53,7 @@ struct Shot {
     RenderMethod method = RenderMethod::LightingGrid;
     double seconds = 0.0;  // of wall time for a frame, from which settings of least error follow; 0: as they are
     LightingSettings lighting;
+    FireLightSettings fire_lights;
     ScatteringSettings scattering;
     ScatteringMethodSettings scattering_methods;
     VirtualLightSettings virtual_lights;

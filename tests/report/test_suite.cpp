@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "fire_lights/samplings.h"
 #include "suite/contest.h"
 #include "suite/suite.h"
 #include "suite/suite_report.h"
@@ -47,7 +48,11 @@ TEST(SuiteMethods, OfASceneFollowFromItsCells) {
     EXPECT_FALSE(free_fire.contains("vbnl"));
     EXPECT_FALSE(free_fire.contains("vpl"));
     const std::set<std::string> single = labels_of(owners_of(methods, {Cell::V, Cell::MV}));
-    EXPECT_EQ(single, (std::set<std::string>{"lighting_grid", "path", "path_plain", "path_filtered", "fire_clusters"}));
+    std::set<std::string> of_fire = {"lighting_grid", "path", "path_plain", "path_filtered", "fire_clusters"};
+    for (const FireLightSampling& row : fire_light_samplings())
+        if (!row.asks_every_light)
+            of_fire.insert(std::string("fire_") + row.name);
+    EXPECT_EQ(single, of_fire);
     const std::set<std::string> room = labels_of(owners_of(methods, {Cell::SS}));
     EXPECT_TRUE(room.contains("vbnl"));
     EXPECT_FALSE(room.contains("lighting_grid"));

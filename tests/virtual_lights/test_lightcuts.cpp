@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "room.h"
+#include "transport/light_cut.h"
 #include "virtual_lights/flux/deposit_flux.h"
 #include "virtual_lights/gatherers/lightcuts.h"
 #include "virtual_lights/gatherers/stochastic_lightcuts.h"
@@ -94,7 +95,7 @@ TEST(NodeBounds, HoldForTheLightsBelowThem) {
     const PointKind::Of<DepositFlux> kind(*points.set);
     std::vector<double> sum(tree.node_count());
     for (const PathVertex& vertex : points.vertices) {
-        const VertexBounds bounds(tree, vertex);
+        const VertexBounds bounds(tree, vertex, 0.0);
         std::fill(sum.begin(), sum.end(), 0.0);
         for (auto node = static_cast<std::uint32_t>(tree.node_count()); node-- > 0;) {
             if (tree.is_leaf(node)) {
@@ -227,7 +228,7 @@ TEST(StochasticLightcuts, OfVeryManyLightsInOnePoint) {
     EXPECT_EQ(representatives(tree, 0).size(), tree.node_count());
     for (const dvec3& at : {dvec3(0.0), dvec3(0.0, 1.0, 0.0)}) {
         const PathVertex vertex(at, dvec3(0.0, 1.0, 0.0), 0.0f);
-        const VertexBounds bounds(tree, vertex);
+        const VertexBounds bounds(tree, vertex, 0.0);
         const auto choice = tree.choose_below(0, 0.37, [&](std::uint32_t left, std::uint32_t right) {
             return share_by_distances(bounds.of(left), bounds.of(right));
         });

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "fire_lights/samplings.h"
 #include "scattering_methods/methods.h"
 #include "virtual_lights/choices.h"
 
@@ -24,6 +25,17 @@ BuiltIn by_virtual_lights(const TechniquePreset& preset) {
     for (const auto& [key, value] : preset.settings)
         method.settings.push_back("virtual_lights." + key + "=" + value);
     return method;
+}
+
+// Every way to choose among the lights of the fire that a suite can wait for.
+void add_fire_lights(std::vector<BuiltIn>& methods) {
+    for (const FireLightSampling& row : fire_light_samplings())
+        if (!row.asks_every_light)
+            methods.push_back({std::string("fire_") + row.name,
+                               {"method=lighting_grid", "scattering.method=lighting_grid",
+                                std::string("fire_lights.sampling=") + row.name},
+                               StepsOf::Samples,
+                               {Cell::MV}});
 }
 
 // The presets of all scattering methods.
@@ -65,6 +77,7 @@ std::vector<BuiltIn> make_built_ins() {
          {"method=lighting_grid", "scattering.method=lighting_grid", "scattering.solver=diffusion"},
          StepsOf::Lattices,
          kCellsOfScatteringMethods}};
+    add_fire_lights(methods);
     add_scattering_methods(methods);
     return methods;
 }

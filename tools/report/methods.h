@@ -1,12 +1,12 @@
 // The methods that a report compares, each with a ladder of steps from cheap to accurate.
 //
 // A method:  NAME, or LABEL=NAME, followed by settings:    exact=path,tracing.free_flight=exact
-//   NAME is lighting_grid; fire_clusters (its fire as a few lamps); radiance_cascades (its bounces by probes);
-//   diffusion (its bounces by a diffusion equation); path, path_plain (the path tracer without its acceleration
-//   techniques), or path_filtered (its picture after a noise filter); a preset of one of the scattering methods
-//   (scattering_methods/list.h), such as ray_lights or volumetric_vpls_bounded; or a preset of virtual lights
-//   (virtual_lights/choices.h): vbnl (virtual blue noise lighting), vbnl_GATHERER (the same lights, sampled otherwise),
-//   vpl, vsl and others like them.
+//   NAME is lighting_grid; fire_clusters (its fire as a few lamps); fire_SAMPLING (its fire by another choice of
+//   lights, fire_lights/samplings.h); radiance_cascades (its bounces by probes); diffusion (its bounces by a diffusion
+//   equation); path, path_plain (the path tracer without its acceleration techniques), or path_filtered (its picture
+//   after a noise filter); a preset of one of the scattering methods (scattering_methods/list.h), such as ray_lights or
+//   volumetric_vpls_bounded; or a preset of virtual lights (virtual_lights/choices.h): vbnl (virtual blue noise
+//   lighting), vbnl_GATHERER (the same lights, sampled otherwise), vpl, vsl and others like them.
 // A budget:  LIST for all path methods, or LABEL:LIST:     4,16,64,256    path:16,64    lighting_grid:2,4
 //   For path methods samples per pixel, for lighting_grid numbers of steps of the built-in ladder, 1 to 4, for those
 //   of fire_clusters numbers of lamps, for those of radiance_cascades scattering.cascade_side, for those of

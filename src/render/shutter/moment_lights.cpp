@@ -25,7 +25,8 @@ MomentLights::MomentLights(const ManyLights& lights)
     : field_(&lights.medium().field()),
       once_(lights.once() ? &lights.once()->field() : nullptr),
       paths_(lights.paths()),
-      direct_(lights.direct()) {}
+      direct_(lights.direct()),
+      fire_on_rays_(lights.fire_on_rays()) {}
 
 MomentLights::MomentLights(const DrawInput& input, const ManyLights& lights, const OpenShutter& shutter,
                            const Instant& lit, const Instant& moment)
@@ -52,6 +53,10 @@ void MomentLights::follow_paths(const DrawInput& input, const ManyLights& lights
     } else if (lights.direct()) {
         own_direct_.emplace(*moment.medium, input.shot.tracing, moment.surroundings);
         direct_ = &*own_direct_;
+    }
+    if (lights.fire_on_rays()) {
+        own_fire_.emplace(*direct_, *input.plan.fire_by_rays, input.shot.fire_lights);
+        fire_on_rays_ = &*own_fire_;
     }
 }
 

@@ -34,9 +34,10 @@ public:
                  const Instant& moment);
 
     const SourceField& field() const { return *field_; }
-    const SourceField* once() const { return once_; }      // as ManyLights::once(), or null
-    const PathTracer* paths() const { return paths_; }     // null: no surfaces
-    const DirectLight* direct() const { return direct_; }  // null where nothing needs it
+    const SourceField* once() const { return once_; }                 // as ManyLights::once(), or null
+    const PathTracer* paths() const { return paths_; }                // null: no surfaces
+    const DirectLight* direct() const { return direct_; }             // null where nothing needs it
+    const FireOnRays* fire_on_rays() const { return fire_on_rays_; }  // of this moment; null where it does not own MV
 
 private:
     void follow_paths(const DrawInput& input, const ManyLights& lights, const Instant& moment);
@@ -48,6 +49,8 @@ private:
     const SourceField* once_;
     const PathTracer* paths_;
     const DirectLight* direct_;
+    std::optional<FireOnRays> own_fire_;
+    const FireOnRays* fire_on_rays_;
 };
 
 }  // namespace brisance

@@ -26,6 +26,7 @@ std::vector<Key> all_keys() {
     add_camera_keys(keys);
     add_shutter_keys(keys);
     add_lighting_keys(keys);
+    add_fire_light_keys(keys);
     add_virtual_light_keys(keys);
     add_tracing_keys(keys);
     add_certify_keys(keys);
@@ -49,6 +50,7 @@ Sections all_sections() {
         {"camera", "the pinhole camera; without eye and target, or world_from_camera, it is framed on the volume"},
         {"shutter", "motion blur"},
         {"lighting", "how the fire's light reaches the smoke"},
+        {"fire_lights", "light of the fire's single voxels in smoke, chosen otherwise than by the hierarchy"},
         {"scattering", "light scattered more than once"}};
     for (const ScatteringMethod& method : scattering_methods())
         sections.emplace_back(method.name, method.product + ", of scattering.method " + method.name);
@@ -67,7 +69,8 @@ Affects affected_by(const std::string& path) {
     // Leaving out orders of scattering changes what is true.
     if (path == "scattering.bounces")
         return Affects::Picture;
-    for (const char* section : {"lighting.", "scattering.", "virtual_lights.", "tracing.", "certify.", "output."})
+    for (const char* section :
+         {"lighting.", "fire_lights.", "scattering.", "virtual_lights.", "tracing.", "certify.", "output."})
         if (path.starts_with(section))
             return Affects::Method;
     for (const ScatteringMethod& method : scattering_methods())

@@ -25,29 +25,14 @@ std::vector<LightBounds> bounds_of(const std::vector<VirtualLight>& lights, Lobe
     return out;
 }
 
-PowerChooser::PowerChooser(const std::vector<VirtualLight>& lights, LightImportance importance) {
-    double sum = 0.0;
-    for (const VirtualLight& light : lights)
-        cumulative_.push_back(sum += importance(light));
-    if (!(sum > 0.0))
-        cumulative_.clear();
-    for (double& c : cumulative_)
-        c /= sum;
-}
-
-std::optional<LightTree::Choice> PowerChooser::choose(const LitPoint& point, double u) const {
-    if (cumulative_.empty())
-        return std::nullopt;
-    const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end() - 1, u);
-    const auto light = static_cast<std::size_t>(found - cumulative_.begin());
-    return LightTree::Choice{light, probability(point, light)};
-}
-
-double PowerChooser::probability(const LitPoint&, std::size_t light) const {
-    if (cumulative_.empty())
-        return 0.0;
-    return cumulative_[light] - (light > 0 ? cumulative_[light - 1] : 0.0);
-}
+PowerChooser::PowerChooser(const std::vector<VirtualLight>& lights, LightImportance importance)
+    : choice_([&] {
+          std::vector<double> weights;
+          weights.reserve(lights.size());
+          for (const VirtualLight& light : lights)
+              weights.push_back(importance(light));
+          return weights;
+      }()) {}
 
 std::optional<LightTree::Choice> UniformChooser::choose(const LitPoint& point, double u) const {
     if (count_ == 0)

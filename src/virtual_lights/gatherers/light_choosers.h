@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "emitters/light_tree.h"
+#include "emitters/weighted_choice.h"
 #include "virtual_lights/placement/placement.h"
 #include "virtual_lights/virtual_light.h"
 
@@ -33,12 +34,12 @@ concept LightChooser = requires(const Chooser& chooser, const std::vector<Virtua
 class PowerChooser {
 public:
     PowerChooser(const std::vector<VirtualLight>& lights, LightImportance importance);
-    std::optional<LightTree::Choice> choose(const LitPoint& point, double u) const;
-    double probability(const LitPoint& point, std::size_t light) const;
-    std::uint64_t bytes() const { return cumulative_.size() * sizeof(double); }
+    std::optional<LightTree::Choice> choose(const LitPoint&, double u) const { return choice_.choose(u); }
+    double probability(const LitPoint&, std::size_t light) const { return choice_.probability(light); }
+    std::uint64_t bytes() const { return choice_.bytes(); }
 
 private:
-    std::vector<double> cumulative_;  // inclusive; ends at 1
+    WeightedChoice choice_;
 };
 
 // In proportion to power, whatever the placement: intensity sampling (P. Shirley, C. Wang, K. Zimmerman, Monte Carlo

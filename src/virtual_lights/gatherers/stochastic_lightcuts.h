@@ -1,26 +1,12 @@
-// Stochastic lightcuts: a cut of fixed size, and one random light of each of its nodes.
-//
-// [1] C. Yuksel, Stochastic Lightcuts, HPG 2019; Stochastic Lightcuts for Sampling Many Lights, IEEE TVCG 27(10), 2021.
-// [2] D. Lin, C. Yuksel, Real-Time Stochastic Lightcuts, I3D 2020: the probabilities of the descent.
-//
-// From each node of the cut a random walk goes down to one light. At every branch with bounds M on what is scattered,
-//     w = M / d^2,  P(left) = (w_l / (w_l + w_r) for the nearest distances + the same for the farthest) / 2,
-// so that nothing is favoured by the bounds of a box around the vertex. There are no representative lights, and
-// neighbouring pixels share no error. Any kind of light will do: the light that is found is sampled as a whole.
-//
-// Departs from [1]: the tree is that of light_tree.h, built from the top by orientation and area, instead of from
-// below or along Morton's curve.
+// Stochastic lightcuts of virtual lights (transport/stochastic_lightcuts.h), with settings.stochastic_cut_size.
 #pragma once
 
+#include "transport/stochastic_lightcuts.h"
 #include "virtual_lights/gatherers/gatherer.h"
 #include "virtual_lights/gatherers/light_choosers.h"
-#include "virtual_lights/gatherers/light_cut.h"
 #include "virtual_lights/kinds/kind.h"
 
 namespace brisance {
-
-// Probability of the left of two nodes; below 0 where neither has any.
-double share_by_distances(const NodeBound& left, const NodeBound& right);
 
 struct StochasticLightcuts {
     static constexpr const char* kNeeds = "any kind of light";
@@ -30,40 +16,19 @@ struct StochasticLightcuts {
     public:
         Of(const LightSet& set, LightImportance)
             : kind_(set),
-              tree_(bounds_of(set.lights, LobeBrightness::Mean)),
-              size_(set.settings().stochastic_cut_size) {}
+              cut_(LightTree(bounds_of(set.lights, LobeBrightness::Mean)), set.settings().stochastic_cut_size) {}
 
         Rgb from_lights(const PathVertex& vertex, Rng& rng) const override {
-            if (tree_.empty())
-                return Rgb(0.0f);
-            const VertexBounds bounds(tree_, vertex);
-            thread_local std::vector<CutNode> cut;
-            cut.assign(1, {0, tree_.is_leaf(0) ? 0.0 : bounds.of(0).largest()});
-            refine_cut(
-                cut, static_cast<std::size_t>(size_), [](double) { return false; },
-                [&](const CutNode& divided, const auto& add) {
-                    for (const std::uint32_t child : {tree_.left(divided.node), tree_.right(divided.node)})
-                        if (const double largest = bounds.of(child).largest(); largest > 0.0)
-                            add({child, tree_.is_leaf(child) ? 0.0 : largest});
-                });
-            Rgb sum(0.0f);
-            for (const CutNode& node : cut) {
-                const std::optional<LightTree::Choice> choice =
-                    tree_.choose_below(node.node, rng.next_double(), [&](std::uint32_t left, std::uint32_t right) {
-                        return share_by_distances(bounds.of(left), bounds.of(right));
-                    });
-                if (choice)
-                    sum += kind_.estimate(choice->light, choice->probability, vertex, rng);
-            }
-            return sum;
+            return cut_.at(vertex, rng, [&](std::size_t light, double probability) {
+                return kind_.estimate(light, probability, vertex, rng);
+            });
         }
 
-        std::uint64_t bytes() const override { return tree_.bytes(); }
+        std::uint64_t bytes() const override { return cut_.bytes(); }
 
     private:
         Kind kind_;
-        LightTree tree_;
-        int size_;
+        StochasticLightcut cut_;
     };
 };
 

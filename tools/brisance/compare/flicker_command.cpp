@@ -31,9 +31,9 @@ const char* const kOtherSeed = "104729";
 
 // Every key that chooses random numbers.
 const std::vector<std::string>& seed_keys() {
-    static const std::vector<std::string> keys = {"tracing.seed",         "virtual_lights.seed",
-                                                  "ray_lights.seed",      "volumetric_photons.seed",
-                                                  "volumetric_vpls.seed", "photon_density.seed"};
+    static const std::vector<std::string> keys = {
+        "tracing.seed",         "virtual_lights.seed", "ray_lights.seed", "volumetric_photons.seed",
+        "volumetric_vpls.seed", "photon_density.seed", "fire_lights.seed"};
     return keys;
 }
 

@@ -1,12 +1,11 @@
+#include "transport/light_cut.h"
+
 #include "core/rng.h"
-#include "virtual_lights/gatherers/lightcuts.h"
-#include "virtual_lights/gatherers/stochastic_lightcuts.h"
 
 namespace brisance {
 
 namespace {
 
-// Beside other streams of the module.
 constexpr Stream kRepresentatives = stream_of("virtual_lights/representatives");
 
 // Of the left one. Both weights are above 0 or not finite only where distances are 0.
@@ -22,8 +21,9 @@ double share_by_distances(const NodeBound& left, const NodeBound& right) {
         return -1.0;
     if (!(left.scattered > 0.0) || !(right.scattered > 0.0))
         return left.scattered > 0.0 ? 1.0 : 0.0;
-    const double far = share(left.scattered, right.scattered, left.farthest2, right.farthest2);
-    const double near = share(left.scattered, right.scattered, left.nearest2, right.nearest2);
+    const double far =
+        share(left.dimmed(left.farthest2), right.dimmed(right.farthest2), left.farthest2, right.farthest2);
+    const double near = share(left.dimmed(left.nearest2), right.dimmed(right.nearest2), left.nearest2, right.nearest2);
     // Boxes of no size where the vertex is: by power alone.
     if (far < 0.0)
         return left.scattered / (left.scattered + right.scattered);

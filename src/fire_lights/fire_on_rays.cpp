@@ -1,0 +1,34 @@
+#include "fire_lights/fire_on_rays.h"
+
+namespace brisance {
+
+FireOnRays::FireOnRays(const DirectLight& scene, const FireLightSampling& sampling, const FireLightSettings& settings)
+    : scene_(scene),
+      lights_(scene),
+      gatherer_(sampling.make(lights_, settings)),
+      points_(settings.points),
+      seed_(settings.seed) {}
+
+Rng FireOnRays::rng(std::uint32_t pixel, std::uint64_t number) const {
+    return Rng(stream_of("fire_lights/ray"), pixel | std::uint64_t(seed_) << 32, number);
+}
+
+Rgb FireOnRays::along(const RayMedium& seen, const Ray& ray, Rng& rng) const {
+    thread_local std::vector<GatherPoint> points;
+    points.clear();
+    if (seen.empty() || lights_.size() == 0)
+        return Rgb(0.0f);
+    const double shift = rng.next_double();
+    const auto part = float(seen.opacity() / points_);
+    for (int i = 0; i < points_; ++i) {
+        const std::optional<Collision> c = seen.collision_at(seen.sample_flight((i + shift) / points_));
+        if (!c)
+            continue;
+        const Rgb weight = part * scene_.field().albedo(c->brick, c->position);
+        if (weight != Rgb(0.0f))
+            points.push_back({scene_.in_smoke(ray, *c), weight, scene_.field().extinction(c->brick, c->position)});
+    }
+    return gatherer_->at(points, rng);
+}
+
+}  // namespace brisance

@@ -1,0 +1,118 @@
+// Cuts through a light tree: nodes that together hold every light which can reach a vertex. Whatever kind of light is
+// in the tree, its owner says what a vertex scatters of one light (lightcuts.h, stochastic_lightcuts.h).
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "emitters/light_tree.h"
+#include "light_selection/medium_light_tree.h"
+#include "transport/path_vertex.h"
+
+namespace brisance {
+
+// What the lights of one node can send to a vertex, between bounds.
+struct NodeBound {
+    double scattered = 0.0;                  // bound on intensity times BSDF and cosine, luminance [W/sr^2]
+    double nearest2 = 0.0, farthest2 = 0.0;  // squared distances to their box [m^2]
+    // Of smoke that is taken to be everywhere between them [1/m]; 0: none, so that the bounds hold.
+    double extinction = 0.0;
+
+    // `scattered` after such a squared distance.
+    double dimmed(double distance2) const {
+        return extinction > 0.0 ? scattered * guessed_transmittance(extinction * std::sqrt(distance2)) : scattered;
+    }
+
+    // Upper bound on what the vertex scatters of them without occlusion [W/(m^2 sr)]. It is finite also inside their
+    // box: lights count as no nearer than a thousandth of the farthest distance.
+    double largest() const {
+        constexpr double kLeast = 1e-6;
+        return scattered > 0.0 ? dimmed(nearest2) / std::max({nearest2, kLeast * farthest2, 1e-300}) : 0.0;
+    }
+};
+
+// For all points of a box with that middle and half that size [m]. `extinction`: of the smoke around them.
+inline NodeBound bound_in_box(const LightCone& lights, const ScatteringBound& scattering, const dvec3& middle,
+                              const dvec3& half, double extinction) {
+    const LightsInView view = lights.seen_from(middle, half);
+    NodeBound out{0.0, view.nearest2, view.farthest2, extinction};
+    if (view.intensity > 0.0)
+        out.scattered = view.intensity * scattering.over(view.direction, view.cos_around);
+    return out;
+}
+
+// The bounds of all nodes for one vertex.
+class VertexBounds {
+public:
+    // Keeps references.
+    VertexBounds(const LightTree& tree, const PathVertex& vertex, double extinction)
+        : tree_(tree), vertex_(vertex), bsdf_(vertex.bound()), extinction_(extinction) {}
+
+    NodeBound of(std::uint32_t node) const {
+        return bound_in_box(tree_.lights(node), bsdf_, vertex_.position(), dvec3(0.0), extinction_);
+    }
+
+private:
+    const LightTree& tree_;
+    const PathVertex& vertex_;
+    ScatteringBound bsdf_;
+    double extinction_;
+};
+
+// One node of a cut. A cut is a heap: the node whose lights may err most stands first. Leaves do not err.
+struct CutNode {
+    std::uint32_t node = 0;
+    double error = 0.0;  // bound
+};
+
+inline bool errs_less(const CutNode& a, const CutNode& b) {
+    return a.error != b.error ? a.error < b.error : a.node > b.node;
+}
+
+// Divides the node that may err most, until the cut has `most` nodes, only leaves are left, or enough(error) holds for
+// the node that may err most. replace(node, add): add(child) for the children to keep.
+template <class Node, class Enough, class Replace>
+void refine_cut(std::vector<Node>& cut, std::size_t most, const Enough& enough, const Replace& replace) {
+    while (!cut.empty() && cut.size() < most && cut.front().error > 0.0 && !enough(cut.front().error)) {
+        std::pop_heap(cut.begin(), cut.end(), errs_less);
+        const Node divided = cut.back();
+        cut.pop_back();
+        replace(divided, [&](const Node& child) {
+            cut.push_back(child);
+            std::push_heap(cut.begin(), cut.end(), errs_less);
+        });
+    }
+}
+
+// The light of all nodes of a cut, which is divided until no node may err by more than `error` of the sum, or it has
+// `most` nodes. contribution(node); divide(node, add) as replace() above.
+template <class Node, class Contribution, class Divide>
+Rgb sum_of_cut(std::vector<Node>& cut, double error, std::size_t most, const Contribution& contribution,
+               const Divide& divide) {
+    double sum = 0.0;
+    for (const Node& node : cut)
+        sum += luminance(contribution(node));
+    refine_cut(
+        cut, most, [&](double largest) { return largest <= error * sum; },
+        [&](const Node& divided, const auto& add) {
+            sum -= luminance(contribution(divided));
+            divide(divided, [&](const Node& child) {
+                sum += luminance(contribution(child));
+                add(child);
+            });
+        });
+    Rgb total(0.0f);
+    for (const Node& node : cut)
+        total += contribution(node);
+    return total;
+}
+
+// For every node of the tree a light of it, drawn in proportion to intensity.
+std::vector<std::uint32_t> representatives(const LightTree& tree, std::uint32_t seed);
+
+// Probability of the left of two nodes; below 0 where neither has any.
+double share_by_distances(const NodeBound& left, const NodeBound& right);
+
+}  // namespace brisance
