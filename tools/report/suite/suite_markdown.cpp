@@ -184,7 +184,7 @@ std::string suite_markdown(const SuiteReport& suite) {
     text +=
         how_it_was_made(suite) + "\n" + kHowToRead + "\n" + winners(suite) + "\n" + failures(suite) + "\n## Figures\n";
     for (const MeasuredScene& scene : suite.scenes)
-        text += "\n" + figures_of(scene);
+        text.append("\n").append(figures_of(scene));
     return text;
 }
 
