@@ -18,20 +18,20 @@ constexpr int kSurfaceSamples = 4;
 constexpr float kShareOfSampling = 0.5f;
 
 // Few rays first, and more where they err. Not where each ray carries random estimates, which want all rays, nor where
-// the layers of bounces have to add up.
-bool looks_twice(const DrawInput& input) {
+// the layers of bounces have to add up, nor where moments of the shutter share the rays of a pixel.
+bool looks_twice(const DrawInput& input, bool moments) {
     const Plan& plan = input.plan;
-    return !plan.scattering_method && !plan.fire_by_rays && plan.emitters_by_rays == 0.0f &&
+    return !moments && !plan.scattering_method && !plan.fire_by_rays && plan.emitters_by_rays == 0.0f &&
            !input.shot.output.bounce_layers;
 }
 
-PictureSettings picture_settings(const DrawInput& input, const ManyLights& lights) {
+PictureSettings picture_settings(const DrawInput& input, const ManyLights& lights, bool moments) {
     const CameraSettings& camera = input.camera.settings();
     PictureSettings settings;
     settings.samples_per_axis = camera.samples_per_axis;
     if (camera.samples_per_axis == 0) {
         const AutomaticSamples of_medium = automatic_samples(input.camera, lights.medium().field());
-        const int first = looks_twice(input) ? of_medium.few : of_medium.enough;
+        const int first = looks_twice(input, moments) ? of_medium.few : of_medium.enough;
         settings.samples_per_axis = input.plan.surfaces ? std::max(of_medium.enough, kSurfaceSamples) : first;
         settings.medium_samples_per_axis = first;
         settings.finest_medium_samples_per_axis = of_medium.enough;
@@ -76,7 +76,7 @@ FramePicture::FramePicture(const DrawInput& input, const ManyLights& lights, con
     : input_(input),
       lights_(lights),
       stretch_(stretch),
-      settings_(picture_settings(input, lights)),
+      settings_(picture_settings(input, lights, stretch != nullptr)),
       progress_(progress) {
     if (input.shot.output.virtual_lights && !why_no_virtual_lights(input.shot, input.plan))
         lengths_.emplace(std::size_t(input.camera.settings().width) * input.camera.settings().height);
@@ -85,7 +85,7 @@ FramePicture::FramePicture(const DrawInput& input, const ManyLights& lights, con
     const std::size_t moments = stretch->shutter.moments().size();
     settings_.samples_per_axis = share_of_moment(settings_.samples_per_axis, moments);
     settings_.medium_samples_per_axis = share_of_moment(settings_.medium_samples_per_axis, moments);
-    settings_.finest_medium_samples_per_axis = share_of_moment(settings_.finest_medium_samples_per_axis, moments);
+    settings_.finest_medium_samples_per_axis = 0;
     settings_.edge_refinement = share_of_moment(settings_.edge_refinement, moments);
 }
 

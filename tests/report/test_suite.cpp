@@ -82,11 +82,17 @@ TEST(SuiteScenes, AreTheListThenMediaThenFurther) {
     for (const char* const name : {"media/b.json", "media/a.json", "media/notes.txt"})
         std::ofstream(shots / name) << "{}";
     std::vector<std::string> names;
-    for (const SuiteScene& scene : suite_scenes(shots, {"sets/room.glb"}))
+    for (const SuiteScene& scene : suite_scenes(shots, {}, {"sets/room.glb"}))
         names.push_back(scene.name);
     EXPECT_EQ(names, (std::vector<std::string>{"explosion", "fire_room", "street", "media/a", "media/b", "room"}));
+    const std::vector<SuiteScene> some = suite_scenes(shots, {"media/b", "explosion"}, {"sets/room.glb"});
+    ASSERT_EQ(some.size(), 3u);
+    EXPECT_EQ(some[0].name, "explosion");
+    EXPECT_EQ(some[1].name, "media/b");
+    EXPECT_EQ(some[2].name, "room");
+    EXPECT_THROW(suite_scenes(shots, {"media/c"}, {}), Error);
     fs::remove_all(shots);
-    EXPECT_THROW(suite_scenes(shots, {}), Error);
+    EXPECT_THROW(suite_scenes(shots, {}, {}), Error);
 }
 
 TEST(SuiteScenes, KeepTheirShape) {

@@ -42,6 +42,7 @@ class CommandLine(test_report.Case):
         self.expect(2, *QUICK, "--budgets", "4", says="--suite")
         self.expect(2, "more.json", "--shots", "shots", says="--suite")
         self.expect(2, "more.json", "more.json", says="one SHOT_OR_VDB, or --suite; 2 were given")
+        self.expect(2, "--suite", "quick", "--shots", "shots", "--scenes", "moon", says=["moon", "media/cornell_fog"])
         self.expect(66, "--suite", "quick", "--shots", "absent", says=["absent", "--shots"])
         self.expect(2, "--suite", "quick", "--shots", "shots", "--methods", "photons", says="photons")
         self.expect(73, "--suite", "quick", "--shots", "shots", "-o", "absent/suite.html", says="absent")

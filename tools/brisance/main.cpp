@@ -146,6 +146,11 @@ void add_report_options(CLI::App& command, ReportOptions& options) {
                     "default shots")
         ->needs(suite);
     command
+        .add_option("--scenes", options.scenes,
+                    "Only these of the suite's: explosion street media/candle; default: all")
+        ->type_name("NAME ...")
+        ->needs(suite);
+    command
         .add_option("--methods", options.methods.methods,
                     fmt::format("NAME, or LABEL=NAME, and settings: exact=path,tracing.free_flight=exact; "
                                 "names: {}; default: lighting_grid path; of a suite: all",

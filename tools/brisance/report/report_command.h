@@ -14,6 +14,7 @@ struct ReportOptions {
     std::string input;                // a shot file, or a .vdb with or without frame tokens
     std::string suite;                // of suite_sizes(); empty: one shot
     std::string shots = "shots";      // the folder with the shots of a suite
+    std::vector<std::string> scenes;  // of a suite; empty: all
     std::string output = "report.html";  // CSV and JSON go beside it
     std::string frame;                   // -f; empty: the only one on disk
     std::string preset;

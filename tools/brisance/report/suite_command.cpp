@@ -110,7 +110,7 @@ int run_suite(const ReportOptions& options) {
     const ThreadLimit limit(options.threads);
     const SuiteSize& size = suite_size(options.suite);
     const std::vector<Method> methods = suite_methods(size, options.methods.methods);
-    const std::vector<SuiteScene> scenes = suite_scenes(options.shots, options.inputs);
+    const std::vector<SuiteScene> scenes = suite_scenes(options.shots, options.scenes, options.inputs);
     const SuiteFiles files = suite_files(options.output);
     std::vector<fs::path> inputs;
     for (const SuiteScene& scene : scenes)

@@ -26,6 +26,22 @@ std::vector<SuiteScene> scenes_of_media(const fs::path& shots) {
     return scenes;
 }
 
+// In the order of the suite.
+std::vector<SuiteScene> named(const std::vector<SuiteScene>& all, const std::vector<std::string>& names) {
+    std::vector<std::string> known;
+    std::vector<SuiteScene> chosen;
+    for (const SuiteScene& scene : all) {
+        known.push_back(scene.name);
+        if (std::find(names.begin(), names.end(), scene.name) != names.end())
+            chosen.push_back(scene);
+    }
+    for (const std::string& name : names)
+        if (std::find(known.begin(), known.end(), name) == known.end())
+            throw Error(ExitCode::Usage,
+                        fmt::format("--scenes: no scene is called \"{}\"; there are {}", name, fmt::join(known, ", ")));
+    return chosen;
+}
+
 std::string budget_of(const SuiteSize& size, const Method& method) {
     switch (method.steps_of) {
         case StepsOf::Paths:
@@ -127,7 +143,8 @@ std::vector<Method> suite_methods(const SuiteSize& size, const std::vector<std::
     return methods;
 }
 
-std::vector<SuiteScene> suite_scenes(const fs::path& shots, const std::vector<std::string>& further) {
+std::vector<SuiteScene> suite_scenes(const fs::path& shots, const std::vector<std::string>& names,
+                                     const std::vector<std::string>& further) {
     if (!fs::is_directory(shots))
         throw Error(ExitCode::MissingInput,
                     fmt::format("{}: no such folder; --shots names the one with the suite's shots", shots.string()));
@@ -136,6 +153,8 @@ std::vector<SuiteScene> suite_scenes(const fs::path& shots, const std::vector<st
         scenes.push_back({name, shots / (std::string(name) + ".json")});
     for (SuiteScene& scene : scenes_of_media(shots))
         scenes.push_back(std::move(scene));
+    if (!names.empty())
+        scenes = named(scenes, names);
     for (const std::string& file : further)
         scenes.push_back({fs::path(file).stem().string(), file});
     return scenes;

@@ -41,9 +41,10 @@ struct SuiteScene {
 };
 
 // The scenes of a suite: those of the list and of the folder `media` in `shots`, by name, then `further` files. A file
-// that is not there is a scene all the same, which fails when it is opened. Throws Error MissingInput when there is no
-// folder `shots`.
-std::vector<SuiteScene> suite_scenes(const std::filesystem::path& shots, const std::vector<std::string>& further);
+// that is not there is a scene all the same, which fails when it is opened. `names`: of those of `shots` only these;
+// empty: all. Throws Error MissingInput when there is no folder `shots`, and Usage for a name of none.
+std::vector<SuiteScene> suite_scenes(const std::filesystem::path& shots, const std::vector<std::string>& names,
+                                     const std::vector<std::string>& further);
 
 // "camera.width=64" and the height [pixels] by which a picture keeps its shape; empty where `given` settings name one.
 std::vector<std::string> size_settings(const SuiteSize& size, int width, int height,
