@@ -74,6 +74,19 @@ constexpr std::tuple kGatherers = {
     Row<StochasticLightcuts>{"stochastic_lightcuts", "a random light of each node of a small cut"},
     Row<AllLights>{"all", "every light"}};
 
+struct CompensationRow {
+    const char* name;
+    const char* help;
+    BoundCompensation value;
+    bool needs_bound;   // a kind of light with a bound
+    bool reads_pixels;  // needs all light of a sample before others around it are known
+};
+constexpr std::array kCompensations = {
+    CompensationRow{"none", "it is lost", BoundCompensation::None, false, false},
+    CompensationRow{"exact", "paths find it", BoundCompensation::Exact, true, false},
+    CompensationRow{"screen_space", "it is taken from what other pixels show", BoundCompensation::ScreenSpace, true,
+                    true}};
+
 // The settings of one preset with those of another, which has its name and its help.
 TechniquePreset changed(const TechniquePreset& from, const TechniquePreset& by) {
     TechniquePreset out{by.name, by.help, from.settings};
@@ -109,7 +122,10 @@ const std::vector<TechniquePreset>& baselines() {
         {"vpl_diffuse", "virtual point lights of Lambert bases alone", {{"kind", "diffuse_point"}}},
         {"vpl_compensated",
          "virtual point lights with a bounded geometry term, compensated by paths",
-         {{"point_bound_of", "both_cosines"}, {"compensation", "true"}}},
+         {{"point_bound_of", "both_cosines"}, {"compensation", "exact"}}},
+        {"vpl_screen_space",
+         "the same lights, compensated by what other pixels show",
+         {{"point_bound_of", "both_cosines"}, {"compensation", "screen_space"}}},
         {"vpl_lightcuts", "virtual point lights by lightcuts", {{"sampling", "lightcuts"}}},
         {"vpl_stochastic_lightcuts",
          "virtual point lights by stochastic lightcuts",
@@ -288,12 +304,32 @@ std::string extension_complaint(const Chosen& c, bool path_extension) {
            " goes with path_extension=false";
 }
 
-std::string compensation_complaint(const Chosen& c, bool compensation) {
-    if (!c.with_flux().fit || c.with_flux().bounded || !compensation)
+template <class Has>
+std::string compensations_that(const Has& has) {
+    return names_where(kCompensations, [&](std::size_t i) { return has(kCompensations[i]); });
+}
+
+const CompensationRow& row_of(BoundCompensation value) {
+    return *std::find_if(kCompensations.begin(), kCompensations.end(),
+                         [&](const CompensationRow& row) { return row.value == value; });
+}
+
+std::string compensation_complaint(const Chosen& c, BoundCompensation compensation) {
+    const CompensationRow& row = row_of(compensation);
+    if (!c.with_flux().fit || c.with_flux().bounded || !row.needs_bound)
         return {};
-    return std::string("compensation needs ") + kBounded + ": kind " +
+    return std::string("compensation ") + row.name + " needs " + kBounded + ": kind " +
            kinds_that([](const KindWithFlux& k) { return k.bounded; }) + "; kind " + light_kinds()[c.kind].name +
-           " goes with compensation=false";
+           " goes with compensation " + compensations_that([](const CompensationRow& r) { return !r.needs_bound; });
+}
+
+std::string pixels_complaint(const VirtualLightSettings& s) {
+    const CompensationRow& row = row_of(s.compensation);
+    if (s.resampling_neighbours == 0 || !row.reads_pixels)
+        return {};
+    return std::string("compensation ") + row.name +
+           " needs resampling_neighbours=0; resampling_neighbours above 0 goes with compensation " +
+           compensations_that([](const CompensationRow& r) { return !r.reads_pixels; });
 }
 
 std::string reuse_complaint(const Chosen& c, int neighbours) {
@@ -355,6 +391,16 @@ const std::vector<TechniqueChoice>& light_gatherers() {
     return all;
 }
 
+const std::vector<CompensationChoice>& light_compensations() {
+    static const std::vector<CompensationChoice> all = [] {
+        std::vector<CompensationChoice> out;
+        for (const CompensationRow& row : kCompensations)
+            out.push_back({row.name, row.help, row.value});
+        return out;
+    }();
+    return all;
+}
+
 const std::vector<TechniquePreset>& light_presets() {
     static const std::vector<TechniquePreset> all = make_presets();
     return all;
@@ -372,7 +418,8 @@ std::string why_not_together(const VirtualLightSettings& settings) {
     std::string out;
     for (const std::string& complaint :
          {flux_complaint(c), kind_complaint(c), gatherer_complaint(c), extension_complaint(c, settings.path_extension),
-          compensation_complaint(c, settings.compensation), reuse_complaint(c, settings.resampling_neighbours)})
+          compensation_complaint(c, settings.compensation), pixels_complaint(settings),
+          reuse_complaint(c, settings.resampling_neighbours)})
         if (!complaint.empty())
             out += (out.empty() ? "" : "; and ") + complaint;
     return out;
