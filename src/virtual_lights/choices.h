@@ -26,6 +26,8 @@ struct CompensationChoice {
     std::string name;
     std::string help;  // a few words
     BoundCompensation value;
+    bool needs_bound;   // a kind of light with a bound
+    bool reads_pixels;  // all light of a camera sample, before light that others around it share
 };
 const std::vector<CompensationChoice>& light_compensations();
 

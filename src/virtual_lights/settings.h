@@ -23,7 +23,7 @@ enum class BoundedTerm {
 };
 
 // What makes up for the light that the bound takes away.
-enum class BoundCompensation {
+enum class BoundCompensation : std::uint8_t {
     None,
     Exact,       // paths find it
     ScreenSpace  // it is taken from what pixels show

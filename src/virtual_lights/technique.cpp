@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "virtual_lights/choices.h"
+#include "virtual_lights/compensations.h"
 #include "virtual_lights/flux/deposit_flux.h"
 #include "virtual_lights/flux/gathered_flux.h"
 #include "virtual_lights/gatherers/all_lights.h"
@@ -73,19 +74,6 @@ constexpr std::tuple kGatherers = {
     Row<Lightcuts>{"lightcuts", "one light for each node of a cut through a tree, the same for all vertices"},
     Row<StochasticLightcuts>{"stochastic_lightcuts", "a random light of each node of a small cut"},
     Row<AllLights>{"all", "every light"}};
-
-struct CompensationRow {
-    const char* name;
-    const char* help;
-    BoundCompensation value;
-    bool needs_bound;   // a kind of light with a bound
-    bool reads_pixels;  // needs all light of a sample before others around it are known
-};
-constexpr std::array kCompensations = {
-    CompensationRow{"none", "it is lost", BoundCompensation::None, false, false},
-    CompensationRow{"exact", "paths find it", BoundCompensation::Exact, true, false},
-    CompensationRow{"screen_space", "it is taken from what other pixels show", BoundCompensation::ScreenSpace, true,
-                    true}};
 
 // The settings of one preset with those of another, which has its name and its help.
 TechniquePreset changed(const TechniquePreset& from, const TechniquePreset& by) {
@@ -304,32 +292,13 @@ std::string extension_complaint(const Chosen& c, bool path_extension) {
            " goes with path_extension=false";
 }
 
-template <class Has>
-std::string compensations_that(const Has& has) {
-    return names_where(kCompensations, [&](std::size_t i) { return has(kCompensations[i]); });
-}
-
-const CompensationRow& row_of(BoundCompensation value) {
-    return *std::find_if(kCompensations.begin(), kCompensations.end(),
-                         [&](const CompensationRow& row) { return row.value == value; });
-}
-
 std::string compensation_complaint(const Chosen& c, BoundCompensation compensation) {
-    const CompensationRow& row = row_of(compensation);
+    const CompensationChoice& row = choice_of(compensation);
     if (!c.with_flux().fit || c.with_flux().bounded || !row.needs_bound)
         return {};
-    return std::string("compensation ") + row.name + " needs " + kBounded + ": kind " +
+    return "compensation " + row.name + " needs " + kBounded + ": kind " +
            kinds_that([](const KindWithFlux& k) { return k.bounded; }) + "; kind " + light_kinds()[c.kind].name +
-           " goes with compensation " + compensations_that([](const CompensationRow& r) { return !r.needs_bound; });
-}
-
-std::string pixels_complaint(const VirtualLightSettings& s) {
-    const CompensationRow& row = row_of(s.compensation);
-    if (s.resampling_neighbours == 0 || !row.reads_pixels)
-        return {};
-    return std::string("compensation ") + row.name +
-           " needs resampling_neighbours=0; resampling_neighbours above 0 goes with compensation " +
-           compensations_that([](const CompensationRow& r) { return !r.reads_pixels; });
+           " goes with compensation " + compensations_that([](const CompensationChoice& r) { return !r.needs_bound; });
 }
 
 std::string reuse_complaint(const Chosen& c, int neighbours) {
@@ -388,16 +357,6 @@ const std::vector<TechniqueChoice>& light_kinds() {
 
 const std::vector<TechniqueChoice>& light_gatherers() {
     static const std::vector<TechniqueChoice> all = choices_of(kGatherers);
-    return all;
-}
-
-const std::vector<CompensationChoice>& light_compensations() {
-    static const std::vector<CompensationChoice> all = [] {
-        std::vector<CompensationChoice> out;
-        for (const CompensationRow& row : kCompensations)
-            out.push_back({row.name, row.help, row.value});
-        return out;
-    }();
     return all;
 }
 
