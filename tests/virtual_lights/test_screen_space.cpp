@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "core/parallel.h"
 #include "fixtures/sets.h"
@@ -58,7 +59,7 @@ double integral(const vec3& at, double bound, BoundedTerm of) {
             const double term = of == BoundedTerm::BothCosines ? here * there / d2 : there / d2;
             sum += here * there / d2 * std::max(0.0, 1.0 - bound / term) / (kDense * kDense);
         }
-    return sum / kPi64;
+    return sum * std::numbers::inv_pi;
 }
 
 // Pixels of 1 cm and four rays each: 5 % from five of them on. Without the compensation all of it would be missing.
