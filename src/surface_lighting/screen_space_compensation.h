@@ -9,7 +9,7 @@
 //
 // G - b is above 0 only within 1 / sqrt(b) metres of x, where most surface is seen together with x. So y runs over what
 // pixels show, and L(y) is what they have found: direct light and bounded lights. L_0 = that, L_(k+1) = T_r L_k, and
-// the picture gets L_1 + L_2 + ... (their equation of repeated interreflection).
+// the picture gets L_1 + L_2 + ...
 //
 // Pixels form a pyramid of boxes with the mean position, normal and radiance of their surface, weighted by area. From x
 // a node counts as one disc where it is small beside its distance and has one normal; else its children are looked at.
@@ -18,8 +18,8 @@
 // It is biased: surface that is off screen, hidden or seen by mirrors gives nothing and gets nothing, L(y) is taken as
 // alike in all directions, only Lambert bases receive, and nothing stands between x and y, be it surface or smoke.
 //
-// Departs from [1]: the pyramid is walked with an error bound in the scene's space instead of a fixed window of the
-// screen in each level.
+// From [1] are the integral over pixels, hierarchical buffers and repeated rounds. How the pyramid is walked is not:
+// sizes and distances in the scene decide, so that what is near in the scene but far on the screen counts as well.
 #pragma once
 
 #include <cstdint>
