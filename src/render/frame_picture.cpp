@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "camera/pixel_samples.h"
 #include "camera_rays/moment_mean.h"
 #include "scattering_methods/scattering_pass.h"
 #include "surface_lighting/surface_shader.h"
@@ -136,6 +137,17 @@ std::optional<LightReuse> FramePicture::light_reuse(const Camera& camera, Shared
                       {s.resampling_neighbours, s.resampling_radius, s.resampling_visibility}, shared);
 }
 
+// None where no light is bounded, or nothing on the screen is to make up for it.
+std::optional<ScreenSpaceCompensation> FramePicture::compensation(const Camera& camera) const {
+    const VirtualLightSettings& s = input_.shot.virtual_lights;
+    if (s.compensation != BoundCompensation::ScreenSpace || !input_.plan.needs(Cell::SS) || !lights_.virtual_lights() ||
+        lights_.virtual_lights()->lights().empty())
+        return std::nullopt;
+    const std::size_t rays =
+        pixel_samples(camera.settings(), settings_.samples_per_axis, settings_.sample_shift).size();
+    return ScreenSpaceCompensation(camera.settings().width, camera.settings().height, s, int(rays));
+}
+
 Image FramePicture::picture(const InScattering* estimator, int number, const MomentLights& lights, const Camera& camera,
                             const Surroundings* surroundings) {
     settings_.pass = number;
@@ -150,16 +162,20 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
     if (lights_.virtual_lights() && input_.plan.needs(Cell::SS) && radius > 0.0)
         shared.emplace(camera.settings().width, camera.settings().height, radius, rays_of_pixel());
     std::optional<LightReuse> reuse = light_reuse(camera, shared ? &*shared : nullptr);
+    std::optional<ScreenSpaceCompensation> compensated = compensation(camera);
     const SurfaceShader shader({input_.plan.needed, lights.field(), *lights.paths(), lights_.medium().lighting(),
                                 lights_.virtual_lights(), estimator, input_.plan.emitters_by_rays, settings_.parts,
                                 camera.settings().width, rays_of_pixel(), lengths_ ? &*lengths_ : nullptr,
-                                shared ? &*shared : nullptr, camera.pixel_angle(), reuse ? &*reuse : nullptr});
+                                shared ? &*shared : nullptr, camera.pixel_angle(), reuse ? &*reuse : nullptr,
+                                compensated ? &*compensated : nullptr});
     Image image = render_picture(lights.field(), camera, settings_, progress_,
                                  [&](const auto& samples, auto& light) { shader.shade(samples, light); });
     if (reuse)
         add_to_cell(image, Cell::SS, reuse->take_pixels());
     if (shared)
         add_to_cell(image, Cell::SS, shared->take_pixels());
+    if (compensated)
+        add_to_cell(image, Cell::SS, compensated->take_pixels());
     return image;
 }
 

@@ -8,6 +8,7 @@
 #include "render/shutter/moment_lights.h"
 #include "surface_lighting/light_reuse.h"
 #include "surface_lighting/path_lengths.h"
+#include "surface_lighting/screen_space_compensation.h"
 
 namespace brisance {
 
@@ -40,6 +41,7 @@ private:
     Image picture(const InScattering* estimator, int number, const MomentLights& lights, const Camera& camera,
                   const Surroundings* surroundings);
     std::optional<LightReuse> light_reuse(const Camera& camera, SharedBounce* shared) const;
+    std::optional<ScreenSpaceCompensation> compensation(const Camera& camera) const;
     Image order_picture(const NodeSources& order, PictureSettings settings);
 
     const DrawInput& input_;

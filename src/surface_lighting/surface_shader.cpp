@@ -34,6 +34,12 @@ constexpr float kLeastColour = 0.04f;
 // The cosine below which the area that a pixel shows counts as if it were this.
 constexpr double kGrazing = 0.02;
 
+// The area [m^2] of the surface that a pixel shows, if its width is `pixel_size` there [m].
+float shown_area(const SurfacePoint& point, const dvec3& arriving, double pixel_size) {
+    const double facing = std::abs(glm::dot(point.geometric_normal, arriving));
+    return float(pixel_size * pixel_size / std::max(facing, kGrazing));
+}
+
 // Voxels of a segment of a path between surfaces are not cut: the path is one of many.
 constexpr int kPartsForPaths = 1;
 
@@ -261,8 +267,7 @@ SharedBounce::Sample SurfaceShader::shared_sample(const SurfaceSample& sample, c
     out.position = vec3(point.position);
     out.normal = vec3(point.frame.normal);
     out.pixel_size = float(input_.pixel_angle * from_eye);
-    const double facing = std::abs(glm::dot(point.geometric_normal, at.seen.arriving));
-    out.area = float(double(out.pixel_size) * out.pixel_size / std::max(facing, kGrazing));
+    out.area = shown_area(point, at.seen.arriving, out.pixel_size);
     out.lobe = lobe;
     for (int c = 0; c < 3; ++c)
         out.light[c] = colour[c] > 0.0f ? light[c] / colour[c] : 0.0f;
@@ -321,6 +326,27 @@ void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector
     hand_over(samples, points, light);
 }
 
+// With the light of one sample itself where all pixels share: its mean is that of theirs.
+ScreenSpaceCompensation::Sample SurfaceShader::compensated_sample(const SurfaceSample& sample, const ShadedPoint& at,
+                                                                  const CellSum& light) const {
+    const SurfacePoint& point = at.seen.point;
+    ScreenSpaceCompensation::Sample out;
+    out.pixel = sample.pixel;
+    out.position = vec3(point.position);
+    out.normal = vec3(point.frame.normal);
+    const double from_eye = glm::distance(point.position, sample.ray.origin);
+    out.area = shown_area(point, at.seen.arriving, input_.pixel_angle * from_eye);
+    for (const Rgb& cell : light)
+        out.light += cell;
+    for (const std::optional<SharedBounce::Sample>& s : {at.base, at.gloss})
+        if (s)
+            out.light += s->light * s->weight / sample.share;
+    if (has_base(point.material))
+        out.albedo = Bsdf(point.material, point.frame, Lobes::Base).base_albedo(-at.seen.arriving);
+    out.share = sample.share;
+    return out;
+}
+
 // To all pixels, and to samples around first.
 void SurfaceShader::hand_over(const std::vector<SurfaceSample>& samples, std::vector<ShadedPoint>& points,
                               std::vector<CellSum>& light) const {
@@ -329,6 +355,8 @@ void SurfaceShader::hand_over(const std::vector<SurfaceSample>& samples, std::ve
         ShadedPoint& at = points[i];
         if (!(samples[i].share > 0.0f))
             continue;
+        if (input_.compensation && !at.seen.lost && at.seen.mirrors == 0)
+            input_.compensation->add(compensated_sample(samples[i], at, light[i]));
         for (LightReuse::Sample& c : at.chosen) {
             c.shared.swap(c.lobes == Lobes::Base ? at.base : at.gloss);
             chosen.push_back(std::move(c));

@@ -25,6 +25,7 @@
 #include "surface_lighting/mirrors.h"
 #include "surface_lighting/panes.h"
 #include "surface_lighting/path_lengths.h"
+#include "surface_lighting/screen_space_compensation.h"
 #include "surface_lighting/shared_bounce.h"
 #include "virtual_lights/virtual_lights.h"
 
@@ -44,8 +45,10 @@ struct SurfaceLightingInput {
     int samples = 1;                                  // rays of a pixel
     PathLengths* lengths = nullptr;                   // counts the paths of virtual lights; null: not counted
     SharedBounce* shared = nullptr;                   // gets SS of bases and rough lobes; null: samples keep it
-    double pixel_angle = 0.0;                         // [rad], for `shared`
+    double pixel_angle = 0.0;                         // [rad], for `shared` and `compensation`
     LightReuse* reuse = nullptr;                      // gets what samples chose of the lights; null: they keep it
+    // Gets what all samples show; null: the bound's loss is not looked for on the screen. Not beside `reuse`.
+    ScreenSpaceCompensation* compensation = nullptr;
 };
 
 class SurfaceShader {
@@ -70,6 +73,8 @@ private:
                      Rng& rng, ShadedPoint& at) const;
     void hand_over(const std::vector<SurfaceSample>& samples, std::vector<ShadedPoint>& points,
                    std::vector<CellSum>& light) const;
+    ScreenSpaceCompensation::Sample compensated_sample(const SurfaceSample& sample, const ShadedPoint& at,
+                                                       const CellSum& light) const;
     Rgb from_emitters(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng) const;
     Rgb from_chosen_emitters(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng) const;
     void reflect_scattered(const SurfacePoint& point, const dvec3& toward_viewer, Rng& rng, Rng& ray_rng,

@@ -21,6 +21,16 @@ const std::vector<TechniqueChoice>& light_fluxes();
 const std::vector<TechniqueChoice>& light_kinds();
 const std::vector<TechniqueChoice>& light_gatherers();
 
+// The values of `compensation`, in the order of the table.
+struct CompensationChoice {
+    std::string name;
+    std::string help;  // a few words
+    BoundCompensation value;
+    bool needs_bound;   // a kind of light with a bound
+    bool reads_pixels;  // all light of a camera sample, before light that others around it share
+};
+const std::vector<CompensationChoice>& light_compensations();
+
 // "blue_noise: ...; random: ..."
 std::string help_of(const std::vector<TechniqueChoice>& choices);
 

@@ -32,7 +32,7 @@ Rgb VirtualLights::lamps_on(const RaySegment& segment, Rng& rng) const {
 
 double VirtualLights::share_kept(const PathVertex& vertex, const RaySegment& segment) const {
     const VirtualLightSettings& s = set_->settings();
-    if (!s.compensation)
+    if (s.compensation != BoundCompensation::Exact)
         return 1.0;
     const dvec3 offset = segment.point->position - vertex.position();
     const double cosine = std::abs(glm::dot(segment.point->geometric_normal, segment.ray.direction));

@@ -22,6 +22,13 @@ enum class BoundedTerm {
     BothCosines   // the whole geometry term
 };
 
+// What makes up for the light that the bound takes away.
+enum class BoundCompensation : std::uint8_t {
+    None,
+    Exact,       // paths find it
+    ScreenSpace  // it is taken from what pixels show
+};
+
 // Placement, flux, kind and sampling are names; choices.h lists them and says which go together.
 struct VirtualLightSettings {
     int count = 12000;  // virtual lights; 0: none, all surface light is found by paths
@@ -31,7 +38,7 @@ struct VirtualLightSettings {
     std::string kind = "patch";
     double point_bound = 100.0;  // kind point: upper bound on cosine over squared distance [1/m^2]
     BoundedTerm point_bound_of = BoundedTerm::LightCosine;
-    bool compensation = false;   // kind point: paths find what the bound takes away
+    BoundCompensation compensation = BoundCompensation::None;  // kind point: of what the bound takes away
     int sphere_neighbours = 10;  // kind sphere: its radius is the distance to the neighbour of this number
     int sphere_samples = 4;      // kind sphere: directions sampled for each light
     SphereSampling sphere_sampling = SphereSampling::Combined;

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "virtual_lights/choices.h"
+#include "virtual_lights/compensations.h"
 #include "virtual_lights/flux/deposit_flux.h"
 #include "virtual_lights/flux/gathered_flux.h"
 #include "virtual_lights/gatherers/all_lights.h"
@@ -109,7 +110,10 @@ const std::vector<TechniquePreset>& baselines() {
         {"vpl_diffuse", "virtual point lights of Lambert bases alone", {{"kind", "diffuse_point"}}},
         {"vpl_compensated",
          "virtual point lights with a bounded geometry term, compensated by paths",
-         {{"point_bound_of", "both_cosines"}, {"compensation", "true"}}},
+         {{"point_bound_of", "both_cosines"}, {"compensation", "exact"}}},
+        {"vpl_screen_space",
+         "the same lights, compensated by what other pixels show",
+         {{"point_bound_of", "both_cosines"}, {"compensation", "screen_space"}}},
         {"vpl_lightcuts", "virtual point lights by lightcuts", {{"sampling", "lightcuts"}}},
         {"vpl_stochastic_lightcuts",
          "virtual point lights by stochastic lightcuts",
@@ -288,12 +292,13 @@ std::string extension_complaint(const Chosen& c, bool path_extension) {
            " goes with path_extension=false";
 }
 
-std::string compensation_complaint(const Chosen& c, bool compensation) {
-    if (!c.with_flux().fit || c.with_flux().bounded || !compensation)
+std::string compensation_complaint(const Chosen& c, BoundCompensation compensation) {
+    const CompensationChoice& row = choice_of(compensation);
+    if (!c.with_flux().fit || c.with_flux().bounded || !row.needs_bound)
         return {};
-    return std::string("compensation needs ") + kBounded + ": kind " +
+    return "compensation " + row.name + " needs " + kBounded + ": kind " +
            kinds_that([](const KindWithFlux& k) { return k.bounded; }) + "; kind " + light_kinds()[c.kind].name +
-           " goes with compensation=false";
+           " goes with compensation " + compensations_that([](const CompensationChoice& r) { return !r.needs_bound; });
 }
 
 std::string reuse_complaint(const Chosen& c, int neighbours) {
@@ -372,7 +377,8 @@ std::string why_not_together(const VirtualLightSettings& settings) {
     std::string out;
     for (const std::string& complaint :
          {flux_complaint(c), kind_complaint(c), gatherer_complaint(c), extension_complaint(c, settings.path_extension),
-          compensation_complaint(c, settings.compensation), reuse_complaint(c, settings.resampling_neighbours)})
+          compensation_complaint(c, settings.compensation), pixels_complaint(settings),
+          reuse_complaint(c, settings.resampling_neighbours)})
         if (!complaint.empty())
             out += (out.empty() ? "" : "; and ") + complaint;
     return out;

@@ -152,7 +152,7 @@ TEST(PlainPoints, AreUnbiasedWithCompensation) {
         const Mean truth = by_paths(room);
         for (const BoundedTerm of : {BoundedTerm::LightCosine, BoundedTerm::BothCosines}) {
             VirtualLightSettings settings = of_photons("point");
-            settings.compensation = true;
+            settings.compensation = BoundCompensation::Exact;
             settings.point_bound = 0.3;
             settings.point_bound_of = of;
             expect_same(over_sets_of_lights(room, settings), truth, 0.0, std::to_string(static_cast<int>(of)));
@@ -372,9 +372,22 @@ TEST(Baselines, SaysWhatDoesNotGoTogether) {
         "sampling combined needs a kind of light that rays can hit: kind patch; kind point goes with sampling power, "
         "light_tree, plain_power, uniform, resampled, lightcuts, stochastic_lightcuts, all");
     refused(
-        rich, [](S& s) { s.compensation = true; },
-        "compensation needs a kind of light with a bound: kind point, diffuse_point; kind sphere goes with "
-        "compensation=false");
+        rich, [](S& s) { s.compensation = BoundCompensation::Exact; },
+        "compensation exact needs a kind of light with a bound: kind point, diffuse_point; kind sphere goes with "
+        "compensation none");
+    refused(
+        rich, [](S& s) { s.compensation = BoundCompensation::ScreenSpace; },
+        "compensation screen_space needs a kind of light with a bound: kind point, diffuse_point; kind sphere goes "
+        "with compensation none");
+    refused(
+        plain,
+        [](S& s) {
+            s.compensation = BoundCompensation::ScreenSpace;
+            s.sampling = "resampled";
+            s.resampling_neighbours = 2;
+        },
+        "compensation screen_space needs resampling_neighbours=0; resampling_neighbours above 0 goes with "
+        "compensation none, exact");
     refused(
         plain, [](S& s) { s.placement = "bidirectional"; },
         "flux own needs deposits that carry flux: placement light_paths, rejection, metropolis, not bidirectional");

@@ -53,6 +53,26 @@ TEST(Choices, AreTheSchemasNames) {
     }
 }
 
+// Shots from before there were three said true or false.
+TEST(Choices, OfCompensationAreReadAsBefore) {
+    const Key& key = key_of("compensation");
+    EXPECT_EQ(key.get(Shot()).value(), light_compensations().front().name);
+    for (const CompensationChoice& choice : light_compensations()) {
+        Shot shot;
+        EXPECT_TRUE(key.set(shot, choice.name));
+        EXPECT_EQ(shot.virtual_lights.compensation, choice.value);
+        EXPECT_EQ(key.get(shot).value(), choice.name);
+        EXPECT_NE(key.help.find(choice.name + ": " + choice.help), std::string::npos) << choice.name;
+    }
+    for (const auto& [old, name] : {std::pair(true, "exact"), std::pair(false, "none")}) {
+        Shot shot;
+        EXPECT_TRUE(key.set(shot, old));
+        EXPECT_EQ(key.get(shot).value(), name);
+    }
+    Shot shot;
+    EXPECT_FALSE(key.set(shot, "paths"));
+}
+
 TEST(Choices, ByDefaultGoTogether) {
     EXPECT_EQ(why_not_together({}), "");
 }

@@ -14,6 +14,30 @@ Codec<std::string> name_in(const std::vector<TechniqueChoice>& choices) {
     return choice(words);
 }
 
+// One of the names; shots from before there were several say true or false, for exact and none.
+Codec<BoundCompensation> compensation() {
+    std::vector<std::pair<std::string, BoundCompensation>> words;
+    for (const CompensationChoice& c : light_compensations())
+        words.emplace_back(c.name, c.value);
+    const Codec<BoundCompensation> named = choice(words);
+    Codec<BoundCompensation> out = named;
+    out.expected = named.expected + ", true (exact) or false (none)";
+    out.schema = {{"anyOf", Json::array({named.schema, flag().schema})}};
+    out.read = [named](const Json& json) -> std::optional<BoundCompensation> {
+        if (const std::optional<bool> exact = flag().read(json))
+            return *exact ? BoundCompensation::Exact : BoundCompensation::None;
+        return named.read(json);
+    };
+    return out;
+}
+
+std::string help_of_compensation() {
+    std::string out = "for kind point, of the light that the bound takes away";
+    for (const CompensationChoice& c : light_compensations())
+        out += "; " + c.name + ": " + c.help;
+    return out;
+}
+
 Codec<int> whole_in(const SettingRange<int>& range) {
     return whole(range.low, range.high);
 }
@@ -48,7 +72,7 @@ void add_kind_keys(std::vector<Key>& keys) {
         choice<BoundedTerm>({{"light_cosine", BoundedTerm::LightCosine}, {"both_cosines", BoundedTerm::BothCosines}}),
         [](Shot & s) -> auto& { return s.virtual_lights.point_bound_of; }));
     keys.push_back(make_key(
-        "virtual_lights.compensation", "for kind point: paths find what the bound takes away", flag(),
+        "virtual_lights.compensation", help_of_compensation(), compensation(),
         [](Shot & s) -> auto& { return s.virtual_lights.compensation; }));
     keys.push_back(make_key(
         "virtual_lights.sphere_neighbours",
