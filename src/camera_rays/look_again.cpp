@@ -14,9 +14,9 @@ namespace {
 // What one ray more or less may change a pixel by, over its luminance, that is not worth looking again.
 constexpr float kUnseen = 0.01f;
 
-// The second difference of pixels over the error of the mean of n * n rays, and how that falls with n: between those of
-// parabolas (24, 2) and of kinks and edges (8, 1.5).
-constexpr float kBend = 16.0f, kConvergence = 1.5f;
+// The second difference of pixels over the error of the mean of n * n rays, and how that falls with n: those of kinks
+// and edges; a parabola has 24 and 2.
+constexpr float kBend = 8.0f, kConvergence = 1.5f;
 
 // Of the sum of a pixel's weights.
 constexpr float kRounding = 1e-5f;

@@ -16,7 +16,7 @@ namespace {
 constexpr int kSurfaceSamples = 4;
 
 // What a single pixel may err by for want of rays, in parts of `lighting.error`. Most pixels err by far less.
-constexpr float kShareOfSampling = 0.5f;
+constexpr float kShareOfSampling = 0.25f;
 
 // Few rays first, and more where they err. Not where each ray carries random estimates, which want all rays, nor where
 // the layers of bounces have to add up, nor where moments of the shutter share the rays of a pixel.
