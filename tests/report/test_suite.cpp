@@ -1,6 +1,7 @@
 // The comparison of all methods on several scenes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -29,6 +30,18 @@ std::vector<Method> all_methods() {
 
 TEST(SuiteMethods, AreAllOfTheTable) {
     EXPECT_EQ(labels_of(all_methods()), std::set<std::string>(built_in_methods().begin(), built_in_methods().end()));
+}
+
+// What scatters the grid's light on is judged by it, and begins with light as good as the grid's.
+TEST(SuiteMethods, OfWhatScattersOnKeepTheLightOfTheFire) {
+    const std::vector<std::string>& coarse = suite_size("quick").beside_fire;
+    const auto has_coarse_fire = [&](const std::string& name) {
+        const std::vector<std::string> settings = suite_methods(suite_size("quick"), {name})[0].settings;
+        return std::find(settings.begin(), settings.end(), coarse[0]) != settings.end();
+    };
+    for (const char* const name : {"radiance_cascades", "diffusion", "lighting_grid"})
+        EXPECT_FALSE(has_coarse_fire(name)) << name;
+    EXPECT_TRUE(has_coarse_fire("ray_lights"));
 }
 
 TEST(SuiteMethods, EachOwnsACellAndEachCellHasTwo) {

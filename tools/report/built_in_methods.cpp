@@ -72,11 +72,17 @@ std::vector<BuiltIn> make_built_ins() {
         {"radiance_cascades",
          {"method=lighting_grid", "scattering.method=lighting_grid", "scattering.solver=radiance_cascades"},
          StepsOf::Directions,
-         kCellsOfScatteringMethods},
+         kCellsOfScatteringMethods,
+         false,
+         false,
+         true},
         {"diffusion",
          {"method=lighting_grid", "scattering.method=lighting_grid", "scattering.solver=diffusion"},
          StepsOf::Lattices,
-         kCellsOfScatteringMethods}};
+         kCellsOfScatteringMethods,
+         false,
+         false,
+         true}};
     add_fire_lights(methods);
     add_scattering_methods(methods);
     return methods;

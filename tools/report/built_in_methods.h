@@ -14,7 +14,8 @@ struct BuiltIn {
     StepsOf steps = StepsOf::Grid;
     CellSet cells;
     bool unbiased = false;
-    bool by_default = false;  // a shot that names no method has its cells from this one
+    bool by_default = false;     // a shot that names no method has its cells from this one
+    bool scatters_grid = false;  // its MM begins with the lighting grid's MV
 };
 
 // Virtual lights come last.

@@ -93,6 +93,7 @@ Method parse_method(const std::string& text) {
                   .steps_of = base.steps,
                   .unbiased = base.unbiased,
                   .by_default = base.by_default && parts.size() == 1,
+                  .scatters_grid = base.scatters_grid,
                   .cells = base.cells};
     if (method.label.empty() || method.label.find(':') != std::string::npos)
         refuse(fmt::format("--methods {}: a label is not empty and holds no colon", text));

@@ -38,9 +38,10 @@ struct Method {
     std::vector<MethodStep> steps;      // at least one
     StepsOf steps_of = StepsOf::Grid;   // of the built-in ladder
     bool unbiased = false;
-    bool by_default = false;  // a shot that names no method has its cells from this one
-    bool averages = false;    // its steps average more and more samples: the error falls as time^-1/2
-    CellSet cells;            // that it computes by its own technique; the others of its pictures are another method's
+    bool by_default = false;     // a shot that names no method has its cells from this one
+    bool scatters_grid = false;  // its MM begins with the lighting grid's MV
+    bool averages = false;       // its steps average more and more samples: the error falls as time^-1/2
+    CellSet cells;  // that it computes by its own technique; the others of its pictures are another method's
 };
 
 struct MethodOptions {

@@ -135,7 +135,7 @@ std::vector<Method> suite_methods(const SuiteSize& size, const std::vector<std::
         options.budgets.push_back(method.label + ":" + budget_of(size, method));
     std::vector<Method> methods = parse_methods(options);
     for (Method& method : methods) {
-        if (!owns(method, name_of(Cell::MV)))
+        if (!owns(method, name_of(Cell::MV)) && !method.scatters_grid)
             add_settings(size.beside_fire, method);
         if (!owns(method, name_of(Cell::MM)))
             add_settings(size.beside_scattering, method);

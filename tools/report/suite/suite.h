@@ -22,7 +22,8 @@ struct SuiteSize {
     std::string lamps;                  // of methods that put lamps in the place of the fire: "4,16"
     std::string sides;                  // samples along a pixel's side, of all other methods: "1,2"
     std::vector<std::string> settings;  // over those of every shot, for every method
-    // What is cheap where it is not judged: further ones of the methods that do not own MV, and of those without MM.
+    // What is cheap where it is not judged: further ones of the methods that neither own MV nor scatter it on, and of
+    // those without MM.
     std::vector<std::string> beside_fire;
     std::vector<std::string> beside_scattering;
 };

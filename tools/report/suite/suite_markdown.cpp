@@ -154,8 +154,8 @@ std::string how_it_was_made(const SuiteReport& suite) {
         text += fmt::format(" Settings over those of every shot: `{}`.", fmt::join(size.settings, " "));
     for (const auto& [settings, cell] : {std::pair{&size.beside_fire, "MV"}, {&size.beside_scattering, "MM"}})
         if (!settings->empty())
-            text +=
-                fmt::format(" Methods that do not compete in `{}` have `{}` for it.", cell, fmt::join(*settings, " "));
+            text += fmt::format(" Methods that do not compete in `{}`, nor go on from it, have `{}` for it.", cell,
+                                fmt::join(*settings, " "));
     return text + "\n";
 }
 
