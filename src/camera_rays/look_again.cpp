@@ -53,27 +53,19 @@ public:
     // The pixel and those beside it: what its own rays have missed may show there.
     bool edge(const PictureWriter& writer, const Pixel& p, std::size_t rays) const {
         const Glare& own = at(p.x, p.y).glare;
-        float step = 0.0f, sum = 0.0f;
-        int count = 0;
+        float step = 0.0f;
         for_neighbourhood(p, [&](int x, int y) {
             const Glare& g = at(x, y).glare;
             step = std::max({step, g.step, gap(own, g)});
-            sum += writer.luminance_at(x, y);
-            ++count;
         });
-        return step > kUnseen * rays * sum / count;
+        return step > kUnseen * rays * mean_luminance(writer, p);
     }
 
     // Second difference at a pixel: relative to the mean luminance of these pixels, and of the transmittance to 1.
     float bend(const PictureWriter& writer, const Pixel& p) const {
-        float sum = 0.0f;
-        int count = 0;
-        for_neighbourhood(p, [&](int x, int y) {
-            sum += writer.luminance_at(x, y);
-            ++count;
-        });
         const float light = second_difference(p, &FirstLook::medium);
-        return std::max(light > 0.0f ? light * count / sum : 0.0f, second_difference(p, &FirstLook::through));
+        return std::max(light > 0.0f ? light / mean_luminance(writer, p) : 0.0f,
+                        second_difference(p, &FirstLook::through));
     }
 
 private:
@@ -87,6 +79,17 @@ private:
         for (int y = std::max(p.y - 1, 0); y <= std::min(p.y + 1, height_ - 1); ++y)
             for (int x = std::max(p.x - 1, 0); x <= std::min(p.x + 1, width_ - 1); ++x)
                 visit(x, y);
+    }
+
+    // Of the pixel and those beside it.
+    float mean_luminance(const PictureWriter& writer, const Pixel& p) const {
+        float sum = 0.0f;
+        int count = 0;
+        for_neighbourhood(p, [&](int x, int y) {
+            sum += writer.luminance_at(x, y);
+            ++count;
+        });
+        return sum / count;
     }
 
     // Of both axes together.
@@ -116,7 +119,8 @@ PictureSettings for_bends(PictureSettings settings, int samples) {
 
 int samples_at(float bend, const PictureSettings& settings) {
     const float samples = std::pow(bend / (kBend * settings.tolerance), 1.0f / kConvergence);
-    return static_cast<int>(std::ceil(std::min(samples, float(settings.finest_medium_samples_per_axis))));
+    // In this order a bend that is not a number wants the most.
+    return static_cast<int>(std::ceil(std::min(float(settings.finest_medium_samples_per_axis), samples)));
 }
 
 // Replaces what the pixels' own rays saw by what more rays see.
