@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "diffusion/diffusion.h"
 #include "fixtures/tracing_fixture.h"
+#include "fixtures/wall.h"
 #include "gathering/sh.h"
 
 namespace brisance {
@@ -229,17 +230,6 @@ TEST(Diffusion, SaysWhenItHasNotConverged) {
     EXPECT_FALSE(diffusion.counts().converged);
     EXPECT_GT(diffusion.counts().residual, few.tolerance);
 }
-
-// A wall at x = wall, seen from both sides.
-struct Wall : Occluders {
-    float wall;
-    explicit Wall(float x) : wall(x) {}
-    float first_hit(const vec3& from, const vec3& direction, float far) const override {
-        const float t = (wall - from.x) / direction.x;
-        return t > 0.0f && t < far ? t : far;
-    }
-    bool any_within(const vec3& centre, float radius) const override { return std::abs(centre.x - wall) < radius; }
-};
 
 TEST(Diffusion, WallsStopLight) {
     Lit lit(make_medium(even_cube(1.0f, 0.9f, 0.0f, 16)));

@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "fixtures/estimate.h"
 #include "fixtures/media.h"
+#include "fixtures/wall.h"
 #include "radiance_cascades/radiance_cascades.h"
 #include "scattering/balance.h"
 
@@ -239,17 +240,6 @@ TEST(RadianceCascades, DirectionalSourcesShineWhereTheyAreTurned) {
     EXPECT_NEAR(turned.fluence[front] / even.fluence[front], 2.0f, 0.1f);
     EXPECT_NEAR(turned.fluence[back] / even.fluence[back], 0.0f, 0.1f);
 }
-
-// A wall at x = wall, seen from both sides.
-struct Wall : Occluders {
-    float wall;
-    explicit Wall(float x) : wall(x) {}
-    float first_hit(const vec3& from, const vec3& direction, float far) const override {
-        const float t = (wall - from.x) / direction.x;
-        return t > 0.0f && t < far ? t : far;
-    }
-    bool any_within(const vec3& centre, float radius) const override { return std::abs(centre.x - wall) < radius; }
-};
 
 TEST(RadianceCascades, WallsStopLight) {
     Lit lit(make_medium(glowing_ball(10, 1.0f)));

@@ -149,4 +149,19 @@ VirtualLightSettings few_lights() {
     return settings;
 }
 
+VirtualLightSettings sampled_by(const std::string& sampling, const std::string& kind) {
+    VirtualLightSettings settings = few_lights();
+    settings.sampling = sampling;
+    settings.kind = kind;
+    settings.path_extension = false;
+    return settings;
+}
+
+VirtualLightSettings of_photons(const std::string& kind, const std::string& sampling) {
+    VirtualLightSettings settings = sampled_by(sampling, kind);
+    settings.placement = "light_paths";
+    settings.flux = "own";
+    return settings;
+}
+
 }  // namespace brisance::testing

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "fixtures/estimate.h"
 #include "reference/path_tracer.h"
@@ -50,5 +51,9 @@ Medium smoke_ball(const dvec3& centre, float density, const Rgb& albedo, float g
 
 // Few lights and photons, for tests that compare with each other.
 VirtualLightSettings few_lights();
+// The same without path extension, gathered and of a kind as named.
+VirtualLightSettings sampled_by(const std::string& sampling, const std::string& kind);
+// Those that photons place, each with its own flux.
+VirtualLightSettings of_photons(const std::string& kind, const std::string& sampling = "power");
 
 }  // namespace brisance::testing

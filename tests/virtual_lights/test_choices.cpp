@@ -204,5 +204,66 @@ TEST(Settings, AtTheEndsOfTheirRangesAreBuilt) {
     EXPECT_TRUE(finite([](S& s) { s.n_min = s.n_max = 0.0; }));
 }
 
+TEST(Techniques, SayWhatDoesNotGoTogether) {
+    const Room room(coloured_room());
+    const auto refused = [&](VirtualLightSettings settings, auto change, const std::string& word) {
+        change(settings);
+        try {
+            room.lights(settings);
+            ADD_FAILURE() << word;
+        } catch (const Error& error) {
+            const std::string line = error.what();
+            EXPECT_EQ(error.code(), ExitCode::Usage) << line;
+            EXPECT_NE(line.find(word), std::string::npos) << line;
+            EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+        }
+    };
+    using S = VirtualLightSettings;
+    const S plain = of_photons("point"), rich = sampled_by("power", "sphere");
+    refused(
+        plain, [](S& s) { s.placement = "blue_noise"; },
+        "placement light_paths, rejection, metropolis, not blue_noise");
+    refused(
+        plain, [](S& s) { s.kind = "patch"; }, "flux own goes with kind sphere, point, diffuse_point");
+    refused(
+        plain, [](S& s) { s.kind = "patch"; }, "kind patch needs flux that covers surface: flux gathered");
+    refused(
+        plain, [](S& s) { s.sampling = "combined"; },
+        "sampling combined needs a kind of light that rays can hit: kind patch; kind point goes with sampling power, "
+        "light_tree, plain_power, uniform, resampled, lightcuts, stochastic_lightcuts, all");
+    refused(
+        rich, [](S& s) { s.compensation = BoundCompensation::Exact; },
+        "compensation exact needs a kind of light with a bound: kind point, diffuse_point; kind sphere goes with "
+        "compensation none");
+    refused(
+        rich, [](S& s) { s.compensation = BoundCompensation::ScreenSpace; },
+        "compensation screen_space needs a kind of light with a bound: kind point, diffuse_point; kind sphere goes "
+        "with compensation none");
+    refused(
+        plain,
+        [](S& s) {
+            s.compensation = BoundCompensation::ScreenSpace;
+            s.sampling = "resampled";
+            s.resampling_neighbours = 2;
+        },
+        "compensation screen_space needs resampling_neighbours=0; resampling_neighbours above 0 goes with "
+        "compensation none, exact");
+    refused(
+        plain, [](S& s) { s.placement = "bidirectional"; },
+        "flux own needs deposits that carry flux: placement light_paths, rejection, metropolis, not bidirectional");
+    refused(
+        plain, [](S& s) { s.sampling = "resampled_combined"; }, "sampling resampled_combined needs");
+    refused(
+        rich, [](S& s) { s.path_extension = true; }, "kind sphere goes with path_extension=false");
+    refused(
+        rich, [](S& s) { s.kind = "ball"; }, "\"ball\" is not known; there are patch, sphere, point, diffuse_point");
+    refused(
+        rich, [](S& s) { s.sphere_neighbours = 0; }, "sphere_neighbours");
+    refused(
+        rich, [](S& s) { s.sphere_samples = 0; }, "sphere_samples");
+    refused(
+        rich, [](S& s) { s.resampling_candidates = 0; }, "resampling_candidates");
+}
+
 }  // namespace
 }  // namespace brisance

@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "fixtures/estimate.h"
+#include "fixtures/luminances.h"
 #include "fixtures/sets.h"
 #include "render/render_frame.h"
 #include "surface_lighting/light_reuse.h"
@@ -56,12 +57,7 @@ using Pixels = std::vector<double>;  // luminance
 Pixels pixels_of(const Shot& shot, const Surroundings& surroundings) {
     Progress silent;
     const Medium nothing;
-    const RenderedFrame frame = render_medium(shot, nothing, silent, &surroundings);
-    const Layer& ss = frame.image.layer("SS");
-    Pixels out;
-    for (std::size_t i = 0; i < ss.pixels.size(); i += ss.channels.size())
-        out.push_back(luminance(Rgb(ss.pixels[i], ss.pixels[i + 1], ss.pixels[i + 2])));
-    return out;
+    return luminances(render_medium(shot, nothing, silent, &surroundings).image.layer("SS"));
 }
 
 // Paths end at once, so that all that is compared is how lights are sampled.

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/parallel.h"
+#include "fixtures/luminances.h"
 #include "fixtures/sets.h"
 #include "render/render_frame.h"
 #include "surface_lighting/screen_space_compensation.h"
@@ -126,12 +127,7 @@ Pixels pixels_of(Shot shot, BoundCompensation compensation) {
     shot.virtual_lights.compensation = compensation;
     Progress silent;
     const Medium nothing;
-    const RenderedFrame frame = render_medium(shot, nothing, silent, &surroundings);
-    const Layer& ss = frame.image.layer("SS");
-    Pixels out;
-    for (std::size_t i = 0; i < ss.pixels.size(); i += ss.channels.size())
-        out.push_back(luminance(Rgb(ss.pixels[i], ss.pixels[i + 1], ss.pixels[i + 2])));
-    return out;
+    return luminances(render_medium(shot, nothing, silent, &surroundings).image.layer("SS"));
 }
 
 double mean(const Pixels& pixels) {
