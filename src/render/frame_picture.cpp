@@ -163,7 +163,7 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
         shared.emplace(camera.settings().width, camera.settings().height, radius, rays_of_pixel());
     std::optional<LightReuse> reuse = light_reuse(camera, shared ? &*shared : nullptr);
     std::optional<ScreenSpaceCompensation> compensated = compensation(camera);
-    const SurfaceShader shader({input_.plan.needed, lights.field(), *lights.paths(), lights_.medium().lighting(),
+    SurfaceShader shader({input_.plan.needed, lights.field(), *lights.paths(), lights_.medium().lighting(),
                                 lights_.virtual_lights(), estimator, input_.plan.emitters_by_rays, settings_.parts,
                                 camera.settings().width, rays_of_pixel(), lengths_ ? &*lengths_ : nullptr,
                                 shared ? &*shared : nullptr, camera.pixel_angle(), reuse ? &*reuse : nullptr,

@@ -10,16 +10,15 @@ namespace brisance {
 
 namespace {
 
-constexpr Stream kTogether = stream_of("base lighting, samples together"),
+constexpr Stream kTargets = stream_of("base lighting, targets"),
+                 kTogether = stream_of("base lighting, samples together"),
                  kAlone = stream_of("base lighting, samples alone");
 
-// Fewer samples find as much by themselves at the same cost.
-constexpr std::size_t kFewSamples = 4;
 constexpr std::size_t kRaysTogether = 16;
 // Pixels on either side in the row that are asked whether something may be hidden.
 constexpr std::uint32_t kPixelsAside = 4;
 
-constexpr std::size_t kReceiversAtOnce = 32;
+constexpr std::size_t kReceiversAtOnce = 32, kNeighbourhoodsAtOnce = 4;
 
 // Samples sorted by their receiver.
 struct SamplesOfReceivers {
@@ -41,25 +40,6 @@ struct SamplesOfReceivers {
     }
 };
 
-// Draws of a visibility ratio, chosen in proportion to their weight.
-class WeightedDraws {
-public:
-    explicit WeightedDraws(const std::array<VisibilityRatio::Draw, VisibilityRatio::kDraws>& draws) : draws_(draws) {
-        float sum = 0.0f;
-        for (std::size_t k = 0; k < draws.size(); ++k)
-            passed_[k] = sum += std::max(draws[k].weight, 0.0f);
-    }
-    bool empty() const { return !(passed_.back() > 0.0f); }
-    const VisibilityRatio::Draw& at(float u) const {
-        const auto found = std::upper_bound(passed_.begin(), passed_.end() - 1, u * passed_.back());
-        return draws_[std::size_t(found - passed_.begin())];
-    }
-
-private:
-    const std::array<VisibilityRatio::Draw, VisibilityRatio::kDraws>& draws_;
-    std::array<float, VisibilityRatio::kDraws> passed_;
-};
-
 Rgb arriving(const SurfaceReceiver& receiver, int light) {
     return light < 2 ? receiver.fire[light] : receiver.smoke[light - 2];
 }
@@ -75,6 +55,10 @@ Rgb relative_to_white(const Bsdf& base, const SurfacePoint& at, const dvec3& tow
     if (!above || !(cosine > 0.0))
         return Rgb(0.0f);
     return base.evaluate(toward_viewer, toward_light) * (std::numbers::pi_v<float> / float(cosine));
+}
+
+bool may_look_together(std::span<const std::uint32_t> samples, std::span<const BasePoint> points) {
+    return std::ranges::all_of(samples, [&](auto i) { return points[i].surface; });
 }
 
 }  // namespace
@@ -96,9 +80,10 @@ struct BaseLighting::Together {
     }
 };
 
-BaseLighting::BaseLighting(const MediumLighting& medium, const Panes& panes, bool through_panes, int width)
-    : panes_(panes), through_panes_(through_panes), width_(static_cast<std::uint32_t>(width)) {
-    const VisibilityRatios fire = medium.fire_visibility(), smoke = medium.smoke_visibility();
+BaseLighting::BaseLighting(const Medium& medium, const MediumLighting& lighting, const Panes& panes,
+                           bool through_panes, int width)
+    : medium_(medium), panes_(panes), through_panes_(through_panes), width_(static_cast<std::uint32_t>(width)) {
+    const VisibilityRatios fire = lighting.fire_visibility(), smoke = lighting.smoke_visibility();
     ratios_ = {fire[0], fire[1], smoke[0], smoke[1]};
 }
 
@@ -109,14 +94,11 @@ Panes::Passage BaseLighting::passage(const SurfacePoint& surface, const vec3& li
 }
 
 BaseLighting::Seen BaseLighting::see_together(int light, const SurfaceReceiver& receiver,
-                                              std::span<const std::uint32_t> samples, std::span<const BasePoint> points,
-                                              Rng& rng, std::span<BaseLight> out) const {
-    std::array<VisibilityRatio::Draw, VisibilityRatio::kDraws> draws;
-    const LitPoint lit{dvec3(receiver.local), dvec3(receiver.normal), LitPoint::Kind::Surface};
-    if (!ratios_[light] || arriving(receiver, light) == Rgb(0.0f) || !ratios_[light]->draw(lit, rng, draws))
-        return Seen::NoLight;
-    const WeightedDraws weighted(draws);
-    if (weighted.empty())
+                                              const WeightedTargets& targets, std::span<const std::uint32_t> samples,
+                                              std::span<const BasePoint> points, Rng& rng,
+                                              std::span<BaseLight> out) const {
+    const Rgb there = arriving(receiver, light);
+    if (targets.empty() || there == Rgb(0.0f))
         return Seen::NoLight;
     const std::size_t rays = (kRaysTogether + samples.size() - 1) / samples.size(), all = rays * samples.size();
     const float shift = rng.next();
@@ -124,7 +106,7 @@ BaseLighting::Seen BaseLighting::see_together(int light, const SurfaceReceiver& 
     for (std::size_t i = 0; i < all; ++i) {
         const std::uint32_t sample = samples[i / rays];
         const BasePoint& p = points[sample];
-        const vec3 from = weighted.at((float(i) + shift) / float(all)).point;
+        const vec3& from = targets.at((float(i) + shift) / float(all));
         const Panes::Passage way = passage(*p.surface, from);
         const Rgb share = relative_to_white(Bsdf(p.surface->material, p.surface->frame, Lobes::Base), *p.surface,
                                             p.toward_viewer, glm::normalize(dvec3(from) - p.surface->position));
@@ -133,22 +115,32 @@ BaseLighting::Seen BaseLighting::see_together(int light, const SurfaceReceiver& 
         if (way.blocked)
             continue;
         ++arrived;
-        add(light, arriving(receiver, light) * share / float(rays), out[sample]);
+        add(light, there * share / float(rays), out[sample]);
     }
     return arrived == all ? Seen::All : (arrived == 0 ? Seen::Nothing : Seen::Part);
 }
 
-BaseLighting::Together BaseLighting::light_together(const SurfaceReceiver& receiver,
+BaseLighting::Together BaseLighting::light_together(const SurfaceReceiver& receiver, const Targets& targets,
                                                     std::span<const std::uint32_t> samples,
                                                     std::span<const BasePoint> points, std::span<BaseLight> out) const {
     Together found{{}, points[samples[0]].pixel, false};
-    if (samples.size() < kFewSamples || !std::ranges::all_of(samples, [&](auto i) { return points[i].surface; }))
+    if (!may_look_together(samples, points))
         return found;
     Rng rng(kTogether, found.pixel, points[samples[0]].number);
     for (int light = 0; light < kLights; ++light)
-        found.seen[light] = see_together(light, receiver, samples, points, rng, out);
+        found.seen[light] = see_together(light, receiver, targets[light], samples, points, rng, out);
     found.tried = true;
     return found;
+}
+
+// For the neighbourhood of a receiver that looks at them together.
+BaseLighting::Targets BaseLighting::targets_at(const SurfaceReceiver& receiver, const BasePoint& first) const {
+    Targets targets;
+    Rng rng(kTargets, first.pixel, first.number);
+    for (int light = 0; light < kLights; ++light)
+        if (ratios_[light])
+            targets[light] = draw_targets(*ratios_[light], receiver, rng);
+    return targets;
 }
 
 // Whether nothing is hidden in part here or beside, in the row of pixels.
@@ -209,10 +201,26 @@ BaseLight BaseLighting::light_alone(const BasePoint& point, const SurfaceReceive
 std::vector<BaseLight> BaseLighting::light(std::span<const BasePoint> points, const SharedReceivers& receivers) const {
     std::vector<BaseLight> out(points.size());
     const SamplesOfReceivers samples(receivers);
+    std::vector<std::uint32_t> pixel_of;
+    for (std::size_t r = 0; r < receivers.count(); ++r)
+        pixel_of.push_back(points[samples.of(r)[0]].pixel);
+    const Neighbourhoods neighbourhoods(medium_, receivers, pixel_of, width_);
     std::vector<Together> together(receivers.count());
     parallel_for(
-        together.size(), [&](std::size_t r) { together[r] = light_together(receivers[r], samples.of(r), points, out); },
-        kReceiversAtOnce);
+        neighbourhoods.count(),
+        [&](std::size_t n) {
+            const std::uint32_t first = neighbourhoods.first(n);
+            Targets targets;
+            bool drawn = false;
+            for (std::uint32_t r = first; r < receivers.count() && neighbourhoods.of(r) == n; ++r) {
+                if (!drawn && may_look_together(samples.of(r), points)) {
+                    targets = targets_at(receivers[r], points[samples.of(r)[0]]);
+                    drawn = true;
+                }
+                together[r] = light_together(receivers[r], targets, samples.of(r), points, out);
+            }
+        },
+        kNeighbourhoodsAtOnce);
     parallel_for(
         together.size(),
         [&](std::size_t r) {

@@ -2,7 +2,7 @@
 //
 // The lighting grids sum all lights at receivers that samples share, without occlusion by surfaces. What part of it
 // arrives is measured by shadow rays toward points of the medium (visibility_ratio.h). The samples of a receiver first
-// test one set of such points together, a ray for each sample. Where every ray arrives, or none does, and it is so for
+// test one set of such points together (shared_targets.h), a ray for each sample. Where every ray arrives, or none does, and it is so for
 // its neighbours in the row of pixels, that is the answer. Elsewhere may be a penumbra: every sample tests points of
 // its own.
 //
@@ -18,6 +18,7 @@
 #include "medium_lighting/medium_lighting.h"
 #include "surface_lighting/panes.h"
 #include "surface_lighting/shared_receivers.h"
+#include "surface_lighting/shared_targets.h"
 
 namespace brisance {
 
@@ -38,7 +39,8 @@ struct BaseLight {
 class BaseLighting {
 public:
     // Keeps references. `through_panes`: light that passes panes is wanted. `width`: of the picture, in pixels.
-    BaseLighting(const MediumLighting& medium, const Panes& panes, bool through_panes, int width);
+    BaseLighting(const Medium& medium, const MediumLighting& lighting, const Panes& panes, bool through_panes,
+                 int width);
 
     // One for each point, in the order in which they were added to the receivers, which are lit. Independent of other
     // rows of the picture.
@@ -53,15 +55,19 @@ private:
         Rgb clear{0.0f}, through_panes{0.0f};  // of a white Lambert surface's reflected light
     };
 
-    Together light_together(const SurfaceReceiver& receiver, std::span<const std::uint32_t> samples,
+    using Targets = std::array<WeightedTargets, kLights>;
+    Targets targets_at(const SurfaceReceiver& receiver, const BasePoint& first) const;
+    Together light_together(const SurfaceReceiver& receiver, const Targets& targets, std::span<const std::uint32_t> samples,
                             std::span<const BasePoint> points, std::span<BaseLight> out) const;
     bool settled(std::span<const Together> all, std::size_t receiver) const;
-    Seen see_together(int light, const SurfaceReceiver& receiver, std::span<const std::uint32_t> samples,
-                      std::span<const BasePoint> points, Rng& rng, std::span<BaseLight> out) const;
+    Seen see_together(int light, const SurfaceReceiver& receiver, const WeightedTargets& targets,
+                      std::span<const std::uint32_t> samples, std::span<const BasePoint> points, Rng& rng,
+                      std::span<BaseLight> out) const;
     BaseLight light_alone(const BasePoint& point, const SurfaceReceiver& receiver) const;
     Shares measured(const VisibilityRatio& ratio, const BasePoint& point, Rng& rng) const;
     Panes::Passage passage(const SurfacePoint& surface, const vec3& light) const;
 
+    const Medium& medium_;
     const Panes& panes_;
     bool through_panes_;
     std::uint32_t width_;

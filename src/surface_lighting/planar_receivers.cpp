@@ -6,14 +6,16 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
 
 #include "medium/lattice/local_bounds.h"
 
 namespace brisance {
 
-namespace {
+namespace lit_planes {
 
 // Side of the smallest and of the largest cells, powers of two of a voxel.
 constexpr int kFinest = -1, kCoarsest = 8;
@@ -123,49 +125,59 @@ std::uint64_t point_key(std::int32_t x, std::int32_t y) {
     return std::uint64_t(std::uint32_t(x)) << 32 | std::uint32_t(y);
 }
 
-// The lattice of one plane.
+// The lattice of one plane. Receivers are lit in rounds: in each, cells ask for the points they lack, and then either
+// interpolate or are divided.
 class LitPlane {
 public:
-    LitPlane(const Medium& medium, const Plane& plane, std::vector<SurfaceReceiver>& receivers,
-             const GatherReceivers& gather)
-        : bounds_(local_bounds(medium)),
-          voxel_(medium.spacing),
-          frame_(plane, medium),
-          receivers_(receivers),
-          gather_(gather) {}
+    LitPlane(const Plane& plane, const Medium& medium)
+        : bounds_(local_bounds(medium)), voxel_(medium.spacing), frame_(plane, medium) {}
 
-    // Returns those that are to be gathered themselves.
-    std::vector<std::uint32_t> light(const std::vector<std::uint32_t>& on_plane) {
-        std::vector<PlaneCell> cells = cells_of(on_plane);
-        while (!cells.empty()) {
-            std::vector<PlaneCell> tried, next;
-            for (PlaneCell& cell : cells)
-                if (cell.receivers.size() < kWorthACell)
-                    alone_.insert(alone_.end(), cell.receivers.begin(), cell.receivers.end());
-                else
-                    (too_large(cell) ? next : tried).push_back(std::move(cell));
-            std::vector<PlaneCell> coarse = std::move(next);
-            next.clear();
-            gather_points(tried);
-            for (PlaneCell& cell : tried)
-                if (predicted(cell))
-                    interpolate(cell);
-                else
-                    coarse.push_back(std::move(cell));
-            for (const PlaneCell& cell : coarse)
-                divide(cell, next);
-            cells = std::move(next);
-        }
-        return std::move(alone_);
+    void begin(const std::vector<SurfaceReceiver>& receivers, const std::vector<std::uint32_t>& on_plane) {
+        cells_ = cells_of(receivers, on_plane);
     }
+    bool done() const { return cells_.empty(); }
+
+    // Appends the points of the lattice that the cells of this round lack.
+    void ask(const std::vector<SurfaceReceiver>& receivers, std::vector<SurfaceReceiver>& points) {
+        while (divide_too_large(receivers)) {
+        }
+        asked_.clear();
+        for (const PlaneCell& cell : cells_)
+            for (int j = 0; j < 3; ++j)
+                for (int i = 0; i < 3; ++i)
+                    if (points_.try_emplace(key(cell, i, j)).second) {
+                        const vec2 p = (vec2(cell.x, cell.y) + 0.5f * vec2(i, j)) * cell.side();
+                        points.push_back({frame_.local(p), frame_.normal()});
+                        asked_.push_back(key(cell, i, j));
+                    }
+    }
+
+    // `lit`: begins with the points that the plane asked for; returns the rest.
+    std::span<const SurfaceReceiver> answer(std::span<const SurfaceReceiver> lit,
+                                            std::vector<SurfaceReceiver>& receivers) {
+        for (std::size_t k = 0; k < asked_.size(); ++k)
+            points_[asked_[k]] = {lit[k].fire, lit[k].smoke};
+        std::vector<PlaneCell> next;
+        for (const PlaneCell& cell : cells_)
+            if (predicted(cell))
+                interpolate(cell, receivers);
+            else
+                divide(cell, receivers, next);
+        cells_ = std::move(next);
+        return lit.subspan(asked_.size());
+    }
+
+    // Those that are to be gathered themselves.
+    std::vector<std::uint32_t> take_alone() { return std::exchange(alone_, {}); }
 
 private:
     using Corners = std::array<std::array<Light, 3>, 3>;  // [y][x]
 
-    std::vector<PlaneCell> cells_of(const std::vector<std::uint32_t>& on_plane) const {
+    std::vector<PlaneCell> cells_of(const std::vector<SurfaceReceiver>& receivers,
+                                    const std::vector<std::uint32_t>& on_plane) const {
         std::map<std::pair<std::int32_t, std::int32_t>, std::vector<std::uint32_t>> sorted;
         for (const std::uint32_t r : on_plane) {
-            const vec2 p = glm::floor(frame_.on_plane(receivers_[r].local) / std::ldexp(1.0f, kCoarsest));
+            const vec2 p = glm::floor(frame_.on_plane(receivers[r].local) / std::ldexp(1.0f, kCoarsest));
             sorted[{std::int32_t(p.x), std::int32_t(p.y)}].push_back(r);
         }
         std::vector<PlaneCell> cells;
@@ -182,25 +194,26 @@ private:
         return cell.side() * voxel_ > std::max(kSideOfDistance * bounds_.distance(middle), kSideInVoxels * voxel_);
     }
 
+    // Sorts out cells with too few receivers and divides those that are too large, once. Returns whether it divided any.
+    bool divide_too_large(const std::vector<SurfaceReceiver>& receivers) {
+        std::vector<PlaneCell> kept;
+        bool divided = false;
+        for (PlaneCell& cell : cells_)
+            if (cell.receivers.size() < kWorthACell) {
+                alone_.insert(alone_.end(), cell.receivers.begin(), cell.receivers.end());
+            } else if (too_large(cell)) {
+                divide(cell, receivers, kept);
+                divided = true;
+            } else {
+                kept.push_back(std::move(cell));
+            }
+        cells_ = std::move(kept);
+        return divided;
+    }
+
     std::uint64_t key(const PlaneCell& cell, int i, int j) const {
         const int half = 1 << (cell.level - kFinest);
         return point_key((2 * cell.x + i) * half, (2 * cell.y + j) * half);
-    }
-
-    void gather_points(const std::vector<PlaneCell>& cells) {
-        std::vector<SurfaceReceiver> at;
-        std::vector<std::uint64_t> keys;
-        for (const PlaneCell& cell : cells)
-            for (int j = 0; j < 3; ++j)
-                for (int i = 0; i < 3; ++i)
-                    if (points_.try_emplace(key(cell, i, j)).second) {
-                        const vec2 p = (vec2(cell.x, cell.y) + 0.5f * vec2(i, j)) * cell.side();
-                        at.push_back({frame_.local(p), frame_.normal()});
-                        keys.push_back(key(cell, i, j));
-                    }
-        gather_(at);
-        for (std::size_t k = 0; k < at.size(); ++k)
-            points_[keys[k]] = {at[k].fire, at[k].smoke};
     }
 
     Corners corners(const PlaneCell& cell) const {
@@ -223,18 +236,18 @@ private:
         return true;
     }
 
-    void interpolate(const PlaneCell& cell) {
+    void interpolate(const PlaneCell& cell, std::vector<SurfaceReceiver>& receivers) const {
         const Corners c = corners(cell);
         for (const std::uint32_t r : cell.receivers) {
-            const vec2 p = glm::clamp(frame_.on_plane(receivers_[r].local) / cell.side() - vec2(cell.x, cell.y),
+            const vec2 p = glm::clamp(frame_.on_plane(receivers[r].local) / cell.side() - vec2(cell.x, cell.y),
                                       vec2(0.0f), vec2(1.0f));
             const Light light = parabola({parabola(c[0], p.x), parabola(c[1], p.x), parabola(c[2], p.x)}, p.y);
-            receivers_[r].fire = light.fire;
-            receivers_[r].smoke = light.smoke;
+            receivers[r].fire = light.fire;
+            receivers[r].smoke = light.smoke;
         }
     }
 
-    void divide(const PlaneCell& cell, std::vector<PlaneCell>& out) {
+    void divide(const PlaneCell& cell, const std::vector<SurfaceReceiver>& receivers, std::vector<PlaneCell>& out) {
         if (cell.level == kFinest) {
             alone_.insert(alone_.end(), cell.receivers.begin(), cell.receivers.end());
             return;
@@ -244,7 +257,7 @@ private:
             parts[k] = {cell.level - 1, 2 * cell.x + (k & 1), 2 * cell.y + (k >> 1), {}};
         const float side = parts[0].side();
         for (const std::uint32_t r : cell.receivers) {
-            const vec2 p = frame_.on_plane(receivers_[r].local) / side;
+            const vec2 p = frame_.on_plane(receivers[r].local) / side;
             parts[(p.x >= float(parts[3].x) ? 1 : 0) + (p.y >= float(parts[3].y) ? 2 : 0)].receivers.push_back(r);
         }
         for (PlaneCell& part : parts)
@@ -255,9 +268,9 @@ private:
     LocalBounds bounds_;
     float voxel_;
     PlaneFrame frame_;
-    std::vector<SurfaceReceiver>& receivers_;
-    const GatherReceivers& gather_;
     std::unordered_map<std::uint64_t, Light> points_;
+    std::vector<PlaneCell> cells_;       // of this round
+    std::vector<std::uint64_t> asked_;  // points
     std::vector<std::uint32_t> alone_;
 };
 
@@ -273,22 +286,58 @@ std::optional<Plane> plane_of(const SurfaceReceiver& r, float voxel) {
     return Plane{ivec3(glm::round(r.normal / kNormalStep)), std::int64_t(std::floor(offset + kOffsetShift))};
 }
 
-}  // namespace
+struct Planes {
+    std::map<Plane, LitPlane> lit;
+};
 
-void light_planar_receivers(const Medium& medium, std::vector<SurfaceReceiver>& receivers,
-                            const GatherReceivers& gather) {
-    std::map<Plane, std::vector<std::uint32_t>> planes;
+}  // namespace lit_planes
+
+using namespace lit_planes;
+
+PlanarLight::PlanarLight(const Medium& medium) : medium_(medium), planes_(std::make_unique<Planes>()) {}
+PlanarLight::~PlanarLight() = default;
+
+// Returns those that are to be gathered themselves.
+std::vector<std::uint32_t> PlanarLight::interpolate(std::vector<SurfaceReceiver>& receivers,
+                                                    const GatherReceivers& gather) {
+    std::map<Plane, std::vector<std::uint32_t>> seen;
     std::vector<std::uint32_t> alone;
     for (std::uint32_t i = 0; i < receivers.size(); ++i)
-        if (const std::optional<Plane> plane = plane_of(receivers[i], medium.spacing))
-            planes[*plane].push_back(i);
+        if (const std::optional<Plane> plane = plane_of(receivers[i], medium_.spacing))
+            seen[*plane].push_back(i);
         else
             alone.push_back(i);
-    for (const auto& [plane, on_plane] : planes) {
-        const std::vector<std::uint32_t> rest =
-            on_plane.size() < kWorthACell ? on_plane : LitPlane(medium, plane, receivers, gather).light(on_plane);
+    std::erase_if(planes_->lit, [&](const auto& known) {
+        const auto now = seen.find(known.first);
+        return now == seen.end() || now->second.size() < kWorthACell;
+    });
+    std::vector<LitPlane*> busy;
+    for (const auto& [plane, on_plane] : seen)
+        if (on_plane.size() < kWorthACell) {
+            alone.insert(alone.end(), on_plane.begin(), on_plane.end());
+        } else {
+            busy.push_back(&planes_->lit.try_emplace(plane, plane, medium_).first->second);
+            busy.back()->begin(receivers, on_plane);
+        }
+    while (!busy.empty()) {
+        std::vector<SurfaceReceiver> points;
+        for (LitPlane* plane : busy)
+            plane->ask(receivers, points);
+        gather(points);
+        std::span<const SurfaceReceiver> lit = points;
+        for (LitPlane* plane : busy)
+            lit = plane->answer(lit, receivers);
+        std::erase_if(busy, [](const LitPlane* plane) { return plane->done(); });
+    }
+    for (auto& [plane, lit] : planes_->lit) {
+        const std::vector<std::uint32_t> rest = lit.take_alone();
         alone.insert(alone.end(), rest.begin(), rest.end());
     }
+    return alone;
+}
+
+void PlanarLight::light(std::vector<SurfaceReceiver>& receivers, const GatherReceivers& gather) {
+    const std::vector<std::uint32_t> alone = interpolate(receivers, gather);
     std::vector<SurfaceReceiver> at;
     at.reserve(alone.size());
     for (const std::uint32_t r : alone)

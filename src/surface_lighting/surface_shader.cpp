@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "core/parallel.h"
-#include "surface_lighting/planar_receivers.h"
 #include "surface_lighting/shared_receivers.h"
 
 namespace brisance {
@@ -64,6 +63,7 @@ SurfaceShader::SurfaceShader(const SurfaceLightingInput& input)
       medium_(input.field, input.paths.direct(), input.parts, input.in_scattering, input.emitters_by_rays),
       panes_(surroundings_),
       mirrors_(input.paths.direct(), medium_, input.needed.contains(Cell::SS)),
+      planar_(input.paths.direct().field().medium()),
       smoke_of_paths_({input.field, input.paths.direct(), kPartsForPaths, nullptr, input.emitters_by_rays}),
       walks_(share_of_walks(input)) {}
 
@@ -130,10 +130,11 @@ std::vector<SurfaceShader::ShadedPoint> SurfaceShader::shaded_points(const std::
 
 // What the bases of all points reflect of the medium's light.
 std::vector<BaseLight> SurfaceShader::light_bases(const std::vector<SurfaceSample>& samples,
-                                                  const std::vector<ShadedPoint>& points) const {
+                                                  const std::vector<ShadedPoint>& points) {
     if (!input_.medium_lighting)
         return std::vector<BaseLight>(samples.size());
-    SharedReceivers receivers(input_.paths.direct().field().medium());
+    const Medium& medium = input_.paths.direct().field().medium();
+    SharedReceivers receivers(medium);
     std::vector<BasePoint> bases;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const BehindMirrors& seen = points[i].seen;
@@ -141,9 +142,10 @@ std::vector<BaseLight> SurfaceShader::light_bases(const std::vector<SurfaceSampl
         const bool lit = !seen.lost && has_base(seen.point.material);
         bases.push_back({lit ? &seen.point : nullptr, -seen.arriving, samples[i].pixel, samples[i].number});
     }
-    light_planar_receivers(input_.paths.direct().field().medium(), receivers.receivers(),
-                           [&](std::vector<SurfaceReceiver>& at) { input_.medium_lighting->at_surfaces(at); });
-    return BaseLighting(*input_.medium_lighting, panes_, samples_through_panes(), input_.width).light(bases, receivers);
+    planar_.light(receivers.receivers(),
+                  [&](std::vector<SurfaceReceiver>& at) { input_.medium_lighting->at_surfaces(at); });
+    return BaseLighting(medium, *input_.medium_lighting, panes_, samples_through_panes(), input_.width)
+        .light(bases, receivers);
 }
 
 // All lobes but the base, and how rays and lights share them.
@@ -302,7 +304,7 @@ void SurfaceShader::shade_point(const SurfaceSample& sample, const BaseLight& ba
     out.at(Cell::SS) += path.cells.at(Cell::SS);
 }
 
-void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) const {
+void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) {
     std::vector<ShadedPoint> points = shaded_points(samples, light);
     const std::vector<BaseLight> bases = light_bases(samples, points);
     parallel_for(

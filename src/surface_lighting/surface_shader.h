@@ -25,6 +25,7 @@
 #include "surface_lighting/mirrors.h"
 #include "surface_lighting/panes.h"
 #include "surface_lighting/path_lengths.h"
+#include "surface_lighting/planar_receivers.h"
 #include "surface_lighting/screen_space_compensation.h"
 #include "surface_lighting/shared_bounce.h"
 #include "virtual_lights/virtual_lights.h"
@@ -55,7 +56,8 @@ class SurfaceShader {
 public:
     explicit SurfaceShader(const SurfaceLightingInput& input);
 
-    void shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) const;
+    // What it finds about planes is kept for the next call.
+    void shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light);
 
 private:
     struct ShadedPoint;
@@ -63,7 +65,7 @@ private:
     std::vector<ShadedPoint> shaded_points(const std::vector<SurfaceSample>& samples,
                                            std::vector<CellSum>& light) const;
     std::vector<BaseLight> light_bases(const std::vector<SurfaceSample>& samples,
-                                       const std::vector<ShadedPoint>& points) const;
+                                       const std::vector<ShadedPoint>& points);
     void shade_point(const SurfaceSample& sample, const BaseLight& base, ShadedPoint& at, CellSum& light) const;
     Rgb from_virtual_lights(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng, ShadedPoint& at) const;
     SharedBounce::Sample shared_sample(const SurfaceSample& sample, const Bsdf& lobes, Lobes which, const Rgb& colour,
@@ -92,6 +94,7 @@ private:
     MediumAlongRay medium_;
     Panes panes_;
     Mirrors mirrors_;
+    PlanarLight planar_;
     LitSmokeAlongRay smoke_of_paths_;
     float walks_;  // of the paths between surfaces, the share that walks through the smoke
 };

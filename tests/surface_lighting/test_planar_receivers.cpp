@@ -65,7 +65,7 @@ TEST(PlanarReceivers, AFloorIsLitByFewPointsAsByAll) {
     const Medium medium = small_ball();
     const PointLight light{{0.3f, -0.2f, 0.1f}};
     std::vector<SurfaceReceiver> floor = square(300, 0.03f, {-4.5f, -4.5f, -2.5f}, {1, 0, 0}, {0, 1, 0});
-    light_planar_receivers(medium, floor, light.gatherer());
+    PlanarLight(medium).light(floor, light.gatherer());
     EXPECT_LT(worst_error(light, floor), 0.02);
     EXPECT_LT(light.gathered, floor.size() / 20);
 }
@@ -76,7 +76,7 @@ TEST(PlanarReceivers, AWallAcrossTheAxesToo) {
     const vec3 u = glm::normalize(vec3(1.0f, 0.7f, -0.3f)), v = glm::normalize(glm::cross(u, vec3(0.2f, 1.0f, 0.4f)));
     const vec3 normal = glm::normalize(glm::cross(u, v));
     std::vector<SurfaceReceiver> wall = square(300, 0.02f, -3.0f * (u + v) - 2.0f * normal, u, v);
-    light_planar_receivers(medium, wall, light.gatherer());
+    PlanarLight(medium).light(wall, light.gatherer());
     EXPECT_LT(worst_error(light, wall), 0.02);
     EXPECT_LT(light.gathered, wall.size() / 20);
 }
@@ -89,7 +89,7 @@ TEST(PlanarReceivers, HaveNoSeams) {
     for (int row = 0; row < 40; ++row)
         for (int i = 0; i < 2000; ++i)
             line.push_back({{-3.0f + 0.003f * float(i), 0.01f * float(row), -2.0f}, {0, 0, 1}});
-    light_planar_receivers(medium, line, light.gatherer());
+    PlanarLight(medium).light(line, light.gatherer());
     for (std::size_t i = 1; i < 2000; ++i)
         EXPECT_NEAR(line[i].fire[0].x / light.on(line[i]).x, line[i - 1].fire[0].x / light.on(line[i - 1]).x, 0.005)
             << line[i].local.x;
@@ -105,7 +105,7 @@ TEST(PlanarReceivers, OnABallAreGatheredThemselves) {
         const vec3 normal(r * std::cos(azimuth), r * std::sin(azimuth), z);
         dome.push_back({normal, normal});
     }
-    light_planar_receivers(medium, dome, light.gatherer());
+    PlanarLight(medium).light(dome, light.gatherer());
     EXPECT_EQ(worst_error(light, dome), 0.0);
 }
 
@@ -114,7 +114,7 @@ TEST(PlanarReceivers, KeepAnEdgeOfTheLight) {
     const Medium medium = small_ball();
     const PointLight light{{0.0f, 0.0f, 0.5f}, 0.777f};
     std::vector<SurfaceReceiver> floor = square(400, 0.01f, {-2.0f, -2.0f, -1.5f}, {1, 0, 0}, {0, 1, 0});
-    light_planar_receivers(medium, floor, light.gatherer());
+    PlanarLight(medium).light(floor, light.gatherer());
     for (const SurfaceReceiver& r : floor) {
         if (std::abs(r.local.x - light.edge) < 0.125f)
             continue;
@@ -133,8 +133,8 @@ TEST(PlanarReceivers, AreTheSameWhereverTheLocalOriginLies) {
     std::vector<SurfaceReceiver> moved_floor = floor;
     for (SurfaceReceiver& r : moved_floor)
         r.local -= offset;
-    light_planar_receivers(medium, floor, light.gatherer());
-    light_planar_receivers(moved, moved_floor, moved_light.gatherer());
+    PlanarLight(medium).light(floor, light.gatherer());
+    PlanarLight(moved).light(moved_floor, moved_light.gatherer());
     for (std::size_t i = 0; i < floor.size(); ++i)
         EXPECT_NEAR(moved_floor[i].fire[0].x, floor[i].fire[0].x, 1e-4f * floor[i].fire[0].x);
 }
@@ -144,7 +144,7 @@ TEST(PlanarReceivers, FarAwayOrWithoutAPlaceAreGatheredThemselves) {
     const PointLight light{{0.0f, 0.0f, 0.5f}};
     std::vector<SurfaceReceiver> odd(12, {{1e30f, 0.0f, 0.0f}, {0, 0, 1}});
     odd.insert(odd.end(), 12, {{std::numeric_limits<float>::quiet_NaN(), 0.0f, 0.0f}, {0, 0, 1}});
-    light_planar_receivers(medium, odd, light.gatherer());
+    PlanarLight(medium).light(odd, light.gatherer());
     EXPECT_EQ(light.gathered, odd.size());
 }
 
@@ -152,7 +152,7 @@ TEST(PlanarReceivers, NoneCostNothing) {
     const Medium medium = small_ball();
     std::vector<SurfaceReceiver> none;
     const PointLight light{{0.0f, 0.0f, 0.5f}};
-    light_planar_receivers(medium, none, light.gatherer());
+    PlanarLight(medium).light(none, light.gatherer());
     EXPECT_EQ(light.gathered, 0u);
 }
 

@@ -1,0 +1,52 @@
+// Points of the medium toward which neighbouring receivers test together whether surfaces hide it.
+//
+// To sample such points, in proportion to the light that each sends (visibility_ratio.h), costs more than the shadow
+// rays toward them. Where they are asked only whether anything is hidden, receivers that lie close together on one side
+// of a surface share them: the light that they see comes from the same places.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "medium/lattice/local_bounds.h"
+#include "medium_lighting/exterior/visibility_ratio.h"
+#include "surface_lighting/shared_receivers.h"
+
+namespace brisance {
+
+// Points drawn for a place, to be chosen in proportion to the light from them.
+class WeightedTargets {
+public:
+    void add(std::span<const VisibilityRatio::Draw> draws);
+    bool empty() const { return !(sum_ > 0.0f); }
+    const vec3& at(float u) const;  // u in [0, 1); not empty
+
+private:
+    std::vector<vec3> points_;
+    std::vector<float> passed_;  // running sum of weights
+    float sum_ = 0.0f;
+};
+
+// Receivers that follow each other in a row of the picture, close together and facing alike.
+class Neighbourhoods {
+public:
+    // `pixel_of`: of each receiver, ascending. `width`: of the picture, in pixels. Neighbourhoods end at multiples of
+    // kPixels in the row, so that a row's do not depend on where the receivers begin.
+    Neighbourhoods(const Medium& medium, const SharedReceivers& receivers, std::span<const std::uint32_t> pixel_of,
+                   std::uint32_t width);
+
+    static constexpr std::uint32_t kPixels = 32;
+    std::size_t count() const { return first_.size(); }
+    std::uint32_t first(std::size_t neighbourhood) const { return first_[neighbourhood]; }  // receiver
+    std::uint32_t of(std::size_t receiver) const { return of_[receiver]; }
+
+private:
+    std::vector<std::uint32_t> first_, of_;
+};
+
+// Draws points for a receiver. Empty where nothing can be sampled.
+WeightedTargets draw_targets(const VisibilityRatio& ratio, const SurfaceReceiver& receiver, Rng& rng);
+
+}  // namespace brisance
