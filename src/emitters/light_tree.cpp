@@ -237,9 +237,12 @@ double LightTree::share_of_left(const Node& node, const LitPoint& point) const {
 }
 
 std::optional<LightTree::Choice> LightTree::choose(const LitPoint& point, double u) const {
-    if (nodes_.empty())
-        return std::nullopt;
-    const auto found = descend(nodes_, u, [&](const Node& n) { return share_of_left(n, point); });
+    return nodes_.empty() ? std::nullopt : choose_from(0, point, u);
+}
+
+std::optional<LightTree::Choice> LightTree::choose_from(std::uint32_t node, const LitPoint& point, double u) const {
+    const auto found = descend(
+        nodes_, u, [&](const Node& n) { return share_of_left(n, point); }, node);
     if (!found || !(nodes_[found->leaf].lights.importance(point) > 0.0))
         return std::nullopt;
     return Choice{nodes_[found->leaf].right, found->probability};

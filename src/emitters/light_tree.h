@@ -71,6 +71,8 @@ public:
     };
     // Chooses by a number in [0, 1). None where no light can reach the point.
     std::optional<Choice> choose(const LitPoint& point, double u) const;
+    // The same among those below a node.
+    std::optional<Choice> choose_from(std::uint32_t node, const LitPoint& point, double u) const;
     // The probability with which choose() picks that light.
     double probability(const LitPoint& point, std::size_t light) const;
 

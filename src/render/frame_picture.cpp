@@ -33,7 +33,7 @@ PictureSettings picture_settings(const DrawInput& input, const ManyLights& light
     if (camera.samples_per_axis == 0) {
         const AutomaticSamples of_medium = automatic_samples(input.camera, lights.medium().field());
         const int first = looks_twice(input, moments) ? of_medium.few : of_medium.enough;
-        settings.samples_per_axis = input.plan.surfaces ? std::max(of_medium.enough, kSurfaceSamples) : first;
+        settings.samples_per_axis = input.plan.surfaces ? std::max(first, kSurfaceSamples) : first;
         settings.medium_samples_per_axis = first;
         settings.finest_medium_samples_per_axis = of_medium.enough;
         settings.tolerance = kShareOfSampling * static_cast<float>(input.shot.lighting.error);

@@ -12,13 +12,13 @@ namespace {
 
 constexpr Stream kTargets = stream_of("base lighting, targets"),
                  kTogether = stream_of("base lighting, samples together"),
-                 kAlone = stream_of("base lighting, samples alone");
+                 kAlone = stream_of("base lighting, receivers alone");
 
 constexpr std::size_t kRaysTogether = 16;
 // Pixels on either side in the row that are asked whether something may be hidden.
 constexpr std::uint32_t kPixelsAside = 4;
 
-constexpr std::size_t kReceiversAtOnce = 32, kNeighbourhoodsAtOnce = 4;
+constexpr std::size_t kNeighbourhoodsAtOnce = 4;
 
 // Samples sorted by their receiver.
 struct SamplesOfReceivers {
@@ -61,6 +61,12 @@ bool may_look_together(std::span<const std::uint32_t> samples, std::span<const B
     return std::ranges::all_of(samples, [&](auto i) { return points[i].surface; });
 }
 
+// The draws of a receiver that measures by itself what it sees, for each light.
+constexpr std::size_t kDrawsOfSample = 4;
+std::size_t batches_alone(std::size_t samples) {
+    return (samples * kDrawsOfSample + VisibilityRatio::kDraws - 1) / VisibilityRatio::kDraws;
+}
+
 }  // namespace
 
 // What the samples of a receiver found together.
@@ -80,6 +86,36 @@ struct BaseLighting::Together {
     }
 };
 
+// What the receivers of a neighbourhood draw from, made when it is first asked for.
+class BaseLighting::Fronts {
+public:
+    // Keeps references. `points`: that will be drawn, for each light.
+    Fronts(const BaseLighting& lighting, const SurfaceReceiver& first, std::size_t points)
+        : lighting_(lighting), first_(first), points_(points) {}
+
+    const LightFront& of(int light) {
+        if (!fronts_[light])
+            fronts_[light].emplace(lighting_.ratios_[light]->around(
+                {dvec3(first_.local), dvec3(first_.normal), LitPoint::Kind::Surface}, points_));
+        return *fronts_[light];
+    }
+    // `at`: of the receiver that asks; the first one to do so decides.
+    const WeightedTargets& targets(int light, const BasePoint& at) {
+        if (!targets_[light]) {
+            Rng rng(kTargets, at.pixel, at.number * kLights + std::uint64_t(light));
+            targets_[light] = draw_targets(*lighting_.ratios_[light], of(light), first_, rng);
+        }
+        return *targets_[light];
+    }
+
+private:
+    const BaseLighting& lighting_;
+    const SurfaceReceiver& first_;
+    std::size_t points_;
+    std::array<std::optional<LightFront>, kLights> fronts_;
+    std::array<std::optional<WeightedTargets>, kLights> targets_;
+};
+
 BaseLighting::BaseLighting(const Medium& medium, const MediumLighting& lighting, const Panes& panes,
                            bool through_panes, int width)
     : medium_(medium), panes_(panes), through_panes_(through_panes), width_(static_cast<std::uint32_t>(width)) {
@@ -97,9 +133,9 @@ BaseLighting::Seen BaseLighting::see_together(int light, const SurfaceReceiver& 
                                               const WeightedTargets& targets, std::span<const std::uint32_t> samples,
                                               std::span<const BasePoint> points, Rng& rng,
                                               std::span<BaseLight> out) const {
-    const Rgb there = arriving(receiver, light);
-    if (targets.empty() || there == Rgb(0.0f))
+    if (targets.empty())
         return Seen::NoLight;
+    const Rgb there = arriving(receiver, light);
     const std::size_t rays = (kRaysTogether + samples.size() - 1) / samples.size(), all = rays * samples.size();
     const float shift = rng.next();
     std::size_t arrived = 0;
@@ -120,7 +156,7 @@ BaseLighting::Seen BaseLighting::see_together(int light, const SurfaceReceiver& 
     return arrived == all ? Seen::All : (arrived == 0 ? Seen::Nothing : Seen::Part);
 }
 
-BaseLighting::Together BaseLighting::light_together(const SurfaceReceiver& receiver, const Targets& targets,
+BaseLighting::Together BaseLighting::light_together(const SurfaceReceiver& receiver, Fronts& around,
                                                     std::span<const std::uint32_t> samples,
                                                     std::span<const BasePoint> points, std::span<BaseLight> out) const {
     Together found{{}, points[samples[0]].pixel, false};
@@ -128,19 +164,11 @@ BaseLighting::Together BaseLighting::light_together(const SurfaceReceiver& recei
         return found;
     Rng rng(kTogether, found.pixel, points[samples[0]].number);
     for (int light = 0; light < kLights; ++light)
-        found.seen[light] = see_together(light, receiver, targets[light], samples, points, rng, out);
+        if (ratios_[light] && arriving(receiver, light) != Rgb(0.0f))
+            found.seen[light] =
+                see_together(light, receiver, around.targets(light, points[samples[0]]), samples, points, rng, out);
     found.tried = true;
     return found;
-}
-
-// For the neighbourhood of a receiver that looks at them together.
-BaseLighting::Targets BaseLighting::targets_at(const SurfaceReceiver& receiver, const BasePoint& first) const {
-    Targets targets;
-    Rng rng(kTargets, first.pixel, first.number);
-    for (int light = 0; light < kLights; ++light)
-        if (ratios_[light])
-            targets[light] = draw_targets(*ratios_[light], receiver, rng);
-    return targets;
 }
 
 // Whether nothing is hidden in part here or beside, in the row of pixels.
@@ -157,45 +185,56 @@ bool BaseLighting::settled(std::span<const Together> all, std::size_t r) const {
     return sure;
 }
 
-BaseLighting::Shares BaseLighting::measured(const VisibilityRatio& ratio, const BasePoint& p, Rng& rng) const {
+// What arrives past other surfaces at the samples of a receiver, each along its own part of the rays.
+void BaseLighting::measure(int light, const SurfaceReceiver& receiver, const LightFront& around,
+                           std::span<const std::uint32_t> samples, std::span<const BasePoint> points, Rng& rng,
+                           std::span<BaseLight> out) const {
+    const LitPoint lit{dvec3(receiver.local), dvec3(receiver.normal), LitPoint::Kind::Surface};
+    const std::size_t batches = batches_alone(samples.size()), n = samples.size();
+    std::vector<Shares> seen(n);
     std::array<VisibilityRatio::Draw, VisibilityRatio::kDraws> draws;
-    const LitPoint lit{p.surface->position, p.surface->frame.normal, LitPoint::Kind::Surface};
-    if (!ratio.draw(lit, rng, draws))
-        return {};
-    const Bsdf base(p.surface->material, p.surface->frame, Lobes::Base);
-    Shares seen;
     float all = 0.0f;
-    for (const VisibilityRatio::Draw& d : draws) {
-        if (!(d.weight > 0.0f))
-            continue;
-        all += d.weight;
-        const Rgb share = relative_to_white(base, *p.surface, p.toward_viewer, dvec3(d.direction));
-        if (share == Rgb(0.0f))
-            continue;
-        const Panes::Passage way = passage(*p.surface, d.point);
-        if (!way.blocked)
-            (way.panes > 0 ? seen.through_panes : seen.clear) += share * d.weight * way.weight;
-    }
+    for (std::size_t b = 0; b < batches && ratios_[light]->draw(around, lit, rng, draws); ++b)
+        for (std::size_t k = 0; k < draws.size(); ++k) {
+            const VisibilityRatio::Draw& d = draws[k];
+            if (!(d.weight > 0.0f))
+                continue;
+            all += d.weight;
+            // Every sample gets draws of all strata.
+            const std::size_t to = (b * draws.size() + k) % n;
+            const BasePoint& p = points[samples[to]];
+            const Rgb share = relative_to_white(Bsdf(p.surface->material, p.surface->frame, Lobes::Base), *p.surface,
+                                                p.toward_viewer, glm::normalize(dvec3(d.point) - p.surface->position));
+            if (share == Rgb(0.0f))
+                continue;
+            const Panes::Passage way = passage(*p.surface, d.point);
+            if (!way.blocked)
+                (way.panes > 0 ? seen[to].through_panes : seen[to].clear) += share * d.weight * way.weight;
+        }
     if (!(all > 0.0f))
-        return {};
-    return {seen.clear / all, seen.through_panes / all};
+        return;
+    const Rgb there = arriving(receiver, light) * (float(n) / all);
+    for (std::size_t k = 0; k < n; ++k) {
+        add(light, there * seen[k].clear, out[samples[k]]);
+        if (through_panes_)
+            out[samples[k]].through_panes += there * seen[k].through_panes;
+    }
 }
 
-BaseLight BaseLighting::light_alone(const BasePoint& point, const SurfaceReceiver& receiver) const {
-    BaseLight out;
-    if (!point.surface)
-        return out;
-    Rng rng(kAlone, point.pixel, point.number);
-    for (int light = 0; light < kLights; ++light) {
-        const Rgb there = arriving(receiver, light);
-        if (!ratios_[light] || there == Rgb(0.0f))
-            continue;
-        const Shares seen = measured(*ratios_[light], point, rng);
-        add(light, there * seen.clear, out);
-        if (through_panes_)
-            out.through_panes += there * seen.through_panes;
+void BaseLighting::light_alone(const SurfaceReceiver& receiver, Fronts& around, std::span<const std::uint32_t> samples,
+                               std::span<const BasePoint> points, std::span<BaseLight> out) const {
+    std::vector<std::uint32_t> on_surface;
+    for (const std::uint32_t i : samples) {
+        out[i] = {};
+        if (points[i].surface)
+            on_surface.push_back(i);
     }
-    return out;
+    if (on_surface.empty())
+        return;
+    Rng rng(kAlone, points[on_surface[0]].pixel, points[on_surface[0]].number);
+    for (int light = 0; light < kLights; ++light)
+        if (ratios_[light] && arriving(receiver, light) != Rgb(0.0f))
+            measure(light, receiver, around.of(light), on_surface, points, rng, out);
 }
 
 std::vector<BaseLight> BaseLighting::light(std::span<const BasePoint> points, const SharedReceivers& receivers) const {
@@ -209,27 +248,29 @@ std::vector<BaseLight> BaseLighting::light(std::span<const BasePoint> points, co
     parallel_for(
         neighbourhoods.count(),
         [&](std::size_t n) {
-            const std::uint32_t first = neighbourhoods.first(n);
-            Targets targets;
-            bool drawn = false;
-            for (std::uint32_t r = first; r < receivers.count() && neighbourhoods.of(r) == n; ++r) {
-                if (!drawn && may_look_together(samples.of(r), points)) {
-                    targets = targets_at(receivers[r], points[samples.of(r)[0]]);
-                    drawn = true;
-                }
-                together[r] = light_together(receivers[r], targets, samples.of(r), points, out);
-            }
+            const std::span<const std::uint32_t> members = neighbourhoods.receivers_of(n);
+            Fronts around(*this, receivers[members.front()], kTargetsDrawn);
+            for (const std::uint32_t r : members)
+                together[r] = light_together(receivers[r], around, samples.of(r), points, out);
         },
         kNeighbourhoodsAtOnce);
     parallel_for(
-        together.size(),
-        [&](std::size_t r) {
-            if (settled(together, r))
+        neighbourhoods.count(),
+        [&](std::size_t n) {
+            std::vector<std::uint32_t> unsettled;
+            for (const std::uint32_t r : neighbourhoods.receivers_of(n))
+                if (!settled(together, r))
+                    unsettled.push_back(r);
+            std::size_t drawn = 0;
+            for (const std::uint32_t r : unsettled)
+                drawn += batches_alone(samples.of(r).size()) * VisibilityRatio::kDraws;
+            if (unsettled.empty())
                 return;
-            for (const std::uint32_t i : samples.of(r))
-                out[i] = light_alone(points[i], receivers[r]);
+            Fronts around(*this, receivers[unsettled.front()], drawn);
+            for (const std::uint32_t r : unsettled)
+                light_alone(receivers[r], around, samples.of(r), points, out);
         },
-        kReceiversAtOnce);
+        kNeighbourhoodsAtOnce);
     return out;
 }
 

@@ -3,8 +3,8 @@
 // The lighting grids sum all lights at receivers that samples share, without occlusion by surfaces. What part of it
 // arrives is measured by shadow rays toward points of the medium (visibility_ratio.h). The samples of a receiver first
 // test one set of such points together (shared_targets.h), a ray for each sample. Where every ray arrives, or none does, and it is so for
-// its neighbours in the row of pixels, that is the answer. Elsewhere may be a penumbra: every sample tests points of
-// its own.
+// its neighbours in the row of pixels, that is the answer. Elsewhere may be a penumbra: every receiver draws points of
+// its own, a few for each of its samples.
 //
 // What is missed: with n rays around, a part f of the light that is hidden, or seen, goes unnoticed with probability
 // (1 - f)^n, so that the mean is wrong by at most 1 / (e n). n is 144 for pixels of 16 samples.
@@ -55,16 +55,18 @@ private:
         Rgb clear{0.0f}, through_panes{0.0f};  // of a white Lambert surface's reflected light
     };
 
-    using Targets = std::array<WeightedTargets, kLights>;
-    Targets targets_at(const SurfaceReceiver& receiver, const BasePoint& first) const;
-    Together light_together(const SurfaceReceiver& receiver, const Targets& targets, std::span<const std::uint32_t> samples,
+    class Fronts;
+    Together light_together(const SurfaceReceiver& receiver, Fronts& around, std::span<const std::uint32_t> samples,
                             std::span<const BasePoint> points, std::span<BaseLight> out) const;
     bool settled(std::span<const Together> all, std::size_t receiver) const;
     Seen see_together(int light, const SurfaceReceiver& receiver, const WeightedTargets& targets,
                       std::span<const std::uint32_t> samples, std::span<const BasePoint> points, Rng& rng,
                       std::span<BaseLight> out) const;
-    BaseLight light_alone(const BasePoint& point, const SurfaceReceiver& receiver) const;
-    Shares measured(const VisibilityRatio& ratio, const BasePoint& point, Rng& rng) const;
+    void light_alone(const SurfaceReceiver& receiver, Fronts& around, std::span<const std::uint32_t> samples,
+                     std::span<const BasePoint> points, std::span<BaseLight> out) const;
+    void measure(int light, const SurfaceReceiver& receiver, const LightFront& around,
+                 std::span<const std::uint32_t> samples, std::span<const BasePoint> points, Rng& rng,
+                 std::span<BaseLight> out) const;
     Panes::Passage passage(const SurfacePoint& surface, const vec3& light) const;
 
     const Medium& medium_;

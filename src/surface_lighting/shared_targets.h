@@ -16,6 +16,8 @@
 
 namespace brisance {
 
+constexpr std::size_t kTargetsDrawn = 2 * VisibilityRatio::kDraws;
+
 // Points drawn for a place, to be chosen in proportion to the light from them.
 class WeightedTargets {
 public:
@@ -29,7 +31,7 @@ private:
     float sum_ = 0.0f;
 };
 
-// Receivers that follow each other in a row of the picture, close together and facing alike.
+// Receivers in a few pixels of one row of the picture, close together and facing alike.
 class Neighbourhoods {
 public:
     // `pixel_of`: of each receiver, ascending. `width`: of the picture, in pixels. Neighbourhoods end at multiples of
@@ -38,15 +40,18 @@ public:
                    std::uint32_t width);
 
     static constexpr std::uint32_t kPixels = 32;
-    std::size_t count() const { return first_.size(); }
-    std::uint32_t first(std::size_t neighbourhood) const { return first_[neighbourhood]; }  // receiver
-    std::uint32_t of(std::size_t receiver) const { return of_[receiver]; }
+    std::size_t count() const { return first_.size() - 1; }
+    // Ascending; at least one.
+    std::span<const std::uint32_t> receivers_of(std::size_t neighbourhood) const {
+        return std::span(receivers_).subspan(first_[neighbourhood], first_[neighbourhood + 1] - first_[neighbourhood]);
+    }
 
 private:
-    std::vector<std::uint32_t> first_, of_;
+    std::vector<std::uint32_t> first_, receivers_;  // `first_` has one more than there are, as an end
 };
 
-// Draws points for a receiver. Empty where nothing can be sampled.
-WeightedTargets draw_targets(const VisibilityRatio& ratio, const SurfaceReceiver& receiver, Rng& rng);
+// Draws so many points for a receiver. Empty where nothing can be sampled.
+WeightedTargets draw_targets(const VisibilityRatio& ratio, const LightFront& around, const SurfaceReceiver& receiver,
+                             Rng& rng);
 
 }  // namespace brisance

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/rng.h"
-#include "emitters/light_tree.h"
+#include "emitters/light_front.h"
 #include "gathering/point_depths.h"
 #include "lighting_grid/footprint.h"
 #include "medium/medium.h"
@@ -29,13 +29,16 @@ public:
                     const NodeWeights& escape);
     bool empty() const { return tree_.empty(); }
 
+    // What places close to `middle` draw from, `points` points in all.
+    LightFront around(const LitPoint& middle, std::size_t points) const;
+
     struct Draw {
         vec3 point;           // local [m]
         vec3 direction;       // unit, from the point
         float weight = 0.0f;  // luminance of the light from there over its pdf, without occlusion by surfaces
     };
     // Returns false where nothing can be sampled.
-    bool draw(const LitPoint& point, Rng& rng, std::array<Draw, kDraws>& draws) const;
+    bool draw(const LightFront& around, const LitPoint& point, Rng& rng, std::array<Draw, kDraws>& draws) const;
 
     std::uint64_t bytes() const;
 
