@@ -151,6 +151,13 @@ void add_report_options(CLI::App& command, ReportOptions& options) {
         ->type_name("NAME ...")
         ->needs(suite);
     command
+        .add_option("--strip", options.strip_frames,
+                    "Frames of a film strip of each method, which show its flicker, at its cheapest step; 0: none; "
+                    "default 3, of quick 0")
+        ->type_name("FRAMES")
+        ->check(CLI::Range(0, 16))
+        ->needs(suite);
+    command
         .add_option("--methods", options.methods.methods,
                     fmt::format("NAME, or LABEL=NAME, and settings: exact=path,tracing.free_flight=exact; "
                                 "names: {}; default: lighting_grid path; of a suite: all",

@@ -54,7 +54,8 @@ std::string measurement_row(const Report& report, const MethodResult& result, co
                     csv_number(errors.differences.rrmse), csv_number(errors.differences.relmse),
                     csv_number(errors.differences.mape), csv_number(errors.differences.mean), csv_number(errors.flip),
                     csv_number(noise_of(report, layer)), errors.below_noise ? "yes" : "no",
-                    std::to_string(errors.not_finite.image), std::to_string(errors.not_finite.reference)});
+                    std::to_string(errors.not_finite.image), std::to_string(errors.not_finite.reference),
+                    &run == &result.runs.front() ? csv_number(flicker_in(result, layer)) : ""});
 }
 
 void add_times(const Report& report, const std::string& layer, Clock clock, std::string& csv) {
@@ -161,7 +162,7 @@ std::string measurements_csv(const Report& report) {
     std::string csv =
         csv_row({"shot", "frame", "method", "step", "settings", "layer", "samples_per_pixel", "wall_seconds",
                  "cpu_seconds", "rrmse_noise_free", "rrmse", "relmse", "mape", "bias", "hdr_flip", "reference_noise",
-                 "below_reference_noise", "image_pixels_not_finite", "reference_pixels_not_finite"});
+                 "below_reference_noise", "image_pixels_not_finite", "reference_pixels_not_finite", "flicker"});
     for (const MethodResult& result : report.methods)
         for (const MeasuredRun& run : result.runs)
             for (const auto& [layer, errors] : run.errors)
