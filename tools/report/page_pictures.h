@@ -17,7 +17,7 @@ struct PagePictureSettings {
     std::vector<double> exposures = {-3, 0, 3};  // beside `base_exposure` [stops]
     double base_exposure = 0.0;                  // [stops]
     ViewTransform view = ViewTransform::Filmic;
-    int strip_width = 64;  // of the frames of film strips, at most [pixels]
+    int strip_width = 48;  // of the frames of film strips, at most [pixels]
 };
 
 class PagePictures {

@@ -44,7 +44,7 @@ function row(method, index, cell) {
 
 const help =
     "Frames of the cheapest run of each method, whose true picture is the same: from one to the next everything, with " +
-    "the camera, is moved by 3, 5 and 7 voxels, and all random numbers are others, as in an explosion that changes. " +
+    "the camera, is moved by 3, 5 and 7 voxels, and all seeds are others, as if the explosion had changed. " +
     "Whatever differs between them is flicker: the root mean square of the change from frame to frame, over the root " +
     "of 2, relative to the reference. Noise that is new in each frame has as much flicker as error; bias that stands " +
     "still has none. ";
@@ -53,6 +53,9 @@ export function addStrips(section, link) {
     const cells = layers.filter((cell) => report.methods.some((method) => stripOf(method, cell)));
     if (cells.length === 0) return;
     section.hidden = link.hidden = false;
+    // That in which most methods compete.
+    const competing = (cell) => report.methods.filter((method) => stripOf(method, cell)).length;
+    const first = cells.reduce((best, cell) => (competing(cell) > competing(best) ? cell : best));
     const holder = h("div", { class: "strips" }),
         exposure = h("p", { class: "muted" });
     const show = (cell) => {
@@ -65,10 +68,10 @@ export function addStrips(section, link) {
     const options = cells.map((value) => ({ value, label: layerTitle(value) }));
     section.append(
         h("p", { class: "muted" }, help),
-        h("div", { class: "controls" }, choice("Cell", options, cells[0], show).element),
+        h("div", { class: "controls" }, choice("Cell", options, first, show).element),
         exposure,
         holder,
         colourBar("relative", "change from frame to frame, relative to the reference, logarithmic"),
     );
-    show(cells[0]);
+    show(first);
 }
