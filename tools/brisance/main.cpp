@@ -342,8 +342,13 @@ private:
         CLI::App& stability =
             add("stability", "Renders extreme cases by every method and prints a table of their errors",
                 [this] { return run_stability(extreme_); });
-        stability.add_option("--methods", extreme_.methods, fmt::format("{}", fmt::join(extreme_.methods, ", ")))
-            ->check(one_of(stability_methods()))
+        std::vector<std::string> known = stability_methods(), presets = stability_presets();
+        known.insert(known.end(), presets.begin(), presets.end());
+        stability
+            .add_option("--methods", extreme_.methods,
+                        fmt::format("{}; these are the default; or {}", fmt::join(extreme_.methods, ", "),
+                                    fmt::join(presets, ", ")))
+            ->check(one_of(known))
             ->delimiter(',');
         stability.add_option("--case", extreme_.part, "Only cases whose name contains this");
         stability.add_flag("--markdown", extreme_.markdown, "As a table for a document");

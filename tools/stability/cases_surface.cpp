@@ -88,7 +88,7 @@ Case black_walls() {
     c.name = "surface/black-walls";
     c.truth = "walls send nothing: SV, SM and SS are exactly 0";
     c.pictures = 1;  // 0 has no noise
-    c.paths = {{"ray_lights", 2048}, {"volumetric_vpls", 2048}, {"volumetric_photons", 2048}};
+    c.paths = {{"ray_lights", 2048}, {"volumetric_vpls", 2048}, {"volumetric_photons", 2048}, {"photon_density", 2048}};
     c.tolerance = {0.0, 0.0, "nothing to be found"};
     c.scene = [] { return smoky_room(0.8, room(matt(0.0), matt(0.0))); };
     c.measure = [](const Scene& scene, const RenderedFrame& frame, const Method& method, const Render& render) {
