@@ -40,7 +40,8 @@ TEST(Flicker, OfAnErrorThatStandsStillIsZero) {
         EXPECT_EQ(value, 0.0f);
 }
 
-// 3600 independent values in each of three frames: its relative standard error is about 1.1 %, five of which are allowed.
+// 3600 independent values in each of three frames: its relative standard error is about 1.1 %, five of which are
+// allowed.
 TEST(Flicker, OfNewNoiseIsItsSize) {
     const std::vector<Picture> frames = {noisy(5.0f, 0.2f, 1), noisy(5.0f, 0.2f, 2), noisy(5.0f, 0.2f, 3)};
     EXPECT_NEAR(flicker_of(frames, {flat(2.0f), std::nullopt}), 0.1, 0.0055);

@@ -42,8 +42,9 @@ class CommandLine(test_report.Case):
         self.expect(2, *QUICK, "--budgets", "4", says="--suite")
         self.expect(2, "more.json", "--shots", "shots", says="--suite")
         self.expect(2, "more.json", "--strip", "3", says="--suite")
-        self.expect(2, *QUICK, "--strip", "1", says=["--strip 1", "0, or 2 and more"])
-        self.expect(2, *QUICK, "--strip", "17", says="--strip")
+        suite = ["--suite", "quick", "--shots", "shots"]
+        self.expect(2, *suite, "--strip", "1", says=["--strip 1", "0, or 2 and more"])
+        self.expect(2, *suite, "--strip", "17", says="--strip")
         self.expect(2, "more.json", "more.json", says="one SHOT_OR_VDB, or --suite; 2 were given")
         self.expect(2, "--suite", "quick", "--shots", "shots", "--scenes", "moon", says=["moon", "media/cornell_fog"])
         self.expect(66, "--suite", "quick", "--shots", "absent", says=["absent", "--shots"])

@@ -10,8 +10,8 @@ namespace {
 using namespace testing;
 
 // Smoke that absorbs nothing lets every particle out, with the power it came with: none is ended for having scattered
-// often, and none is brighter for those that were. From a radius of 10 mean free paths one in 10^7 takes more collisions
-// than kManyCollisions, and one in 15 more than kManyScatterings and 14, which few survive between surfaces.
+// often, and none is brighter for those that were. From a radius of 10 mean free paths one in 10^7 takes more
+// collisions than kManyCollisions, and one in 15 more than kManyScatterings and 14, which few survive between surfaces.
 TEST(ParticleWalk, LeavesThickSmokeThatAbsorbsNothingWithItsPower) {
     Recipe recipe = scattering_ball(8, 10.0f, Rgb(1.0f));
     recipe.settings.fire.convention = EmissionConvention::Direct;

@@ -21,8 +21,8 @@
 namespace brisance {
 
 // The shot of a strip's frame, from 0, which is the shot itself. For each further one everything that has a place,
-// and the camera, lies (3, 5, 7) voxels farther, and every seed is another. `voxel` [m]: 0 where there is no volume, and
-// then nothing moves. `shot.camera_given` must be set.
+// and the camera, lies (3, 5, 7) voxels farther, and every seed is another. `voxel` [m]: 0 where there is no volume,
+// and then nothing moves. `shot.camera_given` must be set.
 Shot frame_of_strip(const Shot& shot, int frame, double voxel);
 
 // The change from frame to frame of pictures that ought to be the same, relative to the reference:

@@ -160,9 +160,8 @@ void PagePictures::add_strip(const std::string& id, const std::string& cell, std
     std::vector<std::string> encoded;
     for (const Picture& frame : frames)
         encoded.push_back(exposed_png(reduced(frame, settings_.strip_width), exposure, settings_.view));
-    strips_[id][cell] = {{"frames", encoded},
-                         {"change", map_png(reduced(change, settings_.strip_width))},
-                         {"exposure", exposure}};
+    strips_[id][cell] = {
+        {"frames", encoded}, {"change", map_png(reduced(change, settings_.strip_width))}, {"exposure", exposure}};
 }
 
 nlohmann::ordered_json PagePictures::to_json() const {

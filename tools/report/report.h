@@ -83,7 +83,7 @@ struct Report {
     Machine machine;
     double loading_seconds = 0.0;  // reading the volume and building the medium, shared by all runs
     int repeats = 1;
-    int strip_frames = 0;              // of film strips; 0: there are none
+    int strip_frames = 0;             // of film strips; 0: there are none
     std::vector<std::string> layers;  // of the reference: "" and its cells
     ReferenceSummary reference;
     std::vector<MethodResult> methods;

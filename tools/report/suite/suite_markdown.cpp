@@ -164,6 +164,11 @@ std::string how_it_was_made(const SuiteReport& suite) {
     return text + "\n";
 }
 
+bool has_strips(const SuiteReport& suite) {
+    return std::any_of(suite.scenes.begin(), suite.scenes.end(),
+                       [](const MeasuredScene& scene) { return scene.report && scene.report->strip_frames > 0; });
+}
+
 constexpr const char* kHowToReadFlicker =
     R"(- *Flicker* is of the cheapest run: what changes between frames whose true picture is the same, but with other seeds, and
   moved by whole voxels with the camera ([Film strips](compare_and_report.md#film-strips)). Noise that is new in each
@@ -188,21 +193,12 @@ but `MS` and `SS`, scattering methods in `MM` and `SM`, virtual lights in `MS` a
 
 }  // namespace
 
-namespace {
-
-bool has_strips(const SuiteReport& suite) {
-    return std::any_of(suite.scenes.begin(), suite.scenes.end(),
-                       [](const MeasuredScene& scene) { return scene.report && scene.report->strip_frames > 0; });
-}
-
-}  // namespace
-
 std::string suite_markdown(const SuiteReport& suite) {
     std::string text =
         "# Comparison of the methods\n\nMade by `brisance report --suite` ([Compare and "
         "report](compare_and_report.md#suites)); not written by hand.\n\n";
-    text +=
-        how_it_was_made(suite) + "\n" + kHowToRead + (has_strips(suite) ? kHowToReadFlicker : "") + "\n" + winners(suite) + "\n" + failures(suite) + "\n## Figures\n";
+    text += how_it_was_made(suite) + "\n" + kHowToRead + (has_strips(suite) ? kHowToReadFlicker : "") + "\n" +
+            winners(suite) + "\n" + failures(suite) + "\n## Figures\n";
     for (const MeasuredScene& scene : suite.scenes)
         text.append("\n").append(figures_of(scene));
     return text;
