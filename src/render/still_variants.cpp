@@ -3,9 +3,17 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "core/error.h"
+#include "shot/keys/keys.h"
 
 namespace brisance {
 namespace {
+
+constexpr long long kSeeds = 1 << 30;  // the largest seed that all keys take
+
+// Certificates draw what judges a picture, not what is in it.
+bool is_seed(const std::string& path) {
+    return path.ends_with(".seed") && !path.starts_with("certify.");
+}
 
 void move_scene(SceneSettings& scene, const dmat4& by) {
     const auto move = [&](dvec3& p) { p = dvec3(by * glm::dvec4(p, 1.0)); };
@@ -57,6 +65,16 @@ Shot padded(Shot shot, const Medium& medium, int voxels) {
     zeros.volume.box = FogBox{low - double(voxels) * double(medium.spacing), high, 2.0 * double(medium.spacing)};
     zeros.changes.extinction_per_metre = 0.0f;
     shot.volumes.push_back(zeros);
+    return shot;
+}
+
+Shot reseeded(Shot shot, int by) {
+    for (const Key& key : shot_keys()) {
+        if (!is_seed(key.path))
+            continue;
+        const std::optional<Json> seed = key.get(shot);
+        key.set(shot, (seed.value_or(0).get<long long>() + by) % kSeeds);
+    }
     return shot;
 }
 

@@ -15,4 +15,7 @@ Shot moved(Shot shot, const dvec3& metres);
 // is.
 Shot padded(Shot shot, const Medium& medium, int voxels);
 
+// The same with other random numbers: `by` is added to every seed of a picture, modulo 2^30. Whole, above 0.
+Shot reseeded(Shot shot, int by);
+
 }  // namespace brisance

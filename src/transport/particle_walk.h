@@ -61,7 +61,8 @@ void walk_particle(const DirectLight& scene, const EmittedParticle& particle, st
             return;
         const Rgb left =
             power * (collision ? scene.field().albedo(collision->brick, collision->position) : next->weight);
-        const float survival = std::min(largest(left) / largest(power), before >= kManyScatterings ? kGoesOn : 1.0f);
+        const bool endless = before >= (collision ? kManyCollisions : kManyScatterings);
+        const float survival = std::min(largest(left) / largest(power), endless ? kGoesOn : 1.0f);
         if (!(rng.next() < survival))  // also if it is not a number
             return;
         power = rules.carries_colour ? left / survival : particle.power;

@@ -17,7 +17,7 @@ import test_report
 SOURCE = test_report.SOURCE
 METHODS = ["lighting_grid", "path", "ray_lights", "vbnl", "other=path,smoke.albedo=0"]
 QUICK = ["--suite", "quick", "--shots", "shots", "--set", "camera.width=16", "--set", "camera.height=9",
-         "--reference-samples", "16", "--progress", "plain", "--methods", *METHODS, "-o", "suite.html"]
+         "--reference-samples", "16", "--strip", "3", "--progress", "plain", "--methods", *METHODS, "-o", "suite.html"]
 MOST_BYTES = 30 << 20  # of a page
 
 
@@ -41,6 +41,10 @@ class CommandLine(test_report.Case):
         self.expect(2, "--suite", "middling", says=["middling", "quick, draft, full"])
         self.expect(2, *QUICK, "--budgets", "4", says="--suite")
         self.expect(2, "more.json", "--shots", "shots", says="--suite")
+        self.expect(2, "more.json", "--strip", "3", says="--suite")
+        suite = ["--suite", "quick", "--shots", "shots"]
+        self.expect(2, *suite, "--strip", "1", says=["--strip 1", "0, or 2 and more"])
+        self.expect(2, *suite, "--strip", "17", says="--strip")
         self.expect(2, "more.json", "more.json", says="one SHOT_OR_VDB, or --suite; 2 were given")
         self.expect(2, "--suite", "quick", "--shots", "shots", "--scenes", "moon", says=["moon", "media/cornell_fog"])
         self.expect(66, "--suite", "quick", "--shots", "absent", says=["absent", "--shots"])
@@ -133,6 +137,35 @@ class Page(unittest.TestCase):
         self.assertEqual({row["shot"] for row in rows}, {"explosion", "cornell_fog", "more"})
         self.assertNotIn("shot", {row["shot"] for row in rows})
 
+    def flicker(self, scene, method):
+        """By cell."""
+        methods = self.scenes[scene]["report"]["methods"]
+        return next(m["flicker"] for m in methods if m["label"] == method)
+
+    def test_flicker_is_that_of_what_methods_draw(self):
+        for name in ("explosion", "media/cornell_fog", "more"):
+            self.assertEqual(self.scenes[name]["report"]["strip_frames"], 3)
+        # What marches or traces the same rays through the same fire or to the same lamp sees the same; paths do not.
+        self.assertLess(self.flicker("explosion", "lighting_grid")["V"], 0.01)
+        self.assertGreater(self.flicker("explosion", "path")["V"], 0.05)
+        self.assertLess(self.flicker("more", "lighting_grid")["A"], 1e-4)
+        self.assertGreater(self.flicker("more", "path")["A"], 0.05)
+        self.assertEqual(list(self.flicker("more", "vbnl")), ["MS", "SS"])
+        self.assertIn("frame 3 of 3: ", self.done.stderr)
+
+    def test_flicker_is_a_column(self):
+        text = (self.folder / "suite.md").read_text(encoding="utf-8")
+        self.assertIn("| smallest error | flicker |", text)
+        with open(self.folder / "suite.csv", newline="", encoding="utf-8") as file:
+            rows = [row for row in csv.DictReader(file) if row["flicker"]]
+        counted = sum(len(method["flicker"]) for scene in self.scenes.values() if scene["report"]
+                      for method in scene["report"]["methods"])
+        self.assertEqual(len(rows), counted)
+        row = next(row for row in rows if row["shot"] == "explosion" and row["method"] == "path" and
+                   row["layer"] == "MV")
+        self.assertAlmostEqual(float(row["flicker"]), self.flicker("explosion", "path")["MV"])
+        self.assertEqual(row["step"], "4 spp")
+
     def test_progress_names_the_scene(self):
         self.assertIn("scene 4 of 5, media/cornell_fog: ", self.done.stderr)
 
@@ -162,6 +195,20 @@ class Page(unittest.TestCase):
         best = self.scenes["explosion"]["cells"][0]
         self.assertIn(best["contenders"][best["best_at_time"]]["method"], rows[0])
         self.assertEqual(self.page.evaluate("document.querySelectorAll('#failures-table tbody tr').length"), 3)
+
+    def test_browser_shows_film_strips(self):
+        self.page.open(self.folder / "suite.html")
+        labels = "[...document.querySelectorAll('#strips .strip strong')].map(e => e.textContent)"
+        self.assertEqual(self.page.evaluate(labels), ["lighting_grid", "path", "ray_lights"])  # MM
+        pictures = "[...document.querySelectorAll('#strips .strip img')].filter(i => i.complete && i.naturalWidth > 0)"
+        self.assertEqual(self.page.evaluate(pictures + ".length"), 3 * 4)
+        frames = "new Set([...document.querySelectorAll('.strip[data-run=method2step1] img')].map(i => i.src)).size"
+        self.assertEqual(self.page.evaluate(frames), 4)  # three frames that differ, and what differs
+        self.page.click("#strips .choice button")
+        self.assertEqual(self.page.evaluate(labels), ["lighting_grid", "path"])  # V
+        text = self.page.evaluate("document.querySelector('#strips .strips').textContent")
+        self.assertIn("flicker", text)
+        self.assertEqual(self.page.problems, [])
 
     def test_browser_goes_to_another_scene(self):
         self.page.open(self.folder / "suite.html")

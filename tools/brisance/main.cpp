@@ -151,6 +151,13 @@ void add_report_options(CLI::App& command, ReportOptions& options) {
         ->type_name("NAME ...")
         ->needs(suite);
     command
+        .add_option("--strip", options.strip_frames,
+                    "Frames of a film strip of each method, which show its flicker, at its cheapest step; 0: none; "
+                    "default 3, of quick 0")
+        ->type_name("FRAMES")
+        ->check(CLI::Range(0, 16))
+        ->needs(suite);
+    command
         .add_option("--methods", options.methods.methods,
                     fmt::format("NAME, or LABEL=NAME, and settings: exact=path,tracing.free_flight=exact; "
                                 "names: {}; default: lighting_grid path; of a suite: all",
@@ -335,8 +342,13 @@ private:
         CLI::App& stability =
             add("stability", "Renders extreme cases by every method and prints a table of their errors",
                 [this] { return run_stability(extreme_); });
-        stability.add_option("--methods", extreme_.methods, fmt::format("{}", fmt::join(extreme_.methods, ", ")))
-            ->check(one_of(stability_methods()))
+        std::vector<std::string> known = stability_methods(), presets = stability_presets();
+        known.insert(known.end(), presets.begin(), presets.end());
+        stability
+            .add_option("--methods", extreme_.methods,
+                        fmt::format("{}; these are the default; or {}", fmt::join(extreme_.methods, ", "),
+                                    fmt::join(presets, ", ")))
+            ->check(one_of(known))
             ->delimiter(',');
         stability.add_option("--case", extreme_.part, "Only cases whose name contains this");
         stability.add_flag("--markdown", extreme_.markdown, "As a table for a document");

@@ -9,6 +9,9 @@ namespace brisance {
 // The names of all methods that render the cases.
 std::vector<std::string> stability_methods();
 
+// Those of presets of scattering methods, which render them where they are named.
+std::vector<std::string> stability_presets();
+
 struct StabilityOptions {
     std::vector<std::string> methods = stability_methods();
     std::string part;  // of a case's name; empty: all

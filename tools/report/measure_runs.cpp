@@ -6,6 +6,7 @@
 #include <exception>
 
 #include "core/error.h"
+#include "film_strip.h"
 #include "methods.h"
 #include "metrics/layers.h"
 #include "named_progress.h"
@@ -131,16 +132,17 @@ MeasuredRun measure_run(const PlannedMethod& planned, RunNumber number, const Fr
         return !options.few_pictures || (last && (layer.empty() || owns(planned.method, layer)));
     };
     compare_layers(rendered.frame.image, reference, shows, run, pictures);
+    if (options.strips != nullptr && number.step == 0)
+        options.strips->add_frame(planned.method, rendered.frame.image, reference);
     return run;
 }
 
-// The first line of what an exception says.
+}  // namespace
+
 std::string reason_of(const std::exception& error) {
     const std::string text = error.what();
     return text.substr(0, text.find('\n'));
 }
-
-}  // namespace
 
 Shot shot_with(const Shot& shot, const std::string& source, const std::vector<std::string>& settings) {
     Shot result = parse_shot(to_json(shot), source, shot.folder, {"", settings});

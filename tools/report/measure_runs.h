@@ -1,6 +1,7 @@
 // Renders every step of every method and measures it.
 #pragma once
 
+#include <exception>
 #include <set>
 #include <string>
 #include <vector>
@@ -38,10 +39,16 @@ int free_seed(const std::set<int>& taken);
 // `shot` with settings over it; `source` stands for it in messages.
 Shot shot_with(const Shot& shot, const std::string& source, const std::vector<std::string>& settings);
 
+// The first line of what an exception says.
+std::string reason_of(const std::exception& error);
+
+class FilmStrips;
+
 struct MeasureOptions {
     int repeats = 1;          // of each render; its time is their median
     bool keep_going = false;  // a render that fails ends its method, as one of the report's failures, and nothing else
-    bool few_pictures = false;  // of the last step of a method alone: its picture, and the cells that it owns
+    bool few_pictures = false;     // of the last step of a method alone: its picture, and the cells that it owns
+    FilmStrips* strips = nullptr;  // receives the first step of every method as the first frame
 };
 
 // The methods that `plan_runs` accepts; the others become failures of `report`.

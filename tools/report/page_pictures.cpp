@@ -9,6 +9,7 @@
 
 #include "core/parallel.h"
 #include "film/view_transform.h"
+#include "film/write_image.h"
 #include "metrics/false_colour.h"
 #include "png.h"
 
@@ -116,6 +117,13 @@ Plane relative_error_map(const Picture& image, const Picture& reference, double 
     return map;
 }
 
+double exposure_for(const Picture& picture) {
+    Image image{picture.width, picture.height, {{"", {"R", "G", "B"}, false, {}}}};
+    for (const Rgb& pixel : picture.pixels)
+        image.layers[0].pixels.insert(image.layers[0].pixels.end(), {pixel.x, pixel.y, pixel.z});
+    return automatic_exposure(image);
+}
+
 Picture reduced(const Picture& picture, int most_width) {
     if (picture.width <= most_width)
         return picture;
@@ -147,6 +155,15 @@ void PagePictures::add_errors(const std::string& id, const std::string& layer, c
     flip_[id][layer] = map_png(reduced(flip, settings_.most_width));
 }
 
+void PagePictures::add_strip(const std::string& id, const std::string& cell, std::span<const Picture> frames,
+                             const Plane& change, double exposure) {
+    std::vector<std::string> encoded;
+    for (const Picture& frame : frames)
+        encoded.push_back(exposed_png(reduced(frame, settings_.strip_width), exposure, settings_.view));
+    strips_[id][cell] = {
+        {"frames", encoded}, {"change", map_png(reduced(change, settings_.strip_width))}, {"exposure", exposure}};
+}
+
 nlohmann::ordered_json PagePictures::to_json() const {
     return {{"width", width_},
             {"height", height_},
@@ -156,7 +173,8 @@ nlohmann::ordered_json PagePictures::to_json() const {
             {"palette", palette_json()},
             {"images", images_},
             {"relative", relative_},
-            {"flip", flip_}};
+            {"flip", flip_},
+            {"strips", strips_}};
 }
 
 }  // namespace brisance

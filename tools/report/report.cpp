@@ -45,6 +45,11 @@ std::optional<double> headline_error(const Report& report, const MeasuredRun& ru
     return report.reference.halves ? found->second.noise_free : found->second.differences.rrmse;
 }
 
+std::optional<double> flicker_in(const MethodResult& result, const std::string& cell) {
+    const auto found = result.flicker.find(cell);
+    return found == result.flicker.end() || !std::isfinite(found->second) ? std::nullopt : std::optional(found->second);
+}
+
 ErrorCurve curve_of(const Report& report, const MethodResult& result, const std::string& layer, Clock clock) {
     std::vector<CurvePoint> points;
     for (const MeasuredRun& run : result.runs)

@@ -43,6 +43,7 @@ struct MeasuredRun {
 struct MethodResult {
     Method method;
     std::vector<MeasuredRun> runs;
+    std::map<std::string, double> flicker = {};  // of the first run, by cell (film_strip.h); empty: not measured
 };
 
 // A method, or a step of it, that gave no picture.
@@ -82,6 +83,7 @@ struct Report {
     Machine machine;
     double loading_seconds = 0.0;  // reading the volume and building the medium, shared by all runs
     int repeats = 1;
+    int strip_frames = 0;             // of film strips; 0: there are none
     std::vector<std::string> layers;  // of the reference: "" and its cells
     ReferenceSummary reference;
     std::vector<MethodResult> methods;
@@ -95,6 +97,9 @@ enum class Clock { Wall, Cpu };
 
 // The measure that counts: free of the reference's noise where that can be had. Absent when the run lacks the layer.
 std::optional<double> headline_error(const Report& report, const MeasuredRun& run, const std::string& layer);
+
+// Of the method's first run in a cell. Absent where it was not measured, and where there is no light.
+std::optional<double> flicker_in(const MethodResult& result, const std::string& cell);
 
 ErrorCurve curve_of(const Report& report, const MethodResult& result, const std::string& layer, Clock clock);
 

@@ -93,6 +93,9 @@ Json method_json(const Report& report, const MethodResult& result) {
     Json runs = Json::array();
     for (const MeasuredRun& run : result.runs)
         runs.push_back(run_json(run));
+    Json flicker = Json::object();
+    for (const auto& [cell, value] : result.flicker)
+        flicker[cell] = json_number(value);
     return {{"label", result.method.label},
             {"base", result.method.base},
             {"settings", result.method.settings},
@@ -100,6 +103,7 @@ Json method_json(const Report& report, const MethodResult& result) {
             {"unbiased", result.method.unbiased},
             {"converges", result.method.averages},
             {"convergence", convergence_json(report, result)},
+            {"flicker", std::move(flicker)},
             {"runs", std::move(runs)}};
 }
 
@@ -195,6 +199,7 @@ Json report_json(const Report& report) {
             {"targets", report_targets()},
             {"baseline", baseline(report)},
             {"equal_times", {{"wall", equal_times(report, Clock::Wall)}, {"cpu", equal_times(report, Clock::Cpu)}}},
+            {"strip_frames", report.strip_frames},
             {"layers", report.layers},
             {"reference", reference_json(report.reference)},
             {"methods", std::move(methods)},

@@ -48,13 +48,26 @@ std::string measurement_row(const Report& report, const MethodResult& result, co
                             const std::string& layer, const LayerErrors& errors) {
     std::vector<std::string> settings = result.method.settings;
     settings.insert(settings.end(), run.step.settings.begin(), run.step.settings.end());
-    return csv_row({report.shot.name, std::to_string(report.shot.frame), result.method.label, run.step.label,
-                    fmt::format("{}", fmt::join(settings, " ")), shown_layer(layer), csv_number(run.samples_per_pixel),
-                    csv_number(run.cost.wall_seconds), csv_number(run.cost.cpu_seconds), csv_number(errors.noise_free),
-                    csv_number(errors.differences.rrmse), csv_number(errors.differences.relmse),
-                    csv_number(errors.differences.mape), csv_number(errors.differences.mean), csv_number(errors.flip),
-                    csv_number(noise_of(report, layer)), errors.below_noise ? "yes" : "no",
-                    std::to_string(errors.not_finite.image), std::to_string(errors.not_finite.reference)});
+    return csv_row({report.shot.name,
+                    std::to_string(report.shot.frame),
+                    result.method.label,
+                    run.step.label,
+                    fmt::format("{}", fmt::join(settings, " ")),
+                    shown_layer(layer),
+                    csv_number(run.samples_per_pixel),
+                    csv_number(run.cost.wall_seconds),
+                    csv_number(run.cost.cpu_seconds),
+                    csv_number(errors.noise_free),
+                    csv_number(errors.differences.rrmse),
+                    csv_number(errors.differences.relmse),
+                    csv_number(errors.differences.mape),
+                    csv_number(errors.differences.mean),
+                    csv_number(errors.flip),
+                    csv_number(noise_of(report, layer)),
+                    errors.below_noise ? "yes" : "no",
+                    std::to_string(errors.not_finite.image),
+                    std::to_string(errors.not_finite.reference),
+                    &run == &result.runs.front() ? csv_number(flicker_in(result, layer)) : ""});
 }
 
 void add_times(const Report& report, const std::string& layer, Clock clock, std::string& csv) {
@@ -158,10 +171,26 @@ std::string aligned(const std::vector<std::vector<std::string>>& rows) {
 }  // namespace
 
 std::string measurements_csv(const Report& report) {
-    std::string csv =
-        csv_row({"shot", "frame", "method", "step", "settings", "layer", "samples_per_pixel", "wall_seconds",
-                 "cpu_seconds", "rrmse_noise_free", "rrmse", "relmse", "mape", "bias", "hdr_flip", "reference_noise",
-                 "below_reference_noise", "image_pixels_not_finite", "reference_pixels_not_finite"});
+    std::string csv = csv_row({"shot",
+                               "frame",
+                               "method",
+                               "step",
+                               "settings",
+                               "layer",
+                               "samples_per_pixel",
+                               "wall_seconds",
+                               "cpu_seconds",
+                               "rrmse_noise_free",
+                               "rrmse",
+                               "relmse",
+                               "mape",
+                               "bias",
+                               "hdr_flip",
+                               "reference_noise",
+                               "below_reference_noise",
+                               "image_pixels_not_finite",
+                               "reference_pixels_not_finite",
+                               "flicker"});
     for (const MethodResult& result : report.methods)
         for (const MeasuredRun& run : result.runs)
             for (const auto& [layer, errors] : run.errors)

@@ -18,16 +18,28 @@ const Key* find_key(const std::string& path) {
     return found == keys.end() ? nullptr : &*found;
 }
 
-void set(Shot& shot, const std::string& path, int value) {
+void set(Shot& shot, const std::string& path, const Json& value) {
     const Key* const key = find_key(path);
     if (!key || !key->set(shot, value))
         throw Error(ExitCode::Usage, "the stability cases set " + path + ", which is no key of a shot");
 }
 
+// "estimator=point_beam": a number, true, false, or a word.
+void set_of_preset(Shot& shot, const std::string& section, const std::string& setting) {
+    const std::size_t equals = setting.find('=');
+    const std::string text = setting.substr(equals + 1);
+    const Json value = Json::parse(text, nullptr, false);
+    set(shot, section + "." + setting.substr(0, equals), value.is_discarded() ? Json(text) : value);
+}
+
 }  // namespace
 
-std::string Method::name() const {
+std::string Method::base() const {
     return is_path() ? "path" : scattering_;
+}
+
+std::string Method::name() const {
+    return preset_.empty() ? base() : preset_;
 }
 
 // The keys of a method are named after it.
@@ -36,8 +48,10 @@ void Method::apply_to(Shot& shot, int seed, std::optional<int> paths) const {
     shot.scattering_methods.method = is_path() ? kLightingGridMethod : scattering_;
     if (!shares_noise())
         return;
-    set(shot, name() + ".seed", seed);
-    set(shot, name() + ".paths", paths.value_or(kPaths));
+    for (const std::string& setting : settings_)
+        set_of_preset(shot, base(), setting);
+    set(shot, base() + ".seed", seed);
+    set(shot, base() + ".paths", paths.value_or(kPaths));
 }
 
 const std::vector<Method>& all_methods() {
@@ -45,6 +59,18 @@ const std::vector<Method>& all_methods() {
         std::vector<Method> all = {Method(kLightingGridMethod), Method()};
         for (const ScatteringMethod& method : scattering_methods())
             all.emplace_back(method.name);
+        return all;
+    }();
+    return methods;
+}
+
+const std::vector<Method>& preset_methods() {
+    static const std::vector<Method> methods = [] {
+        std::vector<Method> all;
+        for (const ScatteringMethod& method : scattering_methods())
+            for (const MethodPreset& preset : method.presets)
+                if (preset.label != method.name)
+                    all.emplace_back(method.name, preset);
         return all;
     }();
     return methods;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "light_selection/in_scattering_method.h"
 #include "shot/shot.h"
 
 namespace brisance::stability {
@@ -17,9 +18,14 @@ public:
     Method() = default;
     // The lighting grid, or a scattering method beside it. `scattering`: as scattering.method.
     explicit Method(std::string scattering) : scattering_(std::move(scattering)) {}
+    // One of the presets of a scattering method.
+    Method(std::string scattering, const MethodPreset& preset)
+        : scattering_(std::move(scattering)), preset_(preset.label), settings_(preset.settings) {}
 
-    // As the shot's keys call it.
+    // As the shot's keys call it, or a preset's label.
     std::string name() const;
+    // Without the preset: cases that say something of a method say it of its presets.
+    std::string base() const;
 
     bool is_path() const { return scattering_.empty(); }
     bool is_grid() const { return scattering_ == kLightingGridMethod; }
@@ -34,11 +40,17 @@ public:
     bool operator==(const Method&) const = default;
 
 private:
-    std::string scattering_;  // empty: paths
+    std::string scattering_;             // empty: paths
+    std::string preset_;                 // label; empty: none
+    std::vector<std::string> settings_;  // of the preset: "estimator=point_beam"
 };
 
 // The lighting grid first, then the path tracer, which render every case; then the others, which contribute only to
 // cases with light scattered twice.
 const std::vector<Method>& all_methods();
+
+// Presets of the scattering methods (scattering_methods/list.h) that are not called as their method is. They render
+// cases where they are asked for.
+const std::vector<Method>& preset_methods();
 
 }  // namespace brisance::stability

@@ -82,12 +82,12 @@ bool owns_a_cell(const Method& method, const Scene& scene) {
 }
 
 std::optional<int> Case::paths_of(const Method& method) const {
-    const auto found = paths.find(method.name());
+    const auto found = paths.find(method.base());
     return found == paths.end() ? std::nullopt : std::optional(found->second);
 }
 
 const Limit* Case::limit_of(const Method& method) const {
-    const auto found = tolerance.limits.find(method.name());
+    const auto found = tolerance.limits.find(method.base());
     return found == tolerance.limits.end() ? nullptr : &found->second;
 }
 

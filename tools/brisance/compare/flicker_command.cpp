@@ -27,15 +27,7 @@ using Json = nlohmann::ordered_json;
 constexpr double kMove = 0.125;        // voxels, along each axis
 const dvec3 kMoveOfLattices(3, 5, 7);  // voxels: bricks and the levels of hierarchies lie elsewhere in the smoke
 constexpr int kPadding = 29;           // voxels: no multiple of the lattices' bricks
-const char* const kOtherSeed = "104729";
-
-// Every key that chooses random numbers.
-const std::vector<std::string>& seed_keys() {
-    static const std::vector<std::string> keys = {
-        "tracing.seed",         "virtual_lights.seed", "ray_lights.seed", "volumetric_photons.seed",
-        "volumetric_vpls.seed", "photon_density.seed", "fire_lights.seed"};
-    return keys;
-}
+constexpr int kOtherSeed = 104729;
 
 struct Variant {
     std::string name;
@@ -79,8 +71,7 @@ Shot held(Shot shot, const CameraSettings& camera, int width) {
     return shot;
 }
 
-std::vector<Variant> variants_of(const Shot& shot, const FrameInput& input, const FlickerOptions& options,
-                                 Progress& progress) {
+std::vector<Variant> variants_of(const Shot& shot, const FrameInput& input) {
     std::vector<Variant> variants = {{"rendered again", shot}};
     if (input.medium.lattice.brick_count() > 0) {
         variants.push_back(
@@ -88,11 +79,7 @@ std::vector<Variant> variants_of(const Shot& shot, const FrameInput& input, cons
         variants.push_back({"moved by 3, 5, 7 voxels", moved(shot, kMoveOfLattices * double(input.medium.spacing))});
         variants.push_back({fmt::format("{} more voxels of padding", kPadding), padded(shot, input.medium, kPadding)});
     }
-    std::vector<std::string> seeded = options.overrides;
-    for (const std::string& key : seed_keys())
-        seeded.push_back(key + "=" + kOtherSeed);
-    variants.push_back({"other seeds", held(load_shot(options.input, {options.preset, seeded}, progress), input.camera,
-                                            options.width)});
+    variants.push_back({"other seeds", reseeded(shot, kOtherSeed)});
     return variants;
 }
 
@@ -179,7 +166,7 @@ int run_flicker(const FlickerOptions& options) {
     {
         const FrameInput input = load_frame(given, frame.file, frame.frame, unused, progress);
         shot = held(given, input.camera, options.width);
-        variants = variants_of(shot, input, options, progress);
+        variants = variants_of(shot, input);
     }
     progress.begin_frame(frame.frame, frame.file.string(), 0, variants.size() + 1);
     const Image still = render_frame(shot, frame.file, frame.frame, progress).image;

@@ -9,7 +9,7 @@
 #include "camera/camera.h"
 #include "core/error.h"
 #include "core/stopwatch.h"
-#include "film/write_image.h"
+#include "film_strip.h"
 #include "forecast/plan.h"
 #include "load_shot.h"
 #include "measure_runs.h"
@@ -135,11 +135,7 @@ ReportReference make_reference(const ReportOptions& options, const std::vector<P
 double base_exposure(const Shot& shot, const ReportReference& reference) {
     if (shot.exposure_given)
         return shot.output.exposure_stops;
-    const Picture mean = mean_picture(reference.layers.at(""));
-    Image image{mean.width, mean.height, {{"", {"R", "G", "B"}, false, {}}}};
-    for (const Rgb& pixel : mean.pixels)
-        image.layers[0].pixels.insert(image.layers[0].pixels.end(), {pixel.x, pixel.y, pixel.z});
-    return automatic_exposure(image);
+    return exposure_for(mean_picture(reference.layers.at("")));
 }
 
 PagePictures begin_pictures(const ReportOptions& options, const Shot& shot, const ReportReference& reference) {
@@ -157,6 +153,11 @@ std::vector<PlannedMethod> plan_owners(const Shot& shot, const FrameInput& input
     if (owners.empty())
         throw Error(ExitCode::BadData, "no method owns a cell of this shot that holds light");
     return plan_what_can_run(shot, owners, taken, report);
+}
+
+// [m]; 0 without a volume.
+double voxel_of(const Medium& medium) {
+    return medium.lattice.brick_count() > 0 ? double(medium.spacing) : 0.0;
 }
 
 }  // namespace
@@ -180,25 +181,33 @@ MeasuredShot measure_shot(const ReportOptions& options, const OpenedShot& opened
 
     const Stopwatch watch;
     Statistics loading;
-    const FrameInput input = load_frame(shot, opened.frame.file, opened.frame.frame, loading, progress);
+    std::optional<FrameInput> input = load_frame(shot, opened.frame.file, opened.frame.frame, loading, progress);
     report.loading_seconds = watch.seconds();
-    fix_camera(shot, input);
+    fix_camera(shot, *input);
     const std::set<int> taken = reference ? reference->seeds : std::set<int>();
     const std::vector<PlannedMethod> planned =
-        owners ? plan_owners(shot, input, methods, taken, report) : plan_runs(shot, methods, taken);
+        owners ? plan_owners(shot, *input, methods, taken, report) : plan_runs(shot, methods, taken);
     if (!reference)
-        reference = make_reference(options, planned, shot, input, progress);
+        reference = make_reference(options, planned, shot, *input, progress);
     report.reference = reference->summary;
     for (const std::string& layer : report_layers())
         if (reference->layers.contains(layer))
             report.layers.push_back(layer);
     PagePictures pictures = begin_pictures(options, shot, *reference);
-    measure_runs(planned, input, *reference, {options.repeats, owners, owners}, report, pictures, progress);
+    FilmStrips strips;
+    const int strip_frames = options.strip_frames.value_or(0);
+    measure_runs(planned, *input, *reference, {options.repeats, owners, owners, strip_frames > 0 ? &strips : nullptr},
+                 report, pictures, progress);
     if (report.methods.empty())
         throw Error(ExitCode::RenderFailed, report.failures.empty()
                                                 ? std::string("no method was measured")
                                                 : fmt::format("every method failed; {}: {}", report.failures[0].method,
                                                               report.failures[0].reason));
+    if (strip_frames > 0) {
+        const StripRequest request{strip_frames, voxel_of(input->medium), opened.frame};
+        input.reset();  // two of them would need twice the memory
+        measure_strips(request, shot, planned, *reference, strips, report, pictures, progress);
+    }
     add_commands(options, report);
     return {std::move(report), std::move(pictures)};
 }

@@ -1,6 +1,7 @@
 // `brisance report`: methods at several budgets against a reference, as a page, CSV and JSON.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct ReportOptions {
     std::string suite;                // of suite_sizes(); empty: one shot
     std::string shots = "shots";      // the folder with the shots of a suite
     std::vector<std::string> scenes;  // of a suite; empty: all
+    std::optional<int> strip_frames;  // of the film strips of a suite, 0: none; empty: as the suite says
     std::string output = "report.html";  // CSV and JSON go beside it
     std::string frame;                   // -f; empty: the only one on disk
     std::string preset;

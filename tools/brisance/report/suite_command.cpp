@@ -42,6 +42,7 @@ ReportOptions options_for(const SuiteScene& scene, const SuiteSize& size, const 
     if (options.reference_samples == 0)
         options.reference_samples = size.reference_samples;
     options.exposures = {0.0};
+    options.strip_frames = given.strip_frames.value_or(size.strip_frames);
     return options;
 }
 
@@ -109,6 +110,8 @@ int run_suite(const ReportOptions& options) {
     TextProgress progress(options.progress);
     const ThreadLimit limit(options.threads);
     const SuiteSize& size = suite_size(options.suite);
+    if (options.strip_frames == 1)
+        throw Error(ExitCode::Usage, "--strip 1: nothing changes in one frame; take 0, or 2 and more");
     const std::vector<Method> methods = suite_methods(size, options.methods.methods);
     const std::vector<SuiteScene> scenes = suite_scenes(options.shots, options.scenes, options.inputs);
     const SuiteFiles files = suite_files(options.output);

@@ -59,7 +59,7 @@ Contest contest_of(const Report& report, const std::string& cell, Clock clock) {
             continue;
         if (result.method.by_default)
             by_default = curves.size();
-        contest.contenders.push_back({result.method.label, {}, {}, curve.floor()});
+        contest.contenders.push_back({result.method.label, {}, {}, curve.floor(), flicker_in(result, cell)});
         curves.push_back(std::move(curve));
     }
     if (curves.empty())

@@ -19,6 +19,7 @@ struct Contender {
     Reading error;                                    // after Contest::seconds
     std::array<Reading, kSuiteTargets.size()> times;  // [s] to each of kSuiteTargets
     double floor = 0.0;                               // the smallest error that it was measured with
+    std::optional<double> flicker;                    // of its first run
 };
 
 struct Contest {

@@ -20,6 +20,7 @@ struct SuiteSize {
     std::string cascade_sides;          // of radiance cascades: "4,8"
     std::string lattice_levels;         // of diffusion: "2,1"
     std::string lamps;                  // of methods that put lamps in the place of the fire: "4,16"
+    int strip_frames = 0;               // of the film strip of each method and cell; 0: none
     std::string sides;                  // samples along a pixel's side, of all other methods: "1,2"
     std::vector<std::string> settings;  // over those of every shot, for every method
     // What is cheap where it is not judged: further ones of the methods that neither own MV nor scatter it on, and of

@@ -26,7 +26,8 @@ Json contest_json(const Contest& contest) {
         contenders.push_back({{"method", contender.method},
                               {"error", reading_json(contender.error)},
                               {"times", std::move(times)},
-                              {"floor", json_number(contender.floor)}});
+                              {"floor", json_number(contender.floor)},
+                              {"flicker", contender.flicker ? json_number(*contender.flicker) : Json()}});
     }
     return {{"cell", contest.cell},
             {"seconds", contest.seconds},

@@ -97,7 +97,7 @@ std::string failures(const SuiteReport& suite) {
                                                 : markdown_head({"scene", "method", "reason"}) + rows);
 }
 
-std::string contender_row(const Contest& contest, std::size_t i) {
+std::string contender_row(const Contest& contest, std::size_t i, bool flicker) {
     const Contender& contender = contest.contenders[i];
     std::vector<std::string> fields = {contest.cell,
                                        contest.at_time == i ? "**" + contender.method + "**" : contender.method,
@@ -105,6 +105,8 @@ std::string contender_row(const Contest& contest, std::size_t i) {
     for (const Reading& time : contender.times)
         fields.push_back(time_text(time));
     fields.push_back(percent(contender.floor));
+    if (flicker)
+        fields.push_back(contender.flicker ? percent(*contender.flicker) : "-");
     return markdown_row(fields);
 }
 
@@ -123,10 +125,13 @@ std::string figures_of(const MeasuredScene& scene) {
     for (const double target : kSuiteTargets)
         columns.push_back("time to " + target_text(target));
     columns.push_back("smallest error");
+    const bool flicker = report.strip_frames > 0;
+    if (flicker)
+        columns.push_back("flicker");
     text += ".\n\n" + markdown_head(columns);
     for (const Contest& contest : all)
         for (std::size_t i = 0; i < contest.contenders.size(); ++i)
-            text += contender_row(contest, i);
+            text += contender_row(contest, i, flicker);
     return text;
 }
 
@@ -159,6 +164,17 @@ std::string how_it_was_made(const SuiteReport& suite) {
     return text + "\n";
 }
 
+bool has_strips(const SuiteReport& suite) {
+    return std::any_of(suite.scenes.begin(), suite.scenes.end(),
+                       [](const MeasuredScene& scene) { return scene.report && scene.report->strip_frames > 0; });
+}
+
+constexpr const char* kHowToReadFlicker =
+    R"(- *Flicker* is of the cheapest run: what changes between frames whose true picture is the same, but with other seeds, and
+  moved by whole voxels with the camera ([Film strips](compare_and_report.md#film-strips)). Noise that is new in each
+  frame has as much as its error; bias that stands still has none.
+)";
+
 constexpr const char* kHowToRead =
     R"(Every method competes in the cells ([Layers](layers.md)) that it computes by its own technique: `lighting_grid` in all
 but `MS` and `SS`, scattering methods in `MM` and `SM`, virtual lights in `MS` and `SS`, path tracers everywhere.
@@ -181,8 +197,8 @@ std::string suite_markdown(const SuiteReport& suite) {
     std::string text =
         "# Comparison of the methods\n\nMade by `brisance report --suite` ([Compare and "
         "report](compare_and_report.md#suites)); not written by hand.\n\n";
-    text +=
-        how_it_was_made(suite) + "\n" + kHowToRead + "\n" + winners(suite) + "\n" + failures(suite) + "\n## Figures\n";
+    text += how_it_was_made(suite) + "\n" + kHowToRead + (has_strips(suite) ? kHowToReadFlicker : "") + "\n" +
+            winners(suite) + "\n" + failures(suite) + "\n## Figures\n";
     for (const MeasuredScene& scene : suite.scenes)
         text.append("\n").append(figures_of(scene));
     return text;

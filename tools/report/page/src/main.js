@@ -5,6 +5,7 @@ import { addMeasurements } from "./measurements.js";
 import { addPictures } from "./pictures.js";
 import { addRepeat } from "./repeat.js";
 import { hasPicture, report } from "./report.js";
+import { addStrips } from "./strips.js";
 import { addSuite } from "./suite.js";
 import { addThemeChoice } from "./theme.js";
 
@@ -23,6 +24,7 @@ addThemeChoice();
 addSuite(byId("suite"), byId("suite-link"));
 const plot = addConvergence(byId("convergence"), byId("reach"), byId("equal-time"));
 const viewer = addPictures(byId("pictures"));
+addStrips(byId("strips"), byId("strips-link"));
 addMeasurements(byId("measurements"));
 addCost(byId("cost"));
 addRepeat(byId("repeat"));

@@ -4,7 +4,7 @@ import { choice, h } from "./dom.js";
 import { layerTitle, measures, seconds, shown } from "./format.js";
 import { findRun, layers, nameOf, picturedRuns, pictures, reference, report } from "./report.js";
 
-const png = (base64) => `data:image/png;base64,${base64}`;
+export const png = (base64) => `data:image/png;base64,${base64}`;
 const stops = (value) => `${value < 0 ? "\u2212" : "+"}${Math.abs(value)} EV`.replace("+0 EV", "0 EV");
 
 // What a picture can show. A map exists for runs only: the reference has no error.
@@ -57,13 +57,13 @@ const ticks = {
     flip: { low: "0", middle: ["0.5"], high: "1", text: "HDR-FLIP error" },
 };
 
-function colourBar(kind) {
+export function colourBar(kind, what) {
     const { low, middle, high, text } = ticks[kind];
     const gradient = `linear-gradient(to right, ${pictures.palette.join(",")})`;
     return h(
         "div",
         { class: "colour-bar" },
-        h("span", { class: "muted" }, text),
+        h("span", { class: "muted" }, what ?? text),
         h(
             "div",
             {},
