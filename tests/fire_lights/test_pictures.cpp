@@ -155,11 +155,11 @@ TEST(FireLightPlans, BuildNoHierarchyForSingleScattering) {
     for (const StageCost& stage : frame.statistics.stages)
         EXPECT_NE(stage.name, "lights and hierarchy");
     EXPECT_TRUE(std::any_of(frame.statistics.stages.begin(), frame.statistics.stages.end(),
-                            [](const StageCost& stage) { return stage.name == "lights of the fire (MV)"; }));
-    EXPECT_EQ(plan_cells(small_shot(kFireByHierarchy), smoke(0.0f)).fire_by_rays, nullptr);
+                            [](const StageCost& stage) { return stage.name == "lights of the fire"; }));
+    EXPECT_EQ(plan_cells(small_shot(kFireByHierarchy), smoke(0.0f)).fire_sampling, nullptr);
     Shot traced = shot;
     traced.method = RenderMethod::Path;
-    EXPECT_EQ(plan_cells(traced, smoke(0.0f)).fire_by_rays, nullptr);
+    EXPECT_EQ(plan_cells(traced, smoke(0.0f)).fire_sampling, nullptr);
 }
 
 // SV and SM remain the grid's, and a mirror shows smoke that the grid has lit.

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fire_lights/fire_on_rays.h"
+#include "fire_lights/sampled_fire.h"
 #include "fixtures/ray_fixture.h"
 
 namespace brisance {
@@ -29,7 +29,7 @@ struct SingleScattering {
     }
 
     Estimate by_lights(const std::string& sampling, const FireLightSettings& settings, double relative) const {
-        const FireOnRays fire(stage.scene(), *find_fire_light_sampling(sampling), settings);
+        const SampledFire fire(stage.scene(), *find_fire_light_sampling(sampling), settings);
         return estimate_to(relative, 3, [&](const dvec3&, Rng& rng, double* out) {
             const Rgb light = along(fire, stage.ray(rng), rng);
             for (int c = 0; c < 3; ++c)
@@ -37,7 +37,7 @@ struct SingleScattering {
         });
     }
 
-    Rgb along(const FireOnRays& fire, const Ray& ray, Rng& rng) const {
+    Rgb along(const SampledFire& fire, const Ray& ray, Rng& rng) const {
         thread_local RayMedium seen;
         seen.look(stage.scene().field(), ray, stage.scene().segment_along(ray).end);
         return fire.along(seen, ray, rng);
@@ -176,7 +176,7 @@ TEST(FireCuts, HaveTheRightMeanOverSeeds) {
                 s.points = 4;
                 s.lightcuts_most = 1;
                 s.seed = static_cast<std::uint32_t>(rng.next_double() * 0x1p31);
-                const FireOnRays fire(scene.stage.scene(), *find_fire_light_sampling(sampling), s);
+                const SampledFire fire(scene.stage.scene(), *find_fire_light_sampling(sampling), s);
                 constexpr int kRays = 16;
                 std::fill(out, out + 3, 0.0);
                 for (int i = 0; i < kRays; ++i) {
