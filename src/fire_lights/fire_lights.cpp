@@ -65,7 +65,8 @@ dvec3 FireLights::local(std::size_t brick, const dvec3& in_brick) const {
 
 double FireLights::extinction_at(const dvec3& position) const {
     const BrickLattice& bricks = scene_.field().bricks();
-    const dvec3 index = index_from_local_ * (position - origin_), end = dvec3(bricks.brick_extent() * BrickLattice::kSize);
+    const dvec3 index = index_from_local_ * (position - origin_),
+                end = dvec3(bricks.brick_extent() * BrickLattice::kSize);
     for (int a = 0; a < 3; ++a)
         if (!(index[a] >= 0.0 && index[a] < end[a]))
             return 0.0;

@@ -87,8 +87,8 @@ void skip_without_emission(const Plan& plan, const Shot& shot, const Medium& med
         skip("scattered hierarchies", owner);
 }
 
-// Whether the fire's light at nodes or on surfaces comes from hierarchies: those begin MM, mirrors show their smoke, and
-// through panes the light of the fire is theirs.
+// Whether the fire's light at nodes or on surfaces comes from hierarchies: those begin MM, mirrors show their smoke,
+// and through panes the light of the fire is theirs.
 bool needs_hierarchies(const Plan& plan, const Surroundings* surroundings) {
     if (!plan.fire_sampling)
         return plan.single || plan.needs(Cell::SV);
@@ -108,9 +108,9 @@ void skip_with_emission(const Plan& plan, const Shot& shot, const Medium& medium
     if (!many_lights)
         skip("lights, hierarchy, shadow maps", "method is path");
     else if (!needs_hierarchies(plan, surroundings))
-        skip("lights, hierarchy, shadow maps",
-             plan.fire_sampling ? std::string("fire_lights.sampling is ") + plan.fire_sampling->name
-                                : "no cell needs them");
+        skip("lights, hierarchy, shadow maps", plan.fire_sampling
+                                                   ? std::string("fire_lights.sampling is ") + plan.fire_sampling->name
+                                                   : "no cell needs them");
     else if (plan.scattering_method && !plan.mixed())
         skip("scattered hierarchies", owner);
     else if (!plan.multiple)

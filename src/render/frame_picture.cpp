@@ -151,8 +151,8 @@ std::optional<ScreenSpaceCompensation> FramePicture::compensation(const Camera& 
 Image FramePicture::picture(const InScattering* estimator, int number, const MomentLights& lights, const Camera& camera,
                             const Surroundings* surroundings) {
     settings_.pass = number;
-    settings_.light_rays =
-        light_rays_by(estimator, lights.direct(), input_.plan.emitters_by_rays, input_.plan.fire_on_rays() ? lights.fire() : nullptr);
+    settings_.light_rays = light_rays_by(estimator, lights.direct(), input_.plan.emitters_by_rays,
+                                         input_.plan.fire_on_rays() ? lights.fire() : nullptr);
     settings_.surroundings = surroundings;
     settings_.once = lights.once();
     if (!input_.plan.surfaces)

@@ -2,9 +2,10 @@
 //
 // SV and SM: the Lambert base is lit by the lighting grids, which sum all lights of fire and smoke without noise; the
 // sum is multiplied by the fraction that other surfaces do not occlude (visibility_ratio.h). Where the fire's single
-// lights are chosen otherwise (fire_lights/sampled_fire.h), SV of the base is theirs. All other lobes are sampled, and reflect the medium along the sampled ray. Virtual lights in the smoke that own SM replace the smoke's
-// grid on the base and also shine along those rays; ray lights and rays share the glossy reflection of multiple
-// scattering (gloss_split.h). The grid gives the glossy reflection of single scattering without noise.
+// lights are chosen otherwise (fire_lights/sampled_fire.h), SV of the base is theirs. All other lobes are sampled, and
+// reflect the medium along the sampled ray. Virtual lights in the smoke that own SM replace the smoke's grid on the
+// base and also shine along those rays; ray lights and rays share the glossy reflection of multiple scattering
+// (gloss_split.h). The grid gives the glossy reflection of single scattering without noise.
 //
 // SA: a point on one of the emitters, and a ray sampled from the BSDF. SS: the virtual lights or, without them, paths.
 // Behind mirrors and clear glass the same estimators are used at the first surface that scatters (mirrors.h), and all

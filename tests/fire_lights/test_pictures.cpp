@@ -136,10 +136,10 @@ TEST_P(FireLightPictures, HaveThePathTracersMV) {
     EXPECT_LT(error, 0.05 * truth);
 }
 
-// A floor, of which a plate keeps a part in the dark. Over pictures of other seeds; half a percent: the camera's samples
-// differ.
+// A floor, of which a plate keeps a part in the dark. Over pictures of other seeds; half a percent: the camera's
+// samples differ.
 TEST_P(FireLightPictures, HaveThePathTracersSV) {
-    constexpr int kSeeds = 6;
+    constexpr int kSeeds = 12;
     Scene scene;
     add_quad(scene, {-4, -4, -1.4f}, {8, 0, 0}, {0, 8, 0}, lambert(0.5f));
     add_quad(scene, {0.1f, -0.8f, -1.15f}, {1.5f, 0, 0}, {0, 1.6f, 0}, lambert(0.3f));
@@ -147,6 +147,7 @@ TEST_P(FireLightPictures, HaveThePathTracersSV) {
     const Medium medium = smoke(0.3f);
     Shot traced = small_shot(kFireByHierarchy), lit = small_shot(GetParam());
     traced.method = RenderMethod::Path;
+    traced.tracing.samples = 2048;
     traced.scattering.bounces = lit.scattering.bounces = 1;
     lit.camera.samples_per_axis = 3;
     lit.fire_lights.points = 1;

@@ -32,8 +32,8 @@ public:
     void light_thin_medium(const LatticeRequest& request, Gathered& gathered, Statistics& statistics,
                            Progress& progress) const;
 
-    // At receivers on surfaces, if they are for surfaces (point_receivers.h): of dense smoke, and of thin media, empty where they have no lights
-    // of their own. Planar over the receivers; to be scaled by escape_scale().
+    // At receivers on surfaces, if they are for surfaces (point_receivers.h): of dense smoke, and of thin media, empty
+    // where they have no lights of their own. Planar over the receivers; to be scaled by escape_scale().
     std::array<Gathered, 2> at_surfaces(const Receivers& receivers) const;
     Rgb escape_scale() const { return escape_scale_; }
 

@@ -35,9 +35,9 @@ public:
                  const Instant& moment);
 
     const SourceField& field() const { return *field_; }
-    const SourceField* once() const { return once_; }                 // as ManyLights::once(), or null
-    const PathTracer* paths() const { return paths_; }                // null: no surfaces
-    const DirectLight* direct() const { return direct_; }             // null where nothing needs it
+    const SourceField* once() const { return once_; }      // as ManyLights::once(), or null
+    const PathTracer* paths() const { return paths_; }     // null: no surfaces
+    const DirectLight* direct() const { return direct_; }  // null where nothing needs it
     // Of this moment, as those of ManyLights.
     const SampledFire* fire() const { return fire_; }
     const SampledFire* fire_on_surfaces() const { return fire_on_surfaces_; }
