@@ -279,7 +279,7 @@ SharedBounce::Sample SurfaceShader::shared_sample(const SurfaceSample& sample, c
     return out;
 }
 
-// By its single lights, as the grid's sum of them has another owner than the light of the grid through panes.
+// By the fire's single lights. What the grid holds of the fire then serves panes alone.
 Rgb SurfaceShader::base_from_fire(const SurfaceSample& sample, const ShadedPoint& at) const {
     const SurfacePoint& point = at.seen.point;
     if (!has_base(point.material))
