@@ -63,6 +63,19 @@ dvec3 FireLights::local(std::size_t brick, const dvec3& in_brick) const {
     return origin_ + local_from_index_ * (first + in_brick);
 }
 
+double FireLights::extinction_at(const dvec3& position) const {
+    const BrickLattice& bricks = scene_.field().bricks();
+    const dvec3 index = index_from_local_ * (position - origin_),
+                end = dvec3(bricks.brick_extent() * BrickLattice::kSize);
+    for (int a = 0; a < 3; ++a)
+        if (!(index[a] >= 0.0 && index[a] < end[a]))
+            return 0.0;
+    const ivec3 brick = ivec3(index) / BrickLattice::kSize;
+    const int found = bricks.find(bricks.min_brick() + brick);
+    return found < 0 ? 0.0
+                     : scene_.field().extinction(std::size_t(found), vec3(index - dvec3(brick * BrickLattice::kSize)));
+}
+
 Rgb FireLights::glow(std::size_t brick, const vec3& in_brick) const {
     const TrackingField& field = scene_.field();
     Rgb out(0.0f);

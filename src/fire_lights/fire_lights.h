@@ -30,6 +30,9 @@ public:
     // Of all lights, for a tree.
     std::vector<LightBounds> bounds() const;
 
+    // Of the smoke there, 0 outside [1/m].
+    double extinction_at(const dvec3& position) const;
+
     // What the vertex scatters of a light that was chosen with that probability [W/(m^2 sr)].
     Rgb estimate(std::size_t light, double probability, const PathVertex& vertex, Rng& rng) const;
 

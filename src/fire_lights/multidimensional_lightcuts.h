@@ -11,7 +11,8 @@
 // settings.lightcuts_error of the sum, or there are settings.lightcuts_most.
 //
 // Departs from the paper: the points are those of one ray, not of all rays of a pixel, as rays are integrated one by
-// one; they are put in a tree by their order, without clustering; and the tree that is divided is chosen by size alone.
+// one; they are put in a tree by their order, without clustering; a point of a surface is alone, so that its cut is one
+// through the lights; and the tree that is divided is chosen by size alone.
 #pragma once
 
 #include "fire_lights/fire_lights.h"

@@ -1,5 +1,6 @@
 // The table of ways to choose among the lights of the fire. A way is one row; the key of a shot, its help, the methods
-// of a report and the tests read the table. The hierarchy is not a row: every row replaces it.
+// of a report and the tests read the table. The hierarchy is not a row: every row replaces it in MV and, on the base
+// of surfaces, in SV.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// How the light of the fire's voxels is gathered in the smoke that the camera sees.
+// How the light of the fire's voxels is gathered in the smoke and on the surfaces that the camera sees.
 #pragma once
 
 #include <cstdint>
@@ -6,12 +6,13 @@
 
 namespace brisance {
 
-// Not in the table of samplings (samplings.h): the medium's nodes hold the light, as the lighting grid brings it there.
+// Not in the table of samplings (samplings.h): the lighting grid brings the light to the medium's nodes and
+// to surfaces.
 constexpr const char* kFireByHierarchy = "hierarchy";
 
 struct FireLightSettings {
     std::string sampling = kFireByHierarchy;  // a name of fire_light_sampling_names()
-    int points = 4;                           // on every ray of the camera at which light is gathered
+    int points = 4;                           // on every ray through smoke at which light is gathered
     int samples = 1;                          // sampling intensity, light_tree: lights at every point
     double lightcuts_error = 0.02;            // sampling lightcuts, multidimensional_lightcuts: what a node may err,
                                               // over the sum of all

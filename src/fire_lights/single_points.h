@@ -1,4 +1,4 @@
-// Gatherers that treat every point of a ray by itself: all lights, lights chosen one by one, and cuts at a vertex,
+// Gatherers that treat every point by itself: all lights, lights chosen one by one, and cuts at a vertex,
 // which are those of virtual lights.
 //
 // Most lights of a fire in dense smoke reach no point at all. Cuts that count no smoke are all but blind there: they

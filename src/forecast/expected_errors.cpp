@@ -64,7 +64,7 @@ public:
         const double gathered = square(maps_) + square(interpolation_);
         if (cell == "V" || cell == "A")
             return {cell, limited(kErrorOfRays + kErrorOfBurningVoxels * std::pow(depth_, 3.0)), kSpreadOfRest};
-        if (cell == "MV" && plan_.fire_by_rays)
+        if ((cell == "MV" || cell == "SV") && plan_.fire_sampling)
             return {cell, kErrorOfOtherMethods, kSpreadOfRest};
         if (cell == "MV")
             return {cell, limited(std::hypot(std::sqrt(gathered), error_of_voxels(float(depth_)) + coarse_light_)),

@@ -1,5 +1,6 @@
 #include "forecast/plan.h"
 
+#include <algorithm>
 #include <functional>
 #include <utility>
 
@@ -86,18 +87,30 @@ void skip_without_emission(const Plan& plan, const Shot& shot, const Medium& med
         skip("scattered hierarchies", owner);
 }
 
-void skip_with_emission(const Plan& plan, const Shot& shot, const Medium& medium, const std::string& owner,
-                        const Skip& skip) {
+// Whether the fire's light at nodes or on surfaces comes from hierarchies: those begin MM, mirrors show their smoke,
+// and through panes the light of the fire is theirs.
+bool needs_hierarchies(const Plan& plan, const Surroundings* surroundings) {
+    if (!plan.fire_sampling)
+        return plan.single || plan.needs(Cell::SV);
+    const auto transmits = [](const SceneMaterial& m) { return m.surface.transmission > 0.0f; };
+    return plan.multiple || plan.needs(Cell::SM) ||
+           (plan.needs(Cell::SS) && surroundings && std::ranges::any_of(surroundings->scene().materials, transmits));
+}
+
+void skip_with_emission(const Plan& plan, const Shot& shot, const Medium& medium, const Surroundings* surroundings,
+                        const std::string& owner, const Skip& skip) {
     const bool many_lights = shot.method != RenderMethod::Path, scatters = medium.scatters();
     const std::string dark = medium.max_extinction <= 0.0f ? "there is no smoke to scatter" : "the albedo is zero";
     if (!plan.single)
         skip("MV", scatters ? "scattering.bounces is 0" : dark);
     if (!plan.multiple)
         skip("MM", scatters ? "scattering.bounces is " + std::to_string(shot.scattering.bounces) : dark);
-    if (!plan.single || !many_lights)
-        skip("lights, hierarchy, shadow maps", many_lights ? "no cell needs them" : "method is path");
-    else if (plan.fire_by_rays && !plan.multiple && !plan.surfaces)
-        skip("lights, hierarchy, shadow maps", std::string("fire_lights.sampling is ") + plan.fire_by_rays->name);
+    if (!many_lights)
+        skip("lights, hierarchy, shadow maps", "method is path");
+    else if (!needs_hierarchies(plan, surroundings))
+        skip("lights, hierarchy, shadow maps", plan.fire_sampling
+                                                   ? std::string("fire_lights.sampling is ") + plan.fire_sampling->name
+                                                   : "no cell needs them");
     else if (plan.scattering_method && !plan.mixed())
         skip("scattered hierarchies", owner);
     else if (!plan.multiple)
@@ -128,8 +141,8 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
     plan.emission = medium.emits();
     decide(plan, medium.scatters(), plan.emitters && surroundings->emitters().visible(), shot.scattering.bounces);
     const std::string owner = choose_owners(plan, shot, medium, skip);
-    if (shot.method != RenderMethod::Path && plan.single)
-        plan.fire_by_rays = find_fire_light_sampling(shot.fire_lights.sampling);
+    if (shot.method != RenderMethod::Path && (plan.single || plan.needs(Cell::SV)))
+        plan.fire_sampling = find_fire_light_sampling(shot.fire_lights.sampling);
     if (!plan.surfaces)
         skip("row S, column S", "no surfaces in the shot");
     if (!plan.emitters)
@@ -143,7 +156,10 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
     plan.directional = many_lights && lights_smoke && medium.mean_cosine != 0.0f;
     if (many_lights && lights_smoke && !plan.directional)
         skip("directional storage", "the phase function is isotropic");
-    (plan.emission ? skip_with_emission : skip_without_emission)(plan, shot, medium, owner, skip);
+    if (plan.emission)
+        skip_with_emission(plan, shot, medium, surroundings, owner, skip);
+    else
+        skip_without_emission(plan, shot, medium, owner, skip);
     return plan;
 }
 

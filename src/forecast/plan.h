@@ -27,14 +27,16 @@ struct Plan {
     std::string scattering_choice;  // the method that scattering.method resolved to
     float emitters_by_rays = 0.0f;  // of MA: the share on the camera's rays, not at the medium's nodes
     StageCost choice_cost;          // of the choice; no name: there was none to make
-    // How MV is gathered along the camera's rays from the fire's single lights; null: nodes hold it, from hierarchies.
-    const FireLightSampling* fire_by_rays = nullptr;
+    // How MV and, on the base of surfaces, SV are gathered from the fire's single lights; null: from hierarchies.
+    const FireLightSampling* fire_sampling = nullptr;
     // Of MS: what particles carry of the light that virtual lights would hold.
     float reflected_by_particles = 0.0f;
     bool surfaces = false;  // there are some
     bool emitters = false;  // there are lights, emissive surfaces or an environment
     CellSet needed;         // the cells that can be other than zero, those above among them
     std::vector<SkippedPart> skipped;
+    // Whether MV is gathered along the camera's rays, so that nodes need not hold it.
+    bool fire_on_rays() const { return fire_sampling && single; }
     bool needs(Cell cell) const { return needed.contains(cell); }
     // Whether two pictures are made and mixed: one by scattering_method, one by the lighting grid.
     bool mixed() const { return scattering_method && share_of_method < 1.0f; }

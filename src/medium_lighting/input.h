@@ -27,13 +27,14 @@ struct MediumLightingInput {
     ReflectedLight reflected = {};
 
     // Light to be computed.
-    bool fire = false;                // something emits: the source of MV, MM and SV
+    bool fire = false;                // something emits, and MV, MM or SV begin with it
     bool single = false;              // MV
     bool multiple = false;            // MM
     bool surfaces_on_medium = false;  // MS
     bool emitters_on_medium = false;  // MA, or its share of MM
     float emitters_at_nodes = 1.0f;   // the share of MA that nodes hold; the rest: along the camera's rays
-    bool surfaces_lit = false;        // SV or SM: lights are kept for receivers on surfaces
+    bool fire_on_surfaces = false;    // SV: lights of the fire are kept for receivers on surfaces
+    bool smoke_on_surfaces = false;   // SM: the same of the smoke
     bool directional = false;         // anisotropic phase function: light keeps its direction
     bool orders_apart = false;        // orders of scattering are kept for layers of their own
 };

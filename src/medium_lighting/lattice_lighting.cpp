@@ -87,8 +87,10 @@ void LatticeLighting::at_surfaces(std::vector<SurfaceReceiver>& points) const {
                 for (int c = 0; c < 3; ++c)
                     (points[order[i]].*slot)[part][c] = lights->escape_scale()[c] * arriving[part].scattered[c * n + i];
     };
-    gather(fire_, &SurfaceReceiver::fire);
-    gather(smoke_, &SurfaceReceiver::smoke);
+    if (input_.fire_on_surfaces)
+        gather(fire_, &SurfaceReceiver::fire);
+    if (input_.smoke_on_surfaces)
+        gather(smoke_, &SurfaceReceiver::smoke);
 }
 
 }  // namespace brisance

@@ -19,7 +19,7 @@ public:
 
     NodeLighting take_nodes() { return std::move(nodes_); }  // at the nodes of the medium itself
 
-    // Fills `fire` and `smoke` of receivers, where the input said that surfaces are lit.
+    // Fills `fire` and `smoke` of receivers, as far as the input said that they light surfaces.
     void at_surfaces(std::vector<SurfaceReceiver>& points) const;
     VisibilityRatios fire_visibility() const { return fire_ ? fire_->visibility_ratios() : VisibilityRatios{}; }
     VisibilityRatios smoke_visibility() const { return smoke_ ? smoke_->visibility_ratios() : VisibilityRatios{}; }

@@ -43,8 +43,8 @@ public:
     // No light, with the planes of request().
     Gathered dark() const;
 
-    // Whether lights are kept for receivers outside of dense smoke: surfaces, or nodes of thin media.
-    bool lights_exterior() const { return input_.surfaces_lit || !thin_medium_.empty(); }
+    // Whether lights are kept for receivers outside of dense smoke: nodes of thin media, or those `on_surfaces`.
+    bool lights_exterior(bool on_surfaces) const { return on_surfaces || !thin_medium_.empty(); }
 
     // The fire's lights, per node [W/sr]; their sum is that of the input medium's.
     std::vector<Rgb> fire_lights() const;

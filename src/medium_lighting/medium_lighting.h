@@ -15,7 +15,8 @@ public:
 
     const NodeLighting& at_nodes() const { return nodes_; }
 
-    // Fills `fire` and `smoke` of receivers, where the input said that surfaces are lit.
+    bool lights_surfaces() const { return input_.fire_on_surfaces || input_.smoke_on_surfaces; }
+    // Fills `fire` and `smoke` of receivers, as far as the input said that they light surfaces.
     void at_surfaces(std::vector<SurfaceReceiver>& points) const;
     VisibilityRatios fire_visibility() const { return lighting_->fire_visibility(); }
     VisibilityRatios smoke_visibility() const { return lighting_->smoke_visibility(); }

@@ -22,7 +22,7 @@ constexpr float kShareOfSampling = 0.25f;
 // the layers of bounces have to add up, nor where moments of the shutter share the rays of a pixel.
 bool looks_twice(const DrawInput& input, bool moments) {
     const Plan& plan = input.plan;
-    return !moments && !plan.scattering_method && !plan.fire_by_rays && plan.emitters_by_rays == 0.0f &&
+    return !moments && !plan.scattering_method && !plan.fire_on_rays() && plan.emitters_by_rays == 0.0f &&
            !input.shot.output.bounce_layers;
 }
 
@@ -41,7 +41,7 @@ PictureSettings picture_settings(const DrawInput& input, const ManyLights& light
     settings.edge_refinement = camera.edge_refinement;
     settings.cells = input.shot.output.cell_layers;
     settings.layers = input.plan.needed;
-    settings.fire_by_rays = input.plan.fire_by_rays != nullptr;
+    settings.fire_by_rays = input.plan.fire_on_rays();
     if (!input.medium.lattice.empty())
         settings.layers.set(Cell::V, true);
     return settings;
@@ -151,8 +151,8 @@ std::optional<ScreenSpaceCompensation> FramePicture::compensation(const Camera& 
 Image FramePicture::picture(const InScattering* estimator, int number, const MomentLights& lights, const Camera& camera,
                             const Surroundings* surroundings) {
     settings_.pass = number;
-    settings_.light_rays =
-        light_rays_by(estimator, lights.direct(), input_.plan.emitters_by_rays, lights.fire_on_rays());
+    settings_.light_rays = light_rays_by(estimator, lights.direct(), input_.plan.emitters_by_rays,
+                                         input_.plan.fire_on_rays() ? lights.fire() : nullptr);
     settings_.surroundings = surroundings;
     settings_.once = lights.once();
     if (!input_.plan.surfaces)
@@ -167,7 +167,7 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
                                 lights_.virtual_lights(), estimator, input_.plan.emitters_by_rays, settings_.parts,
                                 camera.settings().width, rays_of_pixel(), lengths_ ? &*lengths_ : nullptr,
                                 shared ? &*shared : nullptr, camera.pixel_angle(), reuse ? &*reuse : nullptr,
-                                compensated ? &*compensated : nullptr});
+                                compensated ? &*compensated : nullptr, lights.fire_on_surfaces()});
     Image image = render_picture(lights.field(), camera, settings_, progress_,
                                  [&](const auto& samples, auto& light) { shader.shade(samples, light); });
     if (reuse)

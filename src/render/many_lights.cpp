@@ -2,6 +2,7 @@
 
 #include "core/stopwatch.h"
 #include "medium/similar_medium.h"
+#include "surface_lighting/panes.h"
 
 namespace brisance {
 
@@ -55,12 +56,17 @@ bool lights_medium(const Plan& plan) {
     return plan.single || plan.needs(Cell::SV) || plan.needs(Cell::MA) || plan.needs(Cell::MS);
 }
 
+// Whether the lighting counts light as not scattered that scattered into the peak of the phase function.
+bool takes_peaks_for_straight(const DrawInput& input) {
+    const Plan& plan = input.plan;
+    return plan.multiple && !plan.scattering_method && input.shot.scattering.bounces < 0 &&
+           forward_share(input.medium.mean_cosine) > 0.0f;
+}
+
 // Whether MV and MA of the lighting hold light that scattered more than once, and it is needed separately: for a layer,
 // or beside an MV that is not the lighting's.
 bool wants_single_scattering_apart(const DrawInput& input) {
-    const Plan& plan = input.plan;
-    return plan.multiple && !plan.scattering_method && input.shot.scattering.bounces < 0 &&
-           forward_share(input.medium.mean_cosine) > 0.0f && (input.shot.output.cell_layers || plan.fire_by_rays);
+    return takes_peaks_for_straight(input) && (input.shot.output.cell_layers || input.plan.fire_on_rays());
 }
 
 }  // namespace
@@ -74,15 +80,16 @@ MediumLightingInput medium_lighting_input(const DrawInput& input, const Plan& pl
                             input.shot.scattering,
                             input.surroundings,
                             reflected};
-    out.fire = plan.emission;
+    out.fire = plan.emission && (plan.single || plan.needs(Cell::SV));
     out.single = plan.single;
     out.multiple = plan.multiple;
     out.surfaces_on_medium = plan.needs(Cell::MS);
     out.emitters_on_medium = plan.needs(Cell::MA);
     out.emitters_at_nodes = 1.0f - plan.emitters_by_rays;
-    out.surfaces_lit = plan.needs(Cell::SV) || plan.needs(Cell::SM);
+    out.fire_on_surfaces = plan.needs(Cell::SV);
+    out.smoke_on_surfaces = plan.needs(Cell::SM);
     out.directional = plan.directional;
-    out.orders_apart = orders_apart && !out.surfaces_lit;
+    out.orders_apart = orders_apart && !out.fire_on_surfaces && !out.smoke_on_surfaces;
     return out;
 }
 
@@ -109,30 +116,58 @@ ManyLights::ManyLights(const DrawInput& input, Statistics& statistics, Progress&
     }
     if (shot.virtual_lights.count > 0 && (plan.needs(Cell::SS) || plan.needs(Cell::MS)))
         virtual_lights_ = place_virtual_lights(input, paths_->direct(), statistics, progress);
-    if ((plan.scattering_method || plan.emitters_by_rays > 0.0f || plan.fire_by_rays) && !paths_)
+    if ((plan.scattering_method || plan.emitters_by_rays > 0.0f || plan.fire_sampling) && !paths_)
         own_direct_.emplace(input.medium, shot.tracing, input.surroundings);
-    if (plan.fire_by_rays)
+    if (plan.fire_sampling)
         make_fire_lights(input, statistics, progress);
     light_medium(input, statistics, progress);
+    if (plan.fire_sampling && plan.needs(Cell::SV) && takes_peaks_for_straight(input))
+        make_fire_in_similar(input, statistics);
     if (wants_single_scattering_apart(input))
         light_medium_once(input, statistics, progress);
 }
 
 void ManyLights::make_fire_lights(const DrawInput& input, Statistics& statistics, Progress& progress) {
-    progress.stage("lights of the fire (MV)");
+    progress.stage("lights of the fire");
     const Stopwatch watch;
-    fire_on_rays_.emplace(*direct(), *input.plan.fire_by_rays, input.shot.fire_lights);
-    statistics.stages.push_back({"lights of the fire (MV)",
+    fire_.emplace(*direct(), *input.plan.fire_sampling, input.shot.fire_lights);
+    std::vector<std::string> cells;
+    for (const Cell cell : {Cell::MV, Cell::SV})
+        if (input.plan.needs(cell))
+            cells.emplace_back(name_of(cell));
+    statistics.stages.push_back(
+        {"lights of the fire",
+         watch.seconds(),
+         fire_->bytes(),
+         {{"sampling", input.plan.fire_sampling->name}, {"lights", fire_->lights()}, {"cells", cells}}});
+}
+
+// SM holds no light that scattered into the peak of the phase function before it met a surface. SV has to.
+void ManyLights::make_fire_in_similar(const DrawInput& input, Statistics& statistics) {
+    const Stopwatch watch;
+    similar_direct_.emplace(*medium_->similar(), input.shot.tracing, input.surroundings);
+    fire_in_similar_.emplace(*similar_direct_, *input.plan.fire_sampling, input.shot.fire_lights);
+    statistics.stages.push_back({"lights of the fire, through smoke without peaks",
                                  watch.seconds(),
-                                 fire_on_rays_->bytes(),
-                                 {{"sampling", input.plan.fire_by_rays->name}, {"lights", fire_on_rays_->lights()}}});
+                                 similar_direct_->bytes() + fire_in_similar_->bytes(),
+                                 {{"sampling", input.plan.fire_sampling->name}}});
+}
+
+// Whether surfaces need the fire's light from hierarchies: for SV, or for SS through panes, which is theirs however the
+// fire's single lights are chosen (SurfaceShader).
+bool ManyLights::grid_lights_surfaces_by_fire(const DrawInput& input) const {
+    const Plan& plan = input.plan;
+    if (!plan.needs(Cell::SV) || !plan.fire_sampling)
+        return plan.needs(Cell::SV);
+    return plan.needs(Cell::SS) && virtual_lights_ && !plan.scattering_method && Panes(*input.surroundings).any();
 }
 
 void ManyLights::light_medium(const DrawInput& input, Statistics& statistics, Progress& progress) {
     Plan plan = input.plan.scattering_method ? without_scattering_method(input.plan) : input.plan;
     // Nodes that nothing but MV asks for need no light of the fire. MM begins with it, and mirrors show it.
-    if (plan.fire_by_rays && !plan.multiple && !input.plan.needs(Cell::SM))
+    if (plan.fire_sampling && !plan.multiple && !input.plan.needs(Cell::SM))
         plan.single = false;
+    plan.needed.set(Cell::SV, grid_lights_surfaces_by_fire(input));
     const int bounces =
         input.plan.scattering_method ? bounces_beside_scattering_method(input.plan) : input.shot.scattering.bounces;
     if (plan.needs(Cell::MS)) {

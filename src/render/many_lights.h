@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "camera_rays/source_field.h"
-#include "fire_lights/fire_on_rays.h"
+#include "fire_lights/sampled_fire.h"
 #include "medium_lighting/medium_lighting.h"
 #include "reference/path_tracer.h"
 #include "render/draw.h"
@@ -53,23 +53,31 @@ public:
     const DirectLight* direct() const { return paths_ ? &paths_->direct() : own_direct_ ? &*own_direct_ : nullptr; }
     const VirtualLights* virtual_lights() const { return virtual_lights_.get(); }  // null: the shot uses none
     const LitMedium& medium() const { return *medium_; }
-    // The fire's single lights, where they own MV; else null.
-    const FireOnRays* fire_on_rays() const { return fire_on_rays_ ? &*fire_on_rays_ : nullptr; }
+    // The fire's single lights, where they own MV or SV; else null.
+    const SampledFire* fire() const { return fire_ ? &*fire_ : nullptr; }
+    // Those that own SV on the base of surfaces; null: none do.
+    const SampledFire* fire_on_surfaces() const { return fire_in_similar_ ? &*fire_in_similar_ : fire(); }
+    // Whether the latter shine through the medium in which medium() is lit, and not through the medium itself.
+    bool surfaces_see_similar() const { return fire_in_similar_.has_value(); }
     // Field of single scattering, where MV and MA of medium() hold more (PictureSettings::once); else null.
     const LitMedium* once() const { return once_.get(); }
 
 private:
     void make_fire_lights(const DrawInput& input, Statistics& statistics, Progress& progress);
+    void make_fire_in_similar(const DrawInput& input, Statistics& statistics);
+    bool grid_lights_surfaces_by_fire(const DrawInput& input) const;
     void light_medium(const DrawInput& input, Statistics& statistics, Progress& progress);
     void light_medium_once(const DrawInput& input, Statistics& statistics, Progress& progress);
 
     std::optional<PathTracer> paths_;
     std::optional<DirectLight> own_direct_;
-    std::optional<FireOnRays> fire_on_rays_;
+    std::optional<SampledFire> fire_;
     std::unique_ptr<VirtualLights> virtual_lights_;
     std::optional<PointsOfSides> reflecting_;
     std::optional<SpecularPhotons> cast_;
     std::unique_ptr<LitMedium> medium_, once_;
+    std::optional<DirectLight> similar_direct_;
+    std::optional<SampledFire> fire_in_similar_;
 };
 
 }  // namespace brisance

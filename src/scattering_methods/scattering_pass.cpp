@@ -91,7 +91,7 @@ Image mean_of_passes(const ScatteringMethod& method, const ScatteringMethodSetti
 }
 
 LightRays light_rays_by(const InScattering* estimator, const DirectLight* scene, float emitters,
-                        const FireOnRays* fire) {
+                        const SampledFire* fire) {
     if (!estimator && emitters == 0.0f && !fire)
         return {};
     return [=](const PixelRay& r, double end) {

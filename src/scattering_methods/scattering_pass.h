@@ -10,7 +10,7 @@
 
 #include "camera/camera.h"
 #include "camera_rays/picture.h"
-#include "fire_lights/fire_on_rays.h"
+#include "fire_lights/sampled_fire.h"
 #include "scattering_methods/methods.h"
 #include "statistics/statistics.h"
 #include "transport/direct_light.h"
@@ -28,6 +28,6 @@ Image mean_of_passes(const ScatteringMethod& method, const ScatteringMethodSetti
 // MM by the estimator, or null, the share `emitters` of MA, and MV by the fire's lights, or null; empty where there is
 // nothing of that. Keeps references to all.
 LightRays light_rays_by(const InScattering* estimator, const DirectLight* scene, float emitters,
-                        const FireOnRays* fire = nullptr);
+                        const SampledFire* fire = nullptr);
 
 }  // namespace brisance

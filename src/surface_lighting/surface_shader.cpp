@@ -131,7 +131,7 @@ std::vector<SurfaceShader::ShadedPoint> SurfaceShader::shaded_points(const std::
 // What the bases of all points reflect of the medium's light.
 std::vector<BaseLight> SurfaceShader::light_bases(const std::vector<SurfaceSample>& samples,
                                                   const std::vector<ShadedPoint>& points) {
-    if (!input_.medium_lighting)
+    if (!input_.medium_lighting || !input_.medium_lighting->lights_surfaces())
         return std::vector<BaseLight>(samples.size());
     const Medium& medium = input_.paths.direct().field().medium();
     SharedReceivers receivers(medium);
@@ -196,7 +196,7 @@ void SurfaceShader::reflect_scattered(const SurfacePoint& point, const dvec3& to
     const int light_samples =
         input_.in_scattering && has_wide_lobes(point.material) ? input_.in_scattering->gloss_samples() : 0;
     std::optional<GlossyLobes> gloss;
-    if (input_.medium_lighting && has_specular(point.material))
+    if (medium_shines() && has_specular(point.material))
         gloss.emplace(point, toward_viewer, light_samples);
     if (input_.in_scattering) {
         const bool shared = gloss && light_samples > 0;
@@ -281,12 +281,22 @@ SharedBounce::Sample SurfaceShader::shared_sample(const SurfaceSample& sample, c
     return out;
 }
 
+// By the fire's single lights. What the grid holds of the fire then serves panes alone.
+Rgb SurfaceShader::base_from_fire(const SurfaceSample& sample, const ShadedPoint& at) const {
+    const SurfacePoint& point = at.seen.point;
+    if (!has_base(point.material))
+        return Rgb(0.0f);
+    const PathVertex vertex(point, Bsdf(point.material, point.frame, Lobes::Base), at.seen.arriving);
+    Rng rng = input_.fire->surface_rng(sample.pixel, sample.number);
+    return input_.fire->on_surface(vertex, rng);
+}
+
 void SurfaceShader::shade_point(const SurfaceSample& sample, const BaseLight& base, ShadedPoint& at,
                                 CellSum& out) const {
     const SurfacePoint& point = at.seen.point;
     const dvec3 toward_viewer = -at.seen.arriving;
     Rng rng(Stream::Surface, sample.pixel, sample.number);
-    out.at(Cell::SV) += base.from_fire;
+    out.at(Cell::SV) += input_.fire ? base_from_fire(sample, at) : base.from_fire;
     out.at(Cell::SM) += base.from_smoke;
     out.at(Cell::SS) += base.through_panes;
     reflect_scattered(point, toward_viewer, rng, at.ray_rng, out);

@@ -1,10 +1,11 @@
 // Light that visible surfaces scatter toward the camera: the row S of the ledger.
 //
 // SV and SM: the Lambert base is lit by the lighting grids, which sum all lights of fire and smoke without noise; the
-// sum is multiplied by the fraction that other surfaces do not occlude (visibility_ratio.h). All other lobes are
-// sampled, and reflect the medium along the sampled ray. Virtual lights in the smoke that own SM replace the smoke's
-// grid on the base and also shine along those rays; ray lights and rays share the glossy reflection of multiple
-// scattering (gloss_split.h). The grid gives the glossy reflection of single scattering without noise.
+// sum is multiplied by the fraction that other surfaces do not occlude (visibility_ratio.h). Where the fire's single
+// lights are chosen otherwise (fire_lights/sampled_fire.h), SV of the base is theirs. All other lobes are sampled, and
+// reflect the medium along the sampled ray. Virtual lights in the smoke that own SM replace the smoke's grid on the
+// base and also shine along those rays; ray lights and rays share the glossy reflection of multiple scattering
+// (gloss_split.h). The grid gives the glossy reflection of single scattering without noise.
 //
 // SA: a point on one of the emitters, and a ray sampled from the BSDF. SS: the virtual lights or, without them, paths.
 // Behind mirrors and clear glass the same estimators are used at the first surface that scatters (mirrors.h), and all
@@ -17,6 +18,7 @@
 #include "camera_rays/picture.h"
 #include "camera_rays/source_field.h"
 #include "emitters/surroundings.h"
+#include "fire_lights/sampled_fire.h"
 #include "light_selection/in_scattering.h"
 #include "medium_lighting/medium_lighting.h"
 #include "reference/path_tracer.h"
@@ -37,7 +39,7 @@ struct SurfaceLightingInput {
     CellSet needed;  // SS and SA are computed only if they are among them
     const SourceField& field;
     const PathTracer& paths;
-    const MediumLighting* medium_lighting = nullptr;  // null: neither fire nor smoke emits light
+    const MediumLighting* medium_lighting = nullptr;  // null: no grid lights surfaces or smoke
     const VirtualLights* virtual_lights = nullptr;    // null: the shot uses none
     const InScattering* in_scattering = nullptr;      // null: it does not own SM
     float emitters_by_rays = 0.0f;                    // share of MA along rays (medium_along_ray.h)
@@ -50,6 +52,7 @@ struct SurfaceLightingInput {
     LightReuse* reuse = nullptr;                      // gets what samples chose of the lights; null: they keep it
     // Gets what all samples show; null: the bound's loss is not looked for on the screen. Not beside `reuse`.
     ScreenSpaceCompensation* compensation = nullptr;
+    const SampledFire* fire = nullptr;  // owns SV of the base; null: the lighting grid does
 };
 
 class SurfaceShader {
@@ -67,6 +70,7 @@ private:
     std::vector<BaseLight> light_bases(const std::vector<SurfaceSample>& samples,
                                        const std::vector<ShadedPoint>& points);
     void shade_point(const SurfaceSample& sample, const BaseLight& base, ShadedPoint& at, CellSum& light) const;
+    Rgb base_from_fire(const SurfaceSample& sample, const ShadedPoint& at) const;
     Rgb from_virtual_lights(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng, ShadedPoint& at) const;
     SharedBounce::Sample shared_sample(const SurfaceSample& sample, const Bsdf& lobes, Lobes which, const Rgb& colour,
                                        float lobe, Rng& rng, ShadedPoint& at) const;
@@ -83,6 +87,9 @@ private:
                            CellSum& light) const;
     void reflect_medium(const SurfacePoint& point, const dvec3& toward_viewer, const GlossyLobes& lobes, Rng& rng,
                         Rng& ray_rng, CellSum& light) const;
+
+    // Whether fire or smoke shines.
+    bool medium_shines() const { return input_.medium_lighting || input_.fire; }
 
     // Virtual lights in the smoke do not account for panes, nor do paths without virtual lights.
     bool samples_through_panes() const {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "fire_lights/fire_on_rays.h"
+#include "fire_lights/sampled_fire.h"
 #include "fixtures/estimate.h"
 #include "fixtures/media.h"
 #include "medium/phase.h"
@@ -68,7 +68,7 @@ double intensity_of_one() {
 }
 
 // Half a metre or more beside the light, a twentieth of the distance wide.
-TEST(FireOnRays, OneLightInThinSmokeHasTheIntegralOfItsPoint) {
+TEST(SampledFire, OneLightInThinSmokeHasTheIntegralOfItsPoint) {
     const Medium medium = make_medium(even_smoke(at_origin));
     const DirectLight scene(medium, {}, nullptr);
     const dvec3 middle(medium.local_of_node(ivec3(0)));
@@ -88,7 +88,7 @@ TEST(FireOnRays, OneLightInThinSmokeHasTheIntegralOfItsPoint) {
         FireLightSettings settings;
         settings.points = 16;
         settings.lightcuts_error = 0.0;
-        const FireOnRays fire(scene, row, settings);
+        const SampledFire fire(scene, row, settings);
         ASSERT_EQ(fire.lights(), 8u);
         const Estimate found = estimate_to(0.003, 1, [&](const dvec3&, Rng& rng, double* out) {
             RayMedium seen;
@@ -122,7 +122,7 @@ TEST(FireLights, HaveTheNearFieldOfTheirVoxel) {
     EXPECT_NEAR(found.mean[0], expected, 4.0 * found.error[0] + 1e-4 * expected);
 }
 
-TEST(FireOnRays, WithoutFireOrSmokeAreBlack) {
+TEST(SampledFire, WithoutFireOrSmokeAreBlack) {
     Recipe dark = even_smoke([](const ivec3&) { return false; });
     const Medium none = make_medium(dark);
     Recipe black = even_smoke(at_origin);
@@ -131,7 +131,7 @@ TEST(FireOnRays, WithoutFireOrSmokeAreBlack) {
     for (const Medium* medium : {&none, &absorbs})
         for (const FireLightSampling& row : fire_light_samplings()) {
             const DirectLight scene(*medium, {}, nullptr);
-            const FireOnRays fire(scene, row, {});
+            const SampledFire fire(scene, row, {});
             RayMedium seen;
             Rng rng = fire.rng(0, 0);
             for (const double y : {0.0, 50.0}) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fire_lights/fire_on_rays.h"
+#include "fire_lights/sampled_fire.h"
 #include "fixtures/ray_fixture.h"
 
 namespace brisance {
@@ -29,7 +29,7 @@ struct SingleScattering {
     }
 
     Estimate by_lights(const std::string& sampling, const FireLightSettings& settings, double relative) const {
-        const FireOnRays fire(stage.scene(), *find_fire_light_sampling(sampling), settings);
+        const SampledFire fire(stage.scene(), *find_fire_light_sampling(sampling), settings);
         return estimate_to(relative, 3, [&](const dvec3&, Rng& rng, double* out) {
             const Rgb light = along(fire, stage.ray(rng), rng);
             for (int c = 0; c < 3; ++c)
@@ -37,7 +37,7 @@ struct SingleScattering {
         });
     }
 
-    Rgb along(const FireOnRays& fire, const Ray& ray, Rng& rng) const {
+    Rgb along(const SampledFire& fire, const Ray& ray, Rng& rng) const {
         thread_local RayMedium seen;
         seen.look(stage.scene().field(), ray, stage.scene().segment_along(ray).end);
         return fire.along(seen, ray, rng);
@@ -104,6 +104,110 @@ TEST(FireSamplings, HaveMeansThatDoNotDependOnCounts) {
         const Estimate a = scene.by_lights(sampling, one, 0.03), b = scene.by_lights(sampling, many, 0.015);
         expect_same(a, b, sampling);
         EXPECT_LT(b.error[0] * std::sqrt(double(b.samples)), a.error[0] * std::sqrt(double(a.samples))) << sampling;
+    }
+}
+
+// A floor of which a camera close above sees a part, by paths and by a sampling.
+struct LitFloor {
+    LitFloor(const Recipe& recipe, const Scene& set, double height, double half)
+        : scene(recipe, set), height(height), half(half) {}
+
+    Ray ray(const dvec3& u) const {
+        return {{half * (2.0 * u.x - 1.0), half * (2.0 * u.y - 1.0), height + 0.01}, {0.0, 0.0, -1.0}};
+    }
+    Estimate by_paths(double relative) const {
+        const PathTracer tracer(scene.stage.scene().field().medium(), {}, 1, scene.stage.scene().surroundings());
+        return estimate_to(relative, 3, [&](const dvec3& u, Rng& rng, double* out) {
+            PathSum sum{};
+            PathStatistics statistics;
+            tracer.trace(ray(u), u.z, rng, sum, statistics);
+            for (int c = 0; c < 3; ++c)
+                out[c] = sum.cells.at(Cell::SV)[c];
+        });
+    }
+    Estimate by_lights(const std::string& sampling, const FireLightSettings& settings, double relative) const {
+        const SampledFire fire(scene.stage.scene(), *find_fire_light_sampling(sampling), settings);
+        return estimate_to(relative, 3, [&](const dvec3& u, Rng& rng, double* out) {
+            const Rgb light = seen(fire, ray(u), rng);
+            for (int c = 0; c < 3; ++c)
+                out[c] = light[c];
+        });
+    }
+    Rgb seen(const SampledFire& fire, const Ray& ray, Rng& rng) const {
+        const DirectLight& direct = scene.stage.scene();
+        const RaySegment segment = direct.segment_along(ray);
+        return fire.on_surface(PathVertex(*segment.point, ray.direction), rng) *
+               float(direct.lines().transmittance(ray, segment.end, rng));
+    }
+
+    SingleScattering scene;
+    double height, half;
+};
+
+Scene floor_at(float height) {
+    Scene set;
+    add_quad(set, {-6, -6, height}, {12, 0, 0}, {0, 12, 0}, lambert(0.6f));
+    return set;
+}
+
+void expect_floor_as_paths(const Recipe& recipe, const Scene& set, double height, double half, const char* what) {
+    const LitFloor floor(recipe, set, height, half);
+    const Estimate paths = floor.by_paths(0.01);
+    for (const FireLightSampling& row : fire_light_samplings()) {
+        FireLightSettings s;
+        s.lightcuts_error = 0.0;
+        s.lightcuts_most = 1000000;
+        s.samples = 4;
+        expect_same(floor.by_lights(row.name, s, 0.015), paths, std::string(what) + ", " + row.name);
+    }
+}
+
+// A plate beside the fire leaves half of the floor in its shadow and penumbra.
+TEST(FireOnSurfaces, HasTheMeanOfPathsUnderAPlate) {
+    Scene set = floor_at(-1.6f);
+    add_quad(set, {0.0f, -3, -1.2f}, {3, 0, 0}, {0, 6, 0}, lambert(0.0f));
+    expect_floor_as_paths(small_fire(0.4f), set, -1.6, 1.5, "floor under a plate");
+    const LitFloor covered(small_fire(0.4f), set, -1.6, 1.5), open(small_fire(0.4f), floor_at(-1.6f), -1.6, 1.5);
+    const double hidden = covered.by_paths(0.02).mean[0] / open.by_paths(0.02).mean[0];
+    std::printf("the plate leaves %.3g of the light\n", hidden);
+    EXPECT_LT(hidden, 0.8);
+}
+
+// Voxels that burn touch the floor, and smoke lies on it.
+TEST(FireOnSurfaces, HasTheMeanOfPathsWhereItTouchesThem) {
+    expect_floor_as_paths(small_fire(0.0f), floor_at(-0.21f), -0.21, 0.8, "floor in the fire");
+}
+
+// A floor beside the fire, root mean square over draws of the representatives.
+TEST(FireOnSurfaces, CutsErrLessWhereTheyMayErrLess) {
+    constexpr int kSeeds = 16;
+    const LitFloor floor(small_fire(0.0f), floor_at(-1.6f), -1.6, 1.5);
+    const auto lit = [&](const char* sampling, double error, std::uint32_t seed, int times) {
+        FireLightSettings s;
+        s.lightcuts_error = error;
+        s.lightcuts_most = 1000000;
+        s.seed = seed;
+        const SampledFire fire(floor.scene.stage.scene(), *find_fire_light_sampling(sampling), s);
+        double sum = 0.0;
+        for (int i = 0; i < times; ++i) {
+            Rng rng = fire.surface_rng(0, static_cast<std::uint64_t>(i));
+            sum += luminance(floor.seen(fire, floor.ray({0.3, 0.4, 0.0}), rng)) / times;
+        }
+        return sum;
+    };
+    const double truth = lit("all", 0.0, 0, 256);
+    for (const char* const sampling : {"lightcuts", "multidimensional_lightcuts"}) {
+        const auto error_of = [&](double error) {
+            double square = 0.0;
+            for (std::uint32_t seed = 0; seed < kSeeds; ++seed)
+                square += std::pow(lit(sampling, error, seed, 32) / truth - 1.0, 2) / kSeeds;
+            return std::sqrt(square);
+        };
+        const double coarse = error_of(0.5), middle = error_of(0.02), fine = error_of(0.0);
+        std::printf("%s on a floor: errors %.3g, %.3g, %.3g\n", sampling, coarse, middle, fine);
+        EXPECT_LT(middle, 0.5 * coarse) << sampling;
+        EXPECT_LT(middle, 0.1) << sampling;
+        EXPECT_LT(fine, 0.03) << sampling;
     }
 }
 
@@ -176,7 +280,7 @@ TEST(FireCuts, HaveTheRightMeanOverSeeds) {
                 s.points = 4;
                 s.lightcuts_most = 1;
                 s.seed = static_cast<std::uint32_t>(rng.next_double() * 0x1p31);
-                const FireOnRays fire(scene.stage.scene(), *find_fire_light_sampling(sampling), s);
+                const SampledFire fire(scene.stage.scene(), *find_fire_light_sampling(sampling), s);
                 constexpr int kRays = 16;
                 std::fill(out, out + 3, 0.0);
                 for (int i = 0; i < kRays; ++i) {

@@ -112,6 +112,15 @@ TEST(Methods, OfLampsHaveALadderOfTheirNumbers) {
     EXPECT_FALSE(owns(methods[0], "V"));
 }
 
+TEST(Methods, OfTheFiresLightsOwnWhatItLightsOnce) {
+    for (const Method& method : parse({"fire_intensity", "fire_multidimensional_lightcuts"}, {})) {
+        EXPECT_TRUE(owns(method, "MV"));
+        EXPECT_TRUE(owns(method, "SV"));
+        EXPECT_FALSE(owns(method, "MM"));
+        EXPECT_FALSE(owns(method, "SM"));
+    }
+}
+
 TEST(Methods, OfCascadesHaveALadderOfTheirDirections) {
     const std::vector<Method> methods = parse({"radiance_cascades", "few=radiance_cascades"}, {"few:2,3"});
     EXPECT_EQ(labels(methods[0]), (Strings{"4 x 4 directions", "8 x 8 directions", "16 x 16 directions"}));

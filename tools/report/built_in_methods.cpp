@@ -35,7 +35,7 @@ void add_fire_lights(std::vector<BuiltIn>& methods) {
                                {"method=lighting_grid", "scattering.method=lighting_grid",
                                 std::string("fire_lights.sampling=") + row.name},
                                StepsOf::Samples,
-                               {Cell::MV}});
+                               {Cell::MV, Cell::SV}});
 }
 
 // The presets of all scattering methods.

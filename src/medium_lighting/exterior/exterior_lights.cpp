@@ -36,8 +36,9 @@ std::vector<ReceiverPoint> points_on_sphere(const vec3& middle, float radius) {
 
 }  // namespace
 
-ExteriorLights::ExteriorLights(const LitLattice& lattice, HierarchyLights lights, float alpha, Statistics& statistics)
-    : lattice_(lattice), lights_(std::move(lights)) {
+ExteriorLights::ExteriorLights(const LitLattice& lattice, HierarchyLights lights, bool for_surfaces, float alpha,
+                               Statistics& statistics)
+    : lattice_(lattice), for_surfaces_(for_surfaces), lights_(std::move(lights)) {
     const Stopwatch watch;
     const MediumLightingInput& input = lattice.input();
     escape_ = escape_probabilities();
@@ -52,7 +53,7 @@ ExteriorLights::ExteriorLights(const LitLattice& lattice, HierarchyLights lights
     if (input.lighting.energy_balance)
         balance_escape(power, escape, statistics);
     statistics.stages.push_back(
-        {input.surfaces_lit ? "lights for surfaces" : "lights for haze",
+        {for_surfaces ? "lights for surfaces" : "lights for haze",
          watch.seconds(),
          lights_.grid.bytes() + (ratio_ ? ratio_->bytes() : 0) + (thin_ratio_ ? thin_ratio_->bytes() : 0),
          {{"coarsest_level_lights", lights_.grid.levels.back().size()}}});
@@ -90,16 +91,15 @@ void ExteriorLights::keep_for_exterior(float alpha) {
     const auto ratio_of = [&](const std::vector<Rgb>& intensity) {
         return std::make_unique<VisibilityRatio>(lattice_.medium(), lattice_.depths(), intensity, escape_);
     };
-    const bool surfaces = lattice_.input().surfaces_lit;
-    if (surfaces)
+    if (for_surfaces_)
         ratio_ = ratio_of(lights_.light.intensity);
-    if (surfaces && thin_)
+    if (for_surfaces_ && thin_)
         thin_ratio_ = ratio_of(thin_->lights.light.intensity);
     if (!lights_.of_lamps)
         place_for_exterior(lights_, lattice_.medium(), escape_);
-    if (surfaces && !lattice_.thin_medium().empty())
+    if (for_surfaces_ && !lattice_.thin_medium().empty())
         for_thin_ = lights_.grid;
-    if (surfaces)
+    if (for_surfaces_)
         drop_coarse_levels(lights_.grid, kLeastLightsForSurfaces);
     maps_.on_demand = true;
     field_ = lights_.field(lattice_.pyramid(), alpha, lattice_.input().lighting, &maps_);
@@ -118,7 +118,7 @@ void ExteriorLights::light_thin_medium(const LatticeRequest& request, Gathered& 
     const Stopwatch watch;
     LightField field = field_;
     ShadowMapCache maps{{}, true}, thin_maps{{}, true};
-    if (lattice_.input().surfaces_lit) {
+    if (for_surfaces_) {
         field.grid = &for_thin_;
         field.occluders = lattice_.pyramid().occluders();
         field.cache = &maps;

@@ -21,8 +21,10 @@ using VisibilityRatios = std::array<const VisibilityRatio*, 2>;
 
 class ExteriorLights {
 public:
-    // Keeps a reference to the lattice. `alpha`: of the blends between levels. Adds stages to the statistics.
-    ExteriorLights(const LitLattice& lattice, HierarchyLights lights, float alpha, Statistics& statistics);
+    // Keeps a reference to the lattice. `for_surfaces`: not for nodes of thin media alone. `alpha`: of the blends
+    // between levels. Adds stages to the statistics.
+    ExteriorLights(const LitLattice& lattice, HierarchyLights lights, bool for_surfaces, float alpha,
+                   Statistics& statistics);
     ExteriorLights(const ExteriorLights&) = delete;
     ExteriorLights& operator=(const ExteriorLights&) = delete;
 
@@ -30,8 +32,8 @@ public:
     void light_thin_medium(const LatticeRequest& request, Gathered& gathered, Statistics& statistics,
                            Progress& progress) const;
 
-    // At receivers on surfaces (point_receivers.h): of dense smoke, and of thin media, empty where they have no lights
-    // of their own. Planar over the receivers; to be scaled by escape_scale().
+    // At receivers on surfaces, if they are for surfaces (point_receivers.h): of dense smoke, and of thin media, empty
+    // where they have no lights of their own. Planar over the receivers; to be scaled by escape_scale().
     std::array<Gathered, 2> at_surfaces(const Receivers& receivers) const;
     Rgb escape_scale() const { return escape_scale_; }
 
@@ -44,6 +46,7 @@ private:
     void balance_escape(const dvec3& power, const EscapeEstimate& escape, Statistics& statistics);
 
     const LitLattice& lattice_;
+    bool for_surfaces_;
     HierarchyLights lights_;
     NodeWeights escape_;                      // per node: how likely its light is to leave the medium
     LightingGrid for_thin_;                   // levels that thin media need, where surfaces need fewer

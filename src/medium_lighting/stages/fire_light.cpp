@@ -59,9 +59,10 @@ FireLight light_from_fire(const LitLattice& lattice, Statistics& statistics, Pro
     AdaptiveLight arriving;
     if (at_nodes)
         arriving = gather_at_lattice(lattice, lights, statistics, progress);
-    if (lattice.lights_exterior())
-        out.exterior =
-            std::make_unique<ExteriorLights>(lattice, std::move(lights), lattice.input().lighting.alpha, statistics);
+    const bool on_surfaces = lattice.input().fire_on_surfaces;
+    if (lattice.lights_exterior(on_surfaces))
+        out.exterior = std::make_unique<ExteriorLights>(lattice, std::move(lights), on_surfaces,
+                                                        lattice.input().lighting.alpha, statistics);
     if (!at_nodes) {
         out.arriving = lattice.dark();
         return out;

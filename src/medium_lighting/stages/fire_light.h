@@ -10,7 +10,7 @@ namespace brisance {
 struct FireLight {
     Gathered arriving;                         // at the nodes; zero where single scattering is not needed
     std::vector<Rgb> single;                   // source function of MV per node; empty if not needed
-    std::unique_ptr<ExteriorLights> exterior;  // where LitLattice::lights_exterior(), else null
+    std::unique_ptr<ExteriorLights> exterior;  // where LitLattice::lights_exterior(), or null
 };
 
 FireLight light_from_fire(const LitLattice& lattice, Statistics& statistics, Progress& progress);

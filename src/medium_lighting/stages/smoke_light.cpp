@@ -140,10 +140,11 @@ Gathered gather_together(const LitLattice& lattice, ScatteredLight orders, const
     sum.resize(lattice.node_count(), lattice.input().directional, false);
     HierarchyLights lights = flight.build(std::move(orders));
     sum.add(flight.gather(lights, "last"));
-    if (lattice.lights_exterior()) {
+    const bool on_surfaces = lattice.input().smoke_on_surfaces;
+    if (lattice.lights_exterior(on_surfaces)) {
         out.exterior =
             std::make_unique<ExteriorLights>(lattice, exterior_lights_of(lattice, std::move(lights), first, sum),
-                                             lattice.input().scattering.alpha, statistics);
+                                             on_surfaces, lattice.input().scattering.alpha, statistics);
         out.exterior->light_thin_medium(lattice.last_request(), sum, statistics, progress);
     }
     return sum;
@@ -156,8 +157,9 @@ Gathered gather_apart(const LitLattice& lattice, std::vector<ScatteredLight> ord
     for (std::size_t k = 0; k < orders.size(); ++k) {
         HierarchyLights lights = flight.build(std::move(orders[k]));
         Gathered g = flight.gather(lights, std::to_string(k + 1));
-        if (lattice.lights_exterior()) {
-            out.exterior = std::make_unique<ExteriorLights>(lattice, std::move(lights),
+        const bool on_surfaces = lattice.input().smoke_on_surfaces;
+        if (lattice.lights_exterior(on_surfaces)) {
+            out.exterior = std::make_unique<ExteriorLights>(lattice, std::move(lights), on_surfaces,
                                                             lattice.input().scattering.alpha, statistics);
             out.exterior->light_thin_medium(lattice.last_request(), g, statistics, progress);
         }

@@ -13,7 +13,7 @@ namespace brisance {
 struct SmokeLight {
     std::vector<Rgb> multiple;                 // source function of MM per node
     std::vector<std::vector<Rgb>> orders;      // of its parts, where orders are kept apart; the last is the tail
-    std::unique_ptr<ExteriorLights> exterior;  // where LitLattice::lights_exterior(), else null
+    std::unique_ptr<ExteriorLights> exterior;  // where LitLattice::lights_exterior(), or null
 };
 
 // `first`: light that arrives at the nodes without having scattered in the medium, or from surfaces.

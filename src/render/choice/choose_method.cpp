@@ -64,8 +64,8 @@ MethodForecast forecast(const Shot& shot, const Medium& medium, const Plan& plan
         return grid_since("shots with surfaces or lamps are not forecast");
     if (plan.scattering_method)
         return grid_since("scattering.method is " + plan.scattering_choice);
-    if (plan.fire_by_rays)
-        return grid_since(std::string("fire_lights.sampling is ") + plan.fire_by_rays->name);
+    if (plan.fire_sampling)
+        return grid_since(std::string("fire_lights.sampling is ") + plan.fire_sampling->name);
     if (!plan.single)
         return grid_since("no light is scattered");
     if (!fits_in_memory(shot, medium, plan))

@@ -26,7 +26,8 @@ MomentLights::MomentLights(const ManyLights& lights)
       once_(lights.once() ? &lights.once()->field() : nullptr),
       paths_(lights.paths()),
       direct_(lights.direct()),
-      fire_on_rays_(lights.fire_on_rays()) {}
+      fire_(lights.fire()),
+      fire_on_surfaces_(lights.fire_on_surfaces()) {}
 
 MomentLights::MomentLights(const DrawInput& input, const ManyLights& lights, const OpenShutter& shutter,
                            const Instant& lit, const Instant& moment)
@@ -42,6 +43,8 @@ MomentLights::MomentLights(const DrawInput& input, const ManyLights& lights, con
     }
     if (moment.medium != lit.medium || moment.surroundings != lit.surroundings)
         follow_paths(input, lights, moment);
+    if (lights.fire() && direct_ != lights.direct())
+        follow_fire(input, lights, moment);
 }
 
 void MomentLights::follow_paths(const DrawInput& input, const ManyLights& lights, const Instant& moment) {
@@ -54,10 +57,18 @@ void MomentLights::follow_paths(const DrawInput& input, const ManyLights& lights
         own_direct_.emplace(*moment.medium, input.shot.tracing, moment.surroundings);
         direct_ = &*own_direct_;
     }
-    if (lights.fire_on_rays()) {
-        own_fire_.emplace(*direct_, *input.plan.fire_by_rays, input.shot.fire_lights);
-        fire_on_rays_ = &*own_fire_;
-    }
+}
+
+void MomentLights::follow_fire(const DrawInput& input, const ManyLights& lights, const Instant& moment) {
+    const FireLightSampling& sampling = *input.plan.fire_sampling;
+    own_fire_.emplace(*direct_, sampling, input.shot.fire_lights);
+    fire_ = fire_on_surfaces_ = &*own_fire_;
+    if (!lights.surfaces_see_similar())
+        return;
+    const Medium& similar = *(moved_ ? moved_->similar() : lights.medium().similar());
+    own_similar_direct_.emplace(similar, input.shot.tracing, moment.surroundings);
+    own_fire_in_similar_.emplace(*own_similar_direct_, sampling, input.shot.fire_lights);
+    fire_on_surfaces_ = &*own_fire_in_similar_;
 }
 
 }  // namespace brisance

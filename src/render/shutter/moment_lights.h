@@ -18,6 +18,7 @@ public:
     MovedField& operator=(const MovedField&) = delete;
 
     const SourceField& field() const { return field_; }
+    const Medium* similar() const { return similar_ ? &*similar_ : nullptr; }
 
 private:
     NodeSources sources_;
@@ -34,13 +35,16 @@ public:
                  const Instant& moment);
 
     const SourceField& field() const { return *field_; }
-    const SourceField* once() const { return once_; }                 // as ManyLights::once(), or null
-    const PathTracer* paths() const { return paths_; }                // null: no surfaces
-    const DirectLight* direct() const { return direct_; }             // null where nothing needs it
-    const FireOnRays* fire_on_rays() const { return fire_on_rays_; }  // of this moment; null where it does not own MV
+    const SourceField* once() const { return once_; }      // as ManyLights::once(), or null
+    const PathTracer* paths() const { return paths_; }     // null: no surfaces
+    const DirectLight* direct() const { return direct_; }  // null where nothing needs it
+    // Of this moment, as those of ManyLights.
+    const SampledFire* fire() const { return fire_; }
+    const SampledFire* fire_on_surfaces() const { return fire_on_surfaces_; }
 
 private:
     void follow_paths(const DrawInput& input, const ManyLights& lights, const Instant& moment);
+    void follow_fire(const DrawInput& input, const ManyLights& lights, const Instant& moment);
 
     std::unique_ptr<MovedField> moved_, moved_once_;
     std::optional<PathTracer> own_paths_;
@@ -49,8 +53,9 @@ private:
     const SourceField* once_;
     const PathTracer* paths_;
     const DirectLight* direct_;
-    std::optional<FireOnRays> own_fire_;
-    const FireOnRays* fire_on_rays_;
+    std::optional<DirectLight> own_similar_direct_;
+    std::optional<SampledFire> own_fire_, own_fire_in_similar_;
+    const SampledFire *fire_, *fire_on_surfaces_;
 };
 
 }  // namespace brisance

@@ -50,7 +50,8 @@ Sections all_sections() {
         {"camera", "the pinhole camera; without eye and target, or world_from_camera, it is framed on the volume"},
         {"shutter", "motion blur"},
         {"lighting", "how the fire's light reaches the smoke"},
-        {"fire_lights", "light of the fire's single voxels in smoke, chosen otherwise than by the hierarchy"},
+        {"fire_lights",
+         "light of the fire's single voxels in smoke and on surfaces, chosen otherwise than by the hierarchy"},
         {"scattering", "light scattered more than once"}};
     for (const ScatteringMethod& method : scattering_methods())
         sections.emplace_back(method.name, method.product + ", of scattering.method " + method.name);

@@ -26,8 +26,8 @@ void add_fire_light_keys(std::vector<Key>& keys) {
         "fire_lights.sampling", sampling_help(), sampling_codec(),
         [](Shot & s) -> auto& { return s.fire_lights.sampling; }));
     keys.push_back(make_key(
-        "fire_lights.points", "on every ray of the camera at which light is gathered", whole(1, 65536),
-        [](Shot & s) -> auto& { return s.fire_lights.points; }));
+        "fire_lights.points", "on every ray of the camera through smoke at which light is gathered; of a surface, one",
+        whole(1, 65536), [](Shot & s) -> auto& { return s.fire_lights.points; }));
     keys.push_back(make_key(
         "fire_lights.samples", "for sampling intensity and light_tree: lights at every point", whole(1, 65536),
         [](Shot & s) -> auto& { return s.fire_lights.samples; }));
@@ -37,7 +37,8 @@ void add_fire_light_keys(std::vector<Key>& keys) {
         real(Range{0.0, 1.0}), [](Shot & s) -> auto& { return s.fire_lights.lightcuts_error; }));
     keys.push_back(make_key(
         "fire_lights.lightcuts_most",
-        "for sampling lightcuts: the most nodes of the cut of a point; multidimensional_lightcuts: of a whole ray",
+        "for sampling lightcuts: the most nodes of the cut of a point; multidimensional_lightcuts: of a whole ray, or "
+        "a point of a surface",
         whole(1, 100000000), [](Shot & s) -> auto& { return s.fire_lights.lightcuts_most; }));
     keys.push_back(make_key(
         "fire_lights.stochastic_cut_size", "for sampling stochastic_lightcuts: nodes of the cut, one light of each",
