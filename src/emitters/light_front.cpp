@@ -7,8 +7,12 @@ namespace brisance {
 
 namespace {
 
-// Of choices, the share that does not look at which lights the surface in the middle faces.
-constexpr double kFacingAnywhere = 0.05;
+// Of choices, the share by intensity and distance alone: lights that do not reach the middle may reach others.
+constexpr double kShareOfAll = 0.05;
+
+double by_distance(const LightCone& lights, const dvec3& from) {
+    return lights.intensity() / std::max({lights.seen_from(from).nearest2, lights.radius2(), 1e-300});
+}
 
 struct Candidate {
     double importance;
@@ -47,20 +51,21 @@ LightFront::LightFront(const LightTree& tree, const LitPoint& middle, std::size_
     if (tree.empty())
         return;
     nodes_ = divided(tree, middle, most);
-    LitPoint anywhere = middle;
-    anywhere.kind = LitPoint::Kind::Medium;
-    std::vector<double> facing, all;
-    double sum_facing = 0.0, sum_all = 0.0;
+    std::vector<double> reaching, all;
+    double sum_reaching = 0.0, sum_all = 0.0, passed = 0.0;
     for (const std::uint32_t node : nodes_) {
-        facing.push_back(tree.lights(node).importance(middle));
-        all.push_back(tree.lights(node).importance(anywhere));
-        sum_facing += facing.back();
+        reaching.push_back(tree.lights(node).importance(middle));
+        all.push_back(by_distance(tree.lights(node), middle.position));
+        sum_reaching += reaching.back();
         sum_all += all.back();
     }
-    const double share_all = sum_facing > 0.0 ? kFacingAnywhere : 1.0;
-    double passed = 0.0;
-    for (std::size_t i = 0; i < nodes_.size() && sum_all > 0.0; ++i) {
-        passed += share_all * all[i] / sum_all + (sum_facing > 0.0 ? (1.0 - share_all) * facing[i] / sum_facing : 0.0);
+    if (!(sum_all > 0.0))
+        return;
+    const double share_of_all = sum_reaching > 0.0 ? kShareOfAll : 1.0;
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+        passed += share_of_all * all[i] / sum_all;
+        if (sum_reaching > 0.0)
+            passed += (1.0 - share_of_all) * reaching[i] / sum_reaching;
         passed_.push_back(passed);
     }
 }

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/rng.h"
+#include "emitters/light_front.h"
 #include "emitters/light_tree.h"
 
 namespace brisance {
@@ -91,6 +92,53 @@ TEST(LightTree, EveryLightThatReachesAPointCanBeChosen) {
                 EXPECT_GT(tree.probability(point, i), 0.0) << "light " << i;
             }
         }
+}
+
+// Fronts of one node, of some, and of all lights: whatever the point for which they were found.
+TEST(LightFront, ChoosesAsItSays) {
+    const LightTree tree(some_lights(64));
+    const std::vector<LitPoint> points = some_points();
+    for (const std::size_t most : {1u, 7u, 1000u})
+        for (std::size_t p = 0; p < points.size(); ++p) {
+            LitPoint near = points[p];
+            near.position += dvec3(0.3, -0.2, 0.1);
+            near.normal = glm::normalize(near.normal + dvec3(0.1, 0.0, -0.1));
+            const LightFront front(tree, near, most);
+            constexpr int n = 100000;
+            std::map<std::size_t, int> counts;
+            std::map<std::size_t, double> probability;
+            for (int i = 0; i < n; ++i)
+                if (const auto choice = front.choose(points[p], (i + 0.5) / n)) {
+                    ++counts[choice->light];
+                    probability[choice->light] = choice->probability;
+                }
+            for (const auto& [light, share] : probability)
+                EXPECT_NEAR(counts[light], n * share, 20.0) << most << " nodes, point " << p << ", light " << light;
+            for (std::size_t i = 0; i < tree.size(); ++i)
+                if (tree.probability(points[p], i) > 0.01) {
+                    EXPECT_GT(counts[i], 0) << most << " nodes, point " << p << ", light " << i;
+                }
+        }
+}
+
+// Where the middle sees no light, points around it may.
+TEST(LightFront, ReachesLightsThatTheMiddleDoesNotSee) {
+    const LightTree tree(some_lights(64));
+    LitPoint away{dvec3(5.0, 5.0, 30.0), dvec3(0.0, 0.0, 1.0), LitPoint::Kind::Surface};
+    const LightFront front(tree, away, 16);
+    LitPoint toward = away;
+    toward.normal = -away.normal;
+    double found = 0.0;
+    for (int i = 0; i < 1000; ++i)
+        if (front.choose(toward, (i + 0.5) / 1000.0))
+            found += 1e-3;
+    EXPECT_GT(found, 0.3);
+    EXPECT_FALSE(front.choose(away, 0.5));
+}
+
+TEST(LightFront, OfNoLights) {
+    const LightTree none({});
+    EXPECT_FALSE(LightFront(none, {}, 8).choose({}, 0.5));
 }
 
 TEST(LightTree, NearLightsAreFoundMoreOften) {
