@@ -164,10 +164,10 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
     std::optional<LightReuse> reuse = light_reuse(camera, shared ? &*shared : nullptr);
     std::optional<ScreenSpaceCompensation> compensated = compensation(camera);
     SurfaceShader shader({input_.plan.needed, lights.field(), *lights.paths(), lights_.medium().lighting(),
-                                lights_.virtual_lights(), estimator, input_.plan.emitters_by_rays, settings_.parts,
-                                camera.settings().width, rays_of_pixel(), lengths_ ? &*lengths_ : nullptr,
-                                shared ? &*shared : nullptr, camera.pixel_angle(), reuse ? &*reuse : nullptr,
-                                compensated ? &*compensated : nullptr, lights.fire_on_surfaces()});
+                          lights_.virtual_lights(), estimator, input_.plan.emitters_by_rays, settings_.parts,
+                          camera.settings().width, rays_of_pixel(), lengths_ ? &*lengths_ : nullptr,
+                          shared ? &*shared : nullptr, camera.pixel_angle(), reuse ? &*reuse : nullptr,
+                          compensated ? &*compensated : nullptr, lights.fire_on_surfaces()});
     Image image = render_picture(lights.field(), camera, settings_, progress_,
                                  [&](const auto& samples, auto& light) { shader.shade(samples, light); });
     if (reuse)

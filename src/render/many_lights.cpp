@@ -1,8 +1,8 @@
 #include "render/many_lights.h"
 
+#include "base_lighting/panes.h"
 #include "core/stopwatch.h"
 #include "medium/similar_medium.h"
-#include "surface_lighting/panes.h"
 
 namespace brisance {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base_lighting/shared_receivers.h"
 #include "core/parallel.h"
-#include "surface_lighting/shared_receivers.h"
 
 namespace brisance {
 

@@ -15,6 +15,9 @@
 
 #include <span>
 
+#include "base_lighting/base_lighting.h"
+#include "base_lighting/panes.h"
+#include "base_lighting/planar_receivers.h"
 #include "camera_rays/picture.h"
 #include "camera_rays/source_field.h"
 #include "emitters/surroundings.h"
@@ -22,12 +25,9 @@
 #include "light_selection/in_scattering.h"
 #include "medium_lighting/medium_lighting.h"
 #include "reference/path_tracer.h"
-#include "surface_lighting/base_lighting.h"
 #include "surface_lighting/light_reuse.h"
 #include "surface_lighting/mirrors.h"
-#include "surface_lighting/panes.h"
 #include "surface_lighting/path_lengths.h"
-#include "surface_lighting/planar_receivers.h"
 #include "surface_lighting/screen_space_compensation.h"
 #include "surface_lighting/shared_bounce.h"
 #include "virtual_lights/virtual_lights.h"

@@ -1,4 +1,4 @@
-#include "surface_lighting/planar_receivers.h"
+#include "base_lighting/planar_receivers.h"
 
 #include <algorithm>
 #include <array>
@@ -194,7 +194,8 @@ private:
         return cell.side() * voxel_ > std::max(kSideOfDistance * bounds_.distance(middle), kSideInVoxels * voxel_);
     }
 
-    // Sorts out cells with too few receivers and divides those that are too large, once. Returns whether it divided any.
+    // Sorts out cells with too few receivers and divides those that are too large, once. Returns whether it divided
+    // any.
     bool divide_too_large(const std::vector<SurfaceReceiver>& receivers) {
         std::vector<PlaneCell> kept;
         bool divided = false;
@@ -269,7 +270,7 @@ private:
     float voxel_;
     PlaneFrame frame_;
     std::unordered_map<std::uint64_t, Light> points_;
-    std::vector<PlaneCell> cells_;       // of this round
+    std::vector<PlaneCell> cells_;      // of this round
     std::vector<std::uint64_t> asked_;  // points
     std::vector<std::uint32_t> alone_;
 };

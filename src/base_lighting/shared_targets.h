@@ -10,9 +10,9 @@
 #include <span>
 #include <vector>
 
+#include "base_lighting/shared_receivers.h"
 #include "medium/lattice/local_bounds.h"
 #include "medium_lighting/exterior/visibility_ratio.h"
-#include "surface_lighting/shared_receivers.h"
 
 namespace brisance {
 

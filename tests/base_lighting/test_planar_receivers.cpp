@@ -1,5 +1,5 @@
 // Light interpolated on planes, against the light itself.
-#include "surface_lighting/planar_receivers.h"
+#include "base_lighting/planar_receivers.h"
 
 #include <gtest/gtest.h>
 

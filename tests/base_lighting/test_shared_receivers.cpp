@@ -1,5 +1,5 @@
 // Sharing of receivers by the surface samples of a pixel.
-#include "surface_lighting/shared_receivers.h"
+#include "base_lighting/shared_receivers.h"
 
 #include <gtest/gtest.h>
 

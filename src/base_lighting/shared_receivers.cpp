@@ -1,4 +1,4 @@
-#include "surface_lighting/shared_receivers.h"
+#include "base_lighting/shared_receivers.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "surface_lighting/panes.h"
+#include "base_lighting/panes.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "surface_lighting/base_lighting.h"
+#include "base_lighting/base_lighting.h"
 
 #include <algorithm>
 #include <cmath>
@@ -116,8 +116,8 @@ private:
     std::array<std::optional<WeightedTargets>, kLights> targets_;
 };
 
-BaseLighting::BaseLighting(const Medium& medium, const MediumLighting& lighting, const Panes& panes,
-                           bool through_panes, int width)
+BaseLighting::BaseLighting(const Medium& medium, const MediumLighting& lighting, const Panes& panes, bool through_panes,
+                           int width)
     : medium_(medium), panes_(panes), through_panes_(through_panes), width_(static_cast<std::uint32_t>(width)) {
     const VisibilityRatios fire = lighting.fire_visibility(), smoke = lighting.smoke_visibility();
     ratios_ = {fire[0], fire[1], smoke[0], smoke[1]};

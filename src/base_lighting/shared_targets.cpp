@@ -1,4 +1,4 @@
-#include "surface_lighting/shared_targets.h"
+#include "base_lighting/shared_targets.h"
 
 #include <algorithm>
 
@@ -42,9 +42,8 @@ Neighbourhoods::Neighbourhoods(const Medium& medium, const SharedReceivers& rece
         if (r == 0 || now != place)
             here = members.size();
         place = now;
-        const auto found = std::find_if(members.begin() + std::ptrdiff_t(here), members.end(), [&](const auto& m) {
-            return joins(receivers[m.front()], receivers[r]);
-        });
+        const auto found = std::find_if(members.begin() + std::ptrdiff_t(here), members.end(),
+                                        [&](const auto& m) { return joins(receivers[m.front()], receivers[r]); });
         if (found == members.end())
             members.push_back({r});
         else
