@@ -61,12 +61,6 @@ bool may_look_together(std::span<const std::uint32_t> samples, std::span<const B
     return std::ranges::all_of(samples, [&](auto i) { return points[i].surface; });
 }
 
-// The draws of a receiver that measures by itself what it sees, for each light.
-constexpr std::size_t kDrawsOfSample = 4;
-std::size_t batches_alone(std::size_t samples) {
-    return (samples * kDrawsOfSample + VisibilityRatio::kDraws - 1) / VisibilityRatio::kDraws;
-}
-
 }  // namespace
 
 // What the samples of a receiver found together.
@@ -190,18 +184,17 @@ void BaseLighting::measure(int light, const SurfaceReceiver& receiver, const Lig
                            std::span<const std::uint32_t> samples, std::span<const BasePoint> points, Rng& rng,
                            std::span<BaseLight> out) const {
     const LitPoint lit{dvec3(receiver.local), dvec3(receiver.normal), LitPoint::Kind::Surface};
-    const std::size_t batches = batches_alone(samples.size()), n = samples.size();
+    const std::size_t n = samples.size();
     std::vector<Shares> seen(n);
     std::array<VisibilityRatio::Draw, VisibilityRatio::kDraws> draws;
     float all = 0.0f;
-    for (std::size_t b = 0; b < batches && ratios_[light]->draw(around, lit, rng, draws); ++b)
+    for (std::size_t b = 0; b < n && ratios_[light]->draw(around, lit, rng, draws); ++b)
         for (std::size_t k = 0; k < draws.size(); ++k) {
             const VisibilityRatio::Draw& d = draws[k];
             if (!(d.weight > 0.0f))
                 continue;
             all += d.weight;
-            // Every sample gets draws of all strata.
-            const std::size_t to = (b * draws.size() + k) % n;
+            const std::size_t to = (b + k) % n;  // every sample gets draws of all strata
             const BasePoint& p = points[samples[to]];
             const Rgb share = relative_to_white(Bsdf(p.surface->material, p.surface->frame, Lobes::Base), *p.surface,
                                                 p.toward_viewer, glm::normalize(dvec3(d.point) - p.surface->position));
@@ -263,7 +256,7 @@ std::vector<BaseLight> BaseLighting::light(std::span<const BasePoint> points, co
                     unsettled.push_back(r);
             std::size_t drawn = 0;
             for (const std::uint32_t r : unsettled)
-                drawn += batches_alone(samples.of(r).size()) * VisibilityRatio::kDraws;
+                drawn += samples.of(r).size() * VisibilityRatio::kDraws;
             if (unsettled.empty())
                 return;
             Fronts around(*this, receivers[unsettled.front()], drawn);

@@ -4,7 +4,7 @@
 // arrives is measured by shadow rays toward points of the medium (visibility_ratio.h). The samples of a receiver first
 // test one set of such points together (shared_targets.h), a ray for each sample. Where every ray arrives, or none
 // does, and it is so for its neighbours in the row of pixels, that is the answer. Elsewhere may be a penumbra: every
-// receiver draws points of its own, a few for each of its samples.
+// receiver draws points of its own, sixteen for each of its samples.
 //
 // What is missed: with n rays around, a part f of the light that is hidden, or seen, goes unnoticed with probability
 // (1 - f)^n, so that the mean is wrong by at most 1 / (e n). n is 144 for pixels of 16 samples.
