@@ -49,12 +49,16 @@ void add(int light, const Rgb& scattered, BaseLight& out) {
 }
 
 // The base's share of what a white Lambert surface reflects of light from there; none from below.
-Rgb relative_to_white(const Bsdf& base, const SurfacePoint& at, const dvec3& toward_viewer, const dvec3& toward_light) {
-    const double cosine = glm::dot(at.frame.normal, toward_light);
-    const bool above = glm::dot(at.geometric_normal, toward_light) * glm::dot(at.geometric_normal, toward_viewer) > 0.0;
+Rgb relative_to_white(const BasePoint& at, const vec3& light) {
+    const SurfacePoint& surface = *at.surface;
+    const dvec3 toward_light = glm::normalize(dvec3(light) - surface.position);
+    const double cosine = glm::dot(surface.frame.normal, toward_light);
+    const bool above =
+        glm::dot(surface.geometric_normal, toward_light) * glm::dot(surface.geometric_normal, at.toward_viewer) > 0.0;
     if (!above || !(cosine > 0.0))
         return Rgb(0.0f);
-    return base.evaluate(toward_viewer, toward_light) * (std::numbers::pi_v<float> / float(cosine));
+    const Bsdf base(surface.material, surface.frame, Lobes::Base);
+    return base.evaluate(at.toward_viewer, toward_light) * (std::numbers::pi_v<float> / float(cosine));
 }
 
 bool may_look_together(std::span<const std::uint32_t> samples, std::span<const BasePoint> points) {
@@ -138,8 +142,7 @@ BaseLighting::Seen BaseLighting::see_together(int light, const SurfaceReceiver& 
         const BasePoint& p = points[sample];
         const vec3& from = targets.at((float(i) + shift) / float(all));
         const Panes::Passage way = passage(*p.surface, from);
-        const Rgb share = relative_to_white(Bsdf(p.surface->material, p.surface->frame, Lobes::Base), *p.surface,
-                                            p.toward_viewer, glm::normalize(dvec3(from) - p.surface->position));
+        const Rgb share = relative_to_white(p, from);
         if (way.panes > 0 || share == Rgb(0.0f))
             return Seen::Part;
         if (way.blocked)
@@ -196,8 +199,7 @@ void BaseLighting::measure(int light, const SurfaceReceiver& receiver, const Lig
             all += d.weight;
             const std::size_t to = (b + k) % n;  // every sample gets draws of all strata
             const BasePoint& p = points[samples[to]];
-            const Rgb share = relative_to_white(Bsdf(p.surface->material, p.surface->frame, Lobes::Base), *p.surface,
-                                                p.toward_viewer, glm::normalize(dvec3(d.point) - p.surface->position));
+            const Rgb share = relative_to_white(p, d.point);
             if (share == Rgb(0.0f))
                 continue;
             const Panes::Passage way = passage(*p.surface, d.point);
@@ -254,11 +256,11 @@ std::vector<BaseLight> BaseLighting::light(std::span<const BasePoint> points, co
             for (const std::uint32_t r : neighbourhoods.receivers_of(n))
                 if (!settled(together, r))
                     unsettled.push_back(r);
+            if (unsettled.empty())
+                return;
             std::size_t drawn = 0;
             for (const std::uint32_t r : unsettled)
                 drawn += samples.of(r).size() * VisibilityRatio::kDraws;
-            if (unsettled.empty())
-                return;
             Fronts around(*this, receivers[unsettled.front()], drawn);
             for (const std::uint32_t r : unsettled)
                 light_alone(receivers[r], around, samples.of(r), points, out);
