@@ -92,6 +92,26 @@ class FireLightPictures : public ::testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Samplings, FireLightPictures, ::testing::ValuesIn(all_samplings()),
                          [](const auto& sampling) { return sampling.param; });
 
+// The mean of a cell over pictures of other seeds is the path tracer's, whose two halves tell its own error. Half a
+// percent: the camera's samples differ.
+void expect_mean_of_paths(const char* cell, const Shot& traced, Shot lit, const Medium& medium, const Surroundings* set,
+                          int seeds) {
+    const RenderedFrame paths = rendered(traced, medium, set);
+    const double a = mean_of(paths.halves[0], cell), b = mean_of(paths.halves[1], cell), truth = 0.5 * (a + b);
+    double sum = 0.0, square = 0.0;
+    for (int seed = 0; seed < seeds; ++seed) {
+        lit.fire_lights.seed = static_cast<std::uint32_t>(seed);
+        const double mean = mean_of(rendered(lit, medium, set).image, cell);
+        sum += mean / seeds;
+        square += mean * mean / seeds;
+    }
+    const double error = std::hypot(std::sqrt(std::max(0.0, square - sum * sum) / (seeds - 1)), 0.5 * (a - b));
+    std::printf("%s: %s of paths %.5g, of lights %.5g, standard error %.2g\n", lit.fire_lights.sampling.c_str(), cell,
+                truth, sum, error);
+    EXPECT_NEAR(sum, truth, 4.0 * error + 0.005 * truth);
+    EXPECT_LT(error, 0.05 * truth);
+}
+
 // Sharp peaks make the grid count light as not scattered: MM must not hold it twice, nor lose it.
 TEST_P(FireLightPictures, ChangeMVAlone) {
     for (const float g : {0.0f, 0.8f}) {
@@ -121,19 +141,7 @@ TEST_P(FireLightPictures, HaveThePathTracersMV) {
     traced.scattering.bounces = lit.scattering.bounces = 1;
     lit.fire_lights.points = GetParam() == "all" ? 1 : 8;
     lit.fire_lights.lightcuts_error = 0.002;
-    const RenderedFrame paths = rendered(traced, medium);
-    const double a = mean_of(paths.halves[0], "MV"), b = mean_of(paths.halves[1], "MV"), truth = 0.5 * (a + b);
-    double sum = 0.0, square = 0.0;
-    for (int seed = 0; seed < kSeeds; ++seed) {
-        lit.fire_lights.seed = static_cast<std::uint32_t>(seed);
-        const double mean = mean_of(rendered(lit, medium).image, "MV");
-        sum += mean / kSeeds;
-        square += mean * mean / kSeeds;
-    }
-    const double error = std::hypot(std::sqrt(std::max(0.0, square - sum * sum) / (kSeeds - 1)), 0.5 * (a - b));
-    std::printf("%s: MV of paths %.5g, of lights %.5g, standard error %.2g\n", GetParam().c_str(), truth, sum, error);
-    EXPECT_NEAR(sum, truth, 4.0 * error + 0.005 * truth);
-    EXPECT_LT(error, 0.05 * truth);
+    expect_mean_of_paths("MV", traced, lit, medium, nullptr, kSeeds);
 }
 
 // A floor, of which a plate keeps a part in the dark. Over pictures of other seeds; half a percent: the camera's
@@ -153,19 +161,7 @@ TEST_P(FireLightPictures, HaveThePathTracersSV) {
     lit.fire_lights.points = 1;
     lit.fire_lights.samples = GetParam() == "intensity" ? 32 : 8;
     lit.fire_lights.lightcuts_error = 0.002;
-    const RenderedFrame paths = rendered(traced, medium, &set);
-    const double a = mean_of(paths.halves[0], "SV"), b = mean_of(paths.halves[1], "SV"), truth = 0.5 * (a + b);
-    double sum = 0.0, square = 0.0;
-    for (int seed = 0; seed < kSeeds; ++seed) {
-        lit.fire_lights.seed = static_cast<std::uint32_t>(seed);
-        const double mean = mean_of(rendered(lit, medium, &set).image, "SV");
-        sum += mean / kSeeds;
-        square += mean * mean / kSeeds;
-    }
-    const double error = std::hypot(std::sqrt(std::max(0.0, square - sum * sum) / (kSeeds - 1)), 0.5 * (a - b));
-    std::printf("%s: SV of paths %.5g, of lights %.5g, standard error %.2g\n", GetParam().c_str(), truth, sum, error);
-    EXPECT_NEAR(sum, truth, 4.0 * error + 0.005 * truth);
-    EXPECT_LT(error, 0.05 * truth);
+    expect_mean_of_paths("SV", traced, lit, medium, &set, kSeeds);
 }
 
 TEST_P(FireLightPictures, AreTheSameOnAnyNumberOfThreads) {
