@@ -243,13 +243,18 @@ Gathered gather_levels(const LightField& field, const LatticeRequest& request, c
     return light;
 }
 
+int wanted_coarsening(const LightField& field, const LatticeRequest& request, const GridLevel& level) {
+    if (!request.interpolates_far_light || field.occluders)
+        return 0;
+    return std::max(request.least_coarsening, coarsening_of(field, level));
+}
+
 // Adds the light of levels from `first` on to `out`, at the nodes of the lattice `at` and at coarser ones below it.
 void gather_down(const LightField& field, const LatticeRequest& request, const NodeReceivers& at, std::size_t first,
                  int coarsening, Gathered& out, std::vector<LevelCost>& costs, Progress& progress) {
     const auto& levels = field.grid->levels;
     std::size_t last = first;
-    while (last < levels.size() &&
-           (!request.interpolates_far_light || coarsening_of(field, levels[last]) <= coarsening))
+    while (last < levels.size() && wanted_coarsening(field, request, levels[last]) <= coarsening)
         ++last;
     if (last > first)
         add_at_nodes(at, gather_levels(field, request, at, first, last, costs, progress), out);

@@ -80,6 +80,14 @@ ShadowMapLayout map_layout(const LightField& field, const GridLevel& level, bool
     return layout;
 }
 
+std::uint64_t map_bytes(const LightField& field) {
+    std::uint64_t sum = 0;
+    for (const GridLevel& level : field.grid->levels)
+        if (level.size() > 0 && field.settings.shadows == ShadowMethod::Maps)
+            sum += level.size() * map_layout(field, level, &level == &field.grid->levels.back()).bytes_per_light();
+    return sum;
+}
+
 void fit_to_memory(ShadowMapLayout& layout, std::size_t lights, std::uint64_t limit, int level, Progress& progress) {
     const ShadowMapLayout wish = layout;
     const auto too_large = [&] { return layout.bytes_per_light() * std::min(lights, kLeastBatch) > limit; };

@@ -18,6 +18,9 @@ constexpr std::size_t kLeastBatch = 2048;
 // `top`: no level is coarser.
 ShadowMapLayout map_layout(const LightField& field, const GridLevel& level, bool top);
 
+// Of the maps of all levels, as they are laid out.
+std::uint64_t map_bytes(const LightField& field);
+
 // Lowers the resolution, then the number of distances, until at least kLeastBatch lights (or all) fit the limit. Says
 // so as a notice.
 void fit_to_memory(ShadowMapLayout& layout, std::size_t lights, std::uint64_t limit, int level, Progress& progress);

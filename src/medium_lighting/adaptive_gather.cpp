@@ -30,8 +30,8 @@ float scattered_radiance(const Gathered& g, std::size_t i, std::size_t n) {
 
 class Refinement {
 public:
-    Refinement(const LitLattice& lattice, bool moments, const LevelLights& lights)
-        : lattice_(lattice), moments_(moments), lights_(lights) {}
+    Refinement(const LitLattice& lattice, const LatticeRequest& request, const LevelLights& lights, int finest)
+        : lattice_(lattice), request_(request), lights_(lights), finest_(finest) {}
 
     AdaptiveLight run(nlohmann::ordered_json& detail) {
         int level = static_cast<int>(lattice_.levels().size());
@@ -40,7 +40,8 @@ public:
         // Of the source functions, from the next coarser level to this one. Of the coarsest, all is new.
         std::vector<float> change = level > 0 ? sources(level, light) : std::vector<float>{};
         for (; level > 0; --level) {
-            const std::vector<float> weight = refinement_weights(level, light, change);
+            const std::vector<float> weight = level > finest_ ? refinement_weights(level, light, change)
+                                                              : std::vector<float>(needed(level).size(), 0.0f);
             light = refine(level - 1, light, weight, change, counts);
         }
         detail["lit_nodes"] = counts;
@@ -60,9 +61,8 @@ private:
     }
 
     GatherTarget target(int level, const std::vector<std::uint8_t>& mask, bool sparse) const {
-        LatticeRequest request = lattice_.request();
+        LatticeRequest request = request_;
         request.needed = &mask;
-        request.moments = moments_;
         return {level, level == 0 ? lattice_.pyramid() : *at(level).pyramid, request, sparse};
     }
 
@@ -328,17 +328,18 @@ private:
     }
 
     const LitLattice& lattice_;
-    bool moments_;
+    LatticeRequest request_;
     const LevelLights& lights_;
+    int finest_;
     GatheredPart gathered_;  // at the level lit last, as of AdaptiveLight
     std::vector<float> conserving_;
 };
 
 }  // namespace
 
-AdaptiveLight gather_adaptively(const LitLattice& lattice, bool moments, const LevelLights& lights,
-                                nlohmann::ordered_json& detail) {
-    return Refinement(lattice, moments, lights).run(detail);
+AdaptiveLight gather_adaptively(const LitLattice& lattice, const LatticeRequest& request, const LevelLights& lights,
+                                nlohmann::ordered_json& detail, int finest) {
+    return Refinement(lattice, request, lights, finest).run(detail);
 }
 
 }  // namespace brisance

@@ -6,11 +6,13 @@
 
 namespace brisance {
 
-AutomaticLevels automatic_levels_of(const Medium& medium, const LightingSettings& settings) {
+AutomaticLevels automatic_levels_of(const Medium& medium, const LightingSettings& settings,
+                                    const ScatteringSettings& scattering) {
     if (medium.lattice.brick_count() == 0)
         return {};
     const ExtinctionPyramid pyramid(medium, ExtinctionPyramid::kMaxLevels);
-    return {lighting_level(medium, settings).level, automatic_levels(medium), automatic_lattice(pyramid).level};
+    return {lighting_level(medium, settings).level, automatic_levels(medium),
+            lattice_of_series(pyramid, scattering).level};
 }
 
 }  // namespace brisance

@@ -3,6 +3,7 @@
 
 #include "gathering/settings.h"
 #include "medium/medium.h"
+#include "scattering/settings.h"
 
 namespace brisance {
 
@@ -12,6 +13,7 @@ struct AutomaticLevels {
     int scattering = 0;  // scattering.lattice_level
 };
 
-AutomaticLevels automatic_levels_of(const Medium& medium, const LightingSettings& settings);
+AutomaticLevels automatic_levels_of(const Medium& medium, const LightingSettings& settings,
+                                    const ScatteringSettings& scattering);
 
 }  // namespace brisance

@@ -7,7 +7,7 @@ namespace brisance {
 Gathered LevelLights::gather(const GatherTarget& target) const {
     const LightingSettings& settings = lattice_.input().lighting;
     ShadowMapCache maps{{}, true};
-    ShadowMapCache* const cache = target.sparse ? &maps : nullptr;
+    ShadowMapCache* const cache = target.sparse ? &maps : target.level == 0 ? kept_ : nullptr;
     const auto of = [&](const HierarchyLights& lights) {
         return gather_at_nodes(lights.field(target.pyramid, alpha_, settings, cache), target.request, costs_,
                                progress_);

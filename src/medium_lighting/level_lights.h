@@ -17,10 +17,11 @@ struct GatherTarget {
 class LevelLights {
 public:
     // `lights`: of the medium's own lattice, from which those of coarser ones are made. Keeps references; what is
-    // gathered is added to `costs`.
+    // gathered is added to `costs`. `kept`: shadow maps of `lights` where all nodes of that lattice are requested;
+    // null: none are kept.
     LevelLights(const LitLattice& lattice, const HierarchyLights& lights, float alpha, std::vector<LevelCost>& costs,
-                Progress& progress)
-        : lattice_(lattice), lights_(lights), alpha_(alpha), costs_(costs), progress_(progress) {}
+                Progress& progress, ShadowMapCache* kept = nullptr)
+        : lattice_(lattice), lights_(lights), alpha_(alpha), costs_(costs), progress_(progress), kept_(kept) {}
 
     Gathered gather(const GatherTarget& target) const;
 
@@ -35,6 +36,7 @@ private:
     float alpha_;
     std::vector<LevelCost>& costs_;
     Progress& progress_;
+    ShadowMapCache* kept_;
 };
 
 }  // namespace brisance

@@ -90,6 +90,7 @@ MediumLightingInput medium_lighting_input(const DrawInput& input, const Plan& pl
     out.smoke_on_surfaces = plan.needs(Cell::SM);
     out.directional = plan.directional;
     out.orders_apart = orders_apart && !out.fire_on_surfaces && !out.smoke_on_surfaces;
+    out.scattering = settings_of_orders(out.scattering, out.orders_apart);
     return out;
 }
 

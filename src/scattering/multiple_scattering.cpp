@@ -179,11 +179,6 @@ void blend_orders(std::vector<ScatteredLight>& orders, const std::vector<Scatter
         }
 }
 
-LatticeChoice choose_lattice(const ScatteringInput& input) {
-    const int wish = input.settings.lattice_level, last = input.pyramid->level_count() - 1;
-    return wish < 0 ? automatic_lattice(*input.pyramid) : LatticeChoice{std::min(wish, last), 0.0f};
-}
-
 }  // namespace
 
 std::vector<Rgb> fluence_at_nodes(const Gathered& gathered, const std::vector<std::uint8_t>& mask) {
@@ -213,7 +208,7 @@ std::vector<ScatteredLight> solve_scattering(const ScatteringInput& input, Scatt
     if (input.settings.bounces == 2 || !(total_luminance(orders[0].intensity) > 0.0))
         return orders;
 
-    const LatticeChoice lattice = choose_lattice(input);
+    const LatticeChoice lattice = lattice_of_series(*input.pyramid, input.settings);
     std::vector<ScatteredLight> further = solve(input, orders[0], lattice.level, 0, costs, progress);
     if (lattice.share_of_coarser > 0.0f) {
         ScatteringCosts coarser;

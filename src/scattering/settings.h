@@ -15,10 +15,18 @@ struct ScatteringSettings {
     float remainder = 1e-3f;  // with all orders: stop when the part not yet accounted for is below this
     int lattice_level = -1;   // orders above one are solved on voxels 2^level wide; -1: from the voxel count
     float escape = -1.0f;     // the mean escape probability by which methods are chosen; below 0: the medium's own
+    int fine_bounces = 1;     // on the light's own lattice, after those on a coarser one
     float alpha = 1.5f;       // as LightingSettings::alpha, for scattered light
     ScatteringSolver solver = ScatteringSolver::Hierarchy;
     int cascade_side = 8;      // side^2 directions at the nodes, with radiance cascades
     bool flux_limiter = true;  // with diffusion: DiffusionSettings::flux_limiter
 };
+
+// The same for orders that are kept apart or end at the second: each is gathered on the light's own lattice anyway.
+inline ScatteringSettings settings_of_orders(ScatteringSettings settings, bool apart) {
+    if (apart || settings.bounces == 2)
+        settings.fine_bounces = 0;
+    return settings;
+}
 
 }  // namespace brisance

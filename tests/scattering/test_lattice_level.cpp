@@ -18,7 +18,7 @@ LatticeChoice choice(const NodeBox& box, const NodeScalar& density) {
     recipe.density = density;
     recipe.settings = black_smoke();
     const Medium medium = make_medium(recipe);
-    return automatic_lattice(ExtinctionPyramid(medium, ExtinctionPyramid::kMaxLevels));
+    return automatic_lattice(ExtinctionPyramid(medium, ExtinctionPyramid::kMaxLevels), false);
 }
 
 double mean_level(const LatticeChoice& c) {

@@ -33,9 +33,8 @@ AdaptiveLight gather_at_lattice(const LitLattice& lattice, const HierarchyLights
     const LightingSettings& settings = lattice.input().lighting;
     StageCost stage{"light from the fire (MV)", 0.0, 0, {}};
     std::vector<LevelCost> costs;
-    AdaptiveLight arriving =
-        gather_adaptively(lattice, lattice.request().moments,
-                          LevelLights(lattice, lights, settings.alpha, costs, progress), stage.detail);
+    AdaptiveLight arriving = gather_adaptively(
+        lattice, lattice.request(), LevelLights(lattice, lights, settings.alpha, costs, progress), stage.detail);
     if (settings.energy_balance) {
         BounceBalance balance;
         balance.emitted = 1.0;

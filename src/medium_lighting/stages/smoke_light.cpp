@@ -2,25 +2,29 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/stopwatch.h"
+#include "gathering/map_layouts.h"
 #include "medium_lighting/adaptive_gather.h"
 #include "medium_lighting/balance_table.h"
 #include "medium_lighting/level_costs.h"
 #include "scattering/balance.h"
+#include "scattering/lattice_level.h"
 
 namespace brisance {
 
 namespace {
 
 std::vector<ScatteredLight> orders_of_scattering(const LitLattice& lattice, const Gathered& first,
-                                                 Statistics& statistics, Progress& progress) {
+                                                 const ScatteringSettings& settings, Statistics& statistics,
+                                                 Progress& progress) {
     progress.stage("orders of scattering");
     const Stopwatch watch;
     const MediumLightingInput& input = lattice.input();
     ScatteringCosts costs;
     std::vector<ScatteredLight> orders = solve_scattering(
-        {&lattice.pyramid(), &first, &lattice.needed(), input.lighting, input.scattering, input.orders_apart}, costs,
-        progress);
+        {&lattice.pyramid(), &first, &lattice.needed(), input.lighting, settings, input.orders_apart}, costs, progress);
     StageCost series{"orders of scattering on the coarse lattice", watch.seconds(), costs.bytes, {}};
     series.detail = {{"lattice_level", lattice.level() + costs.lattice_level},
                      {"share_of_coarser_level", costs.share_of_coarser},
@@ -58,35 +62,68 @@ std::vector<ScatteredLight> orders_of_scattering(const LitLattice& lattice, cons
     return orders;
 }
 
-// The flight that ends where the light is scattered toward the camera.
-class LastFlight {
+// Bounces on the light's own lattice between the series and the last flight.
+struct FineBounces {
+    int count = 0;
+    float share = 0.0f;  // of the light that each replaces
+};
+
+// Where orders end at a stated number, the series in `settings` leaves the last of them to these bounces.
+FineBounces plan_fine_bounces(const LitLattice& lattice, ScatteringSettings& settings) {
+    const bool endless = settings.bounces < 0;
+    FineBounces out{settings.fine_bounces, share_of_fine_bounces(lattice_of_series(lattice.pyramid(), settings))};
+    if (!endless)
+        out.count = std::min(out.count, std::max(0, settings.bounces - 2));
+    if (!(out.share > 0.0f))
+        out.count = 0;
+    if (endless || out.count == 0)
+        return out;
+    settings.bounces -= out.count;
+    out.share = 1.0f;
+    return out;
+}
+
+// The flights on the light's own lattice. The last ends where the light is scattered toward the camera.
+class FineFlights {
 public:
-    LastFlight(const LitLattice& lattice, Progress& progress) : lattice_(lattice), progress_(progress) {}
+    FineFlights(const LitLattice& lattice, Progress& progress) : lattice_(lattice), progress_(progress) {}
 
     HierarchyLights build(ScatteredLight order) const {
         order.sharpen(lattice_.medium().lattice);
         return build_hierarchy(lattice_.medium(), std::move(order), lattice_.input().lighting.levels);
     }
 
-    // Light at the nodes. Keeps the lights themselves, but not always their grid. `order`: its name in the balance.
-    Gathered gather(HierarchyLights& lights, const std::string& order) {
-        std::vector<LevelCost> costs;
-        AdaptiveLight light = gather_unbalanced(lights, costs);
-        if (levels_.empty())
-            levels_ = costs;
-        if (!lattice_.input().lighting.energy_balance)
-            return std::move(light.light);
-        BounceBalance balance;
-        balance.emitted = 1.0;
-        balance_light(lattice_, lights.light, light, balance);
-        balances_.push_back(balance_row(balance, order));
-        return std::move(light.light);
+    // Replaces the part `share` of the lights by what scatters after one more flight, with the light of `first` that
+    // has scattered once. Its far light is gathered at every second node: what scatters on needs no more.
+    void bounce(HierarchyLights& lights, const Gathered& first, float share) {
+        const MediumLightingInput& input = lattice_.input();
+        keeps_maps_ = map_bytes(lights.field(lattice_.pyramid(), input.scattering.alpha, input.lighting, nullptr)) <=
+                      input.lighting.memory_limit_bytes;
+        Gathered arriving = first;
+        arriving.add(gather(lights, {"fine", true}));
+        ScatteredLight leaving = scattered_light(lattice_.medium(), arriving, lattice_.needed());
+        leaving.sharpen(lattice_.medium().lattice);
+        ScatteredLight& light = lights.light;
+        light.add(light, Rgb(-share));
+        light.add(leaving, Rgb(share));
+        // Their centres remain, and so do their maps.
+        set_intensity(lights.grid, lattice_.medium().lattice, light.intensity,
+                      light.directional.empty() ? nullptr : &light.directional);
     }
+
+    // Light of the last flight at the nodes. Keeps the lights themselves, but not always their grid. `order`: its name
+    // in the balance.
+    Gathered gather_last(HierarchyLights& lights, const std::string& order) { return gather(lights, {order, false}); }
 
     StageCost cost(const Gathered& sum) const {
         StageCost stage{"light from the smoke (MM)", watch_.seconds(), 0, {}};
-        stage.bytes = most_held(levels_) + (sum.fluence.size() + sum.scattered.size()) * 4;
+        std::uint64_t kept = 0;
+        for (const ShadowMapCache::Level& level : maps_.levels)
+            kept += level.maps.size() * sizeof(std::uint16_t);
+        stage.bytes = std::max(kept, most_held(levels_)) + (sum.fluence.size() + sum.scattered.size()) * 4;
         stage.detail = detail_;
+        if (!levels_of_bounce_.empty())
+            stage.detail["levels_of_fine_bounce"] = level_table(levels_of_bounce_);
         stage.detail["levels"] = level_table(levels_);
         if (!balances_.empty())
             stage.detail["balance"] = balances_;
@@ -94,17 +131,46 @@ public:
     }
 
 private:
+    struct Flight {
+        std::string name;  // in the balance
+        bool scatters_on;  // instead of toward the camera
+    };
+
+    Gathered gather(HierarchyLights& lights, const Flight& flight) {
+        std::vector<LevelCost> costs;
+        AdaptiveLight light = gather_unbalanced(lights, flight, costs);
+        std::vector<LevelCost>& known = flight.scatters_on ? levels_of_bounce_ : levels_;
+        if (known.empty())
+            known = costs;
+        if (lattice_.input().lighting.energy_balance) {
+            BounceBalance balance;
+            balance.emitted = 1.0;
+            balance_light(lattice_, lights.light, light, balance);
+            balances_.push_back(balance_row(balance, flight.name));
+        }
+        if (flight.scatters_on)
+            light.conserve(lattice_.thin_medium().rest());
+        return std::move(light.light);
+    }
+
     // Lights of thin media apart from the rest.
-    AdaptiveLight gather_unbalanced(HierarchyLights& lights, std::vector<LevelCost>& costs) {
+    AdaptiveLight gather_unbalanced(HierarchyLights& lights, const Flight& flight, std::vector<LevelCost>& costs) {
         const auto thin = take_thin_medium_lights(lattice_.medium(), lattice_.thin_medium().even_bricks(), lights);
         const MediumLightingInput& input = lattice_.input();
-        AdaptiveLight light = gather_adaptively(
-            lattice_, false, LevelLights(lattice_, lights, input.scattering.alpha, costs, progress_), detail_);
+        if (thin) {  // the rest has other centres
+            maps_ = {};
+            keeps_maps_ = false;
+        }
+        LatticeRequest request = flight.scatters_on ? lattice_.request() : lattice_.last_request();
+        request.least_coarsening = flight.scatters_on ? 1 : 0;
+        const LevelLights of_levels(lattice_, lights, input.scattering.alpha, costs, progress_,
+                                    keeps_maps_ ? &maps_ : nullptr);
+        AdaptiveLight light = gather_adaptively(lattice_, request, of_levels, detail_, flight.scatters_on ? 1 : 0);
         if (!thin)
             return light;
         LightField of_thin = thin->lights.field(lattice_.pyramid(), input.scattering.alpha, input.lighting, nullptr);
         of_thin.bottom = kFinestThinLights;
-        Gathered more = gather_at_nodes(of_thin, lattice_.last_request(), costs, progress_);
+        Gathered more = gather_at_nodes(of_thin, request, costs, progress_);
         prepare_interpolation(lattice_.medium().lattice, lattice_.needed(), more);
         light.light.add(more);
         give_back(*thin, lights.light);
@@ -114,7 +180,10 @@ private:
     const LitLattice& lattice_;
     Progress& progress_;
     Stopwatch watch_;
-    std::vector<LevelCost> levels_;  // of the first gather
+    ShadowMapCache maps_;
+    bool keeps_maps_ = false;
+    std::vector<LevelCost> levels_;  // of the first gather toward the camera
+    std::vector<LevelCost> levels_of_bounce_;
     nlohmann::ordered_json detail_;  // of the last one
     nlohmann::ordered_json balances_ = nlohmann::ordered_json::array();
 };
@@ -134,12 +203,15 @@ HierarchyLights exterior_lights_of(const LitLattice& lattice, HierarchyLights la
     return build_hierarchy(lattice.medium(), std::move(leaving), input.lighting.levels);
 }
 
-Gathered gather_together(const LitLattice& lattice, ScatteredLight orders, const Gathered& first, LastFlight& flight,
-                         SmokeLight& out, Statistics& statistics, Progress& progress) {
+Gathered gather_together(const LitLattice& lattice, ScatteredLight orders, const Gathered& first,
+                         const FineBounces& bounces, FineFlights& flights, SmokeLight& out, Statistics& statistics,
+                         Progress& progress) {
     Gathered sum;
     sum.resize(lattice.node_count(), lattice.input().directional, false);
-    HierarchyLights lights = flight.build(std::move(orders));
-    sum.add(flight.gather(lights, "last"));
+    HierarchyLights lights = flights.build(std::move(orders));
+    for (int k = 0; k < bounces.count; ++k)
+        flights.bounce(lights, first, bounces.share);
+    sum.add(flights.gather_last(lights, "last"));
     const bool on_surfaces = lattice.input().smoke_on_surfaces;
     if (lattice.lights_exterior(on_surfaces)) {
         out.exterior =
@@ -150,13 +222,13 @@ Gathered gather_together(const LitLattice& lattice, ScatteredLight orders, const
     return sum;
 }
 
-Gathered gather_apart(const LitLattice& lattice, std::vector<ScatteredLight> orders, LastFlight& flight,
+Gathered gather_apart(const LitLattice& lattice, std::vector<ScatteredLight> orders, FineFlights& flights,
                       SmokeLight& out, Statistics& statistics, Progress& progress) {
     Gathered sum;
     sum.resize(lattice.node_count(), lattice.input().directional, false);
     for (std::size_t k = 0; k < orders.size(); ++k) {
-        HierarchyLights lights = flight.build(std::move(orders[k]));
-        Gathered g = flight.gather(lights, std::to_string(k + 1));
+        HierarchyLights lights = flights.build(std::move(orders[k]));
+        Gathered g = flights.gather_last(lights, std::to_string(k + 1));
         const bool on_surfaces = lattice.input().smoke_on_surfaces;
         if (lattice.lights_exterior(on_surfaces)) {
             out.exterior = std::make_unique<ExteriorLights>(lattice, std::move(lights), on_surfaces,
@@ -173,16 +245,18 @@ Gathered gather_apart(const LitLattice& lattice, std::vector<ScatteredLight> ord
 
 SmokeLight light_from_smoke(const LitLattice& lattice, const Gathered& first, Statistics& statistics,
                             Progress& progress) {
-    std::vector<ScatteredLight> orders = orders_of_scattering(lattice, first, statistics, progress);
+    ScatteringSettings settings = lattice.input().scattering;
+    const FineBounces bounces = plan_fine_bounces(lattice, settings);
+    std::vector<ScatteredLight> orders = orders_of_scattering(lattice, first, settings, statistics, progress);
     progress.stage("light from the smoke (MM)");
-    LastFlight flight(lattice, progress);
+    FineFlights flights(lattice, progress);
     SmokeLight out;
     const Gathered sum =
         lattice.input().orders_apart
-            ? gather_apart(lattice, std::move(orders), flight, out, statistics, progress)
-            : gather_together(lattice, std::move(orders.front()), first, flight, out, statistics, progress);
+            ? gather_apart(lattice, std::move(orders), flights, out, statistics, progress)
+            : gather_together(lattice, std::move(orders.front()), first, bounces, flights, out, statistics, progress);
     out.multiple = lattice.source_function(sum);
-    statistics.stages.push_back(flight.cost(sum));
+    statistics.stages.push_back(flights.cost(sum));
     return out;
 }
 

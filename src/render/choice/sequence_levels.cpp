@@ -27,7 +27,8 @@ bool leaves_lattices_open(const Shot& shot) {
 }
 
 void choose_lattices(Shot& shot, const Medium& medium, const std::string& file, Progress& progress) {
-    const AutomaticLevels levels = automatic_levels_of(medium, shot.lighting);
+    const AutomaticLevels levels =
+        automatic_levels_of(medium, shot.lighting, settings_of_orders(shot.scattering, shot.output.bounce_layers));
     if (shot.lighting.lattice_level < 0)
         shot.lighting.lattice_level = levels.light;
     if (shot.lighting.levels <= 0)
