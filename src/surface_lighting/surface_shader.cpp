@@ -7,6 +7,7 @@
 #include "base_lighting/shared_receivers.h"
 #include "core/cpu_clock.h"
 #include "core/parallel.h"
+#include "surface_lighting/shown_area.h"
 
 namespace brisance {
 
@@ -31,15 +32,6 @@ float width_of_gloss(float roughness) {
 
 // Glossy lobes reflect at grazing angles what the colour of their metal does not hold: light is divided by no less.
 constexpr float kLeastColour = 0.04f;
-
-// The cosine below which the area that a pixel shows counts as if it were this.
-constexpr double kGrazing = 0.02;
-
-// The area [m^2] of the surface that a pixel shows, if its width is `pixel_size` there [m].
-float shown_area(const SurfacePoint& point, const dvec3& arriving, double pixel_size) {
-    const double facing = std::abs(glm::dot(point.geometric_normal, arriving));
-    return float(pixel_size * pixel_size / std::max(facing, kGrazing));
-}
 
 // Voxels of a segment of a path between surfaces are not cut: the path is one of many.
 constexpr int kPartsForPaths = 1;

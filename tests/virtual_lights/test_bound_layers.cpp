@@ -207,8 +207,7 @@ TEST(BoundLayers, ShowTheSameByAllSamplings) {
         return mean({image.layer("bound").pixels.begin(), image.layer("bound").pixels.end()});
     };
     const double all = share("all");
-    for (const char* sampling : {"power", "uniform", "light_tree", "lightcuts", "stochastic_lightcuts", "resampled"})
-    {
+    for (const char* sampling : {"power", "uniform", "light_tree", "lightcuts", "stochastic_lightcuts", "resampled"}) {
         const double found = share(sampling);
         std::printf("%s: %.4f, all %.4f\n", sampling, found, all);
         EXPECT_NEAR(found, all, 0.1 * all) << sampling;
