@@ -103,11 +103,12 @@ void finish_bound_layers(Image& image, const BoundTally& costs, Statistics& stat
         image.layers.insert(image.layers.begin() + (residual - image.layers.data()), std::move(bounded));
     }
     make_shares(*layer_named(image, kMap));
-    const double both = costs.light_seconds + costs.compensation_seconds;
-    stage.detail["bounded_lights_cpu_seconds"] = costs.light_seconds;
-    stage.detail["rays_from_there_cpu_seconds"] = costs.ray_seconds;
-    stage.detail["compensation_cpu_seconds"] = costs.compensation_seconds;
-    stage.detail["compensation_share_of_time"] = both > 0.0 ? costs.compensation_seconds / both : 0.0;
+    // The clock's own cost is taken off, which may leave less than nothing.
+    const double lights = std::max(costs.light_seconds, 0.0), rest = std::max(costs.compensation_seconds, 0.0);
+    stage.detail["bounded_lights_cpu_seconds"] = lights;
+    stage.detail["rays_from_there_cpu_seconds"] = std::max(costs.ray_seconds, 0.0);
+    stage.detail["compensation_cpu_seconds"] = rest;
+    stage.detail["compensation_share_of_time"] = lights + rest > 0.0 ? rest / (lights + rest) : 0.0;
     statistics.stages.push_back(std::move(stage));
 }
 

@@ -82,7 +82,7 @@ public:
 private:
     void count(double& seconds) {
         const double now = thread_cpu_seconds();
-        seconds += now - since_;
+        seconds += now - since_ - cost_of_thread_clock();
         since_ = now;
     }
 
