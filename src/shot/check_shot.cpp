@@ -85,7 +85,7 @@ void check_scattering(const Given& given, const ScatteringSettings& scattering) 
 
 void check_layers(const Given& given, const Shot& shot) {
     if (const std::string reason = why_no_bound_layers(shot); !reason.empty())
-        reject(given, "output.layers.bound", reason);
+        throw Error(ExitCode::Usage, fmt::format("{}: {}", given.at("output.layers.bound"), reason));
 }
 
 void check_lights(const Given& given, const SceneSettings& scene) {
