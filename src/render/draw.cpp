@@ -8,6 +8,7 @@
 #include "core/stopwatch.h"
 #include "forecast/memory_need.h"
 #include "medium_lighting/levels/lighting_level.h"
+#include "render/bound_layers.h"
 #include "render/frame_picture.h"
 #include "render/many_lights.h"
 
@@ -80,7 +81,7 @@ Drawn draw_lit(const DrawInput& input, const LitStretch* stretch, Statistics& st
     progress.stage("camera");
     const Stopwatch watch;
     FramePicture picture(input, lights, stretch, progress);
-    Drawn out{picture.draw(statistics), std::nullopt, picture.samples_per_pixel()};
+    Drawn out{picture.draw(statistics), std::nullopt, picture.samples_per_pixel(), picture.bound_costs()};
     add_layers(out.image, input, lights, picture, progress);
     statistics.stages.push_back({"camera",
                                  watch.seconds() - picture.seconds_on_estimators(),
@@ -105,6 +106,7 @@ Drawn draw_moving(const DrawInput& input, Statistics& statistics, Progress& prog
         Drawn drawn = draw_lit(then, &stretch, statistics, progress);
         mean.add(std::move(drawn.image));
         out.samples_per_pixel = drawn.samples_per_pixel;
+        out.bound_costs += drawn.bound_costs;
         if (k == lightings / 2)
             out.light_pictures = std::move(drawn.light_pictures);
     }
@@ -145,6 +147,7 @@ Drawn draw_mixed(const DrawInput& input, Statistics& statistics, Progress& progr
     }
     mix(out.image, other.image, input.plan.share_of_method);
     out.samples_per_pixel += other.samples_per_pixel;
+    out.bound_costs += other.bound_costs;
     return out;
 }
 
@@ -155,7 +158,10 @@ Drawn draw_by_many_lights(const DrawInput& input, Statistics& statistics, Progre
         check_surroundings(input.shot);
     if (input.plan.single || input.plan.multiple)
         check_memory_to_light(input);
-    return (input.plan.mixed() ? draw_mixed : draw_one)(input, statistics, progress);
+    Drawn out = (input.plan.mixed() ? draw_mixed : draw_one)(input, statistics, progress);
+    if (has_bound_layers(input.shot, input.plan))
+        finish_bound_layers(out.image, out.bound_costs, statistics);
+    return out;
 }
 
 std::optional<std::string> why_no_virtual_lights(const Shot& shot, const Plan& plan) {

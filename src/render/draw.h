@@ -11,6 +11,7 @@
 #include "render/shutter/open_shutter.h"
 #include "shot/shot.h"
 #include "statistics/statistics.h"
+#include "virtual_lights/bounded_light.h"
 #include "virtual_lights/placed_lights.h"
 
 namespace brisance {
@@ -34,6 +35,7 @@ struct Drawn {
     Image image;
     std::optional<LightPictures> light_pictures;  // if output.virtual_lights is set and there are lights
     double samples_per_pixel = 0.0;
+    BoundTally bound_costs;  // of the layers of output.layers.bound
 };
 
 // Builds the lights, renders the picture and adds its layers. Throws Error Usage for settings that are incompatible.

@@ -5,6 +5,8 @@
 
 #include "camera/pixel_samples.h"
 #include "camera_rays/moment_mean.h"
+#include "core/cpu_clock.h"
+#include "render/bound_layers.h"
 #include "scattering_methods/scattering_pass.h"
 #include "surface_lighting/surface_shader.h"
 
@@ -70,6 +72,17 @@ void add_to_cell(Image& image, Cell cell, const std::vector<Rgb>& light) {
     }
 }
 
+// All threads of the process work on it.
+void add_compensation(Image& image, ScreenSpaceCompensation& compensated, BoundAccount* bound) {
+    const double start = bound ? process_cpu_seconds() : 0.0;
+    const std::vector<Rgb> pixels = compensated.take_pixels();
+    if (bound) {
+        bound->costs().compensation_seconds += process_cpu_seconds() - start;
+        bound->add_residual(pixels);
+    }
+    add_to_cell(image, Cell::SS, pixels);
+}
+
 }  // namespace
 
 FramePicture::FramePicture(const DrawInput& input, const ManyLights& lights, const LitStretch* stretch,
@@ -127,14 +140,15 @@ Image FramePicture::pass(const InScattering* estimator, int number) {
 }
 
 // None where samples reuse nothing.
-std::optional<LightReuse> FramePicture::light_reuse(const Camera& camera, SharedBounce* shared) const {
+std::optional<LightReuse> FramePicture::light_reuse(const Camera& camera, SharedBounce* shared,
+                                                    BoundAccount* bound) const {
     const VirtualLightSettings& s = input_.shot.virtual_lights;
     const ReservoirLights* const lights =
         lights_.virtual_lights() && input_.plan.needs(Cell::SS) ? lights_.virtual_lights()->reservoirs() : nullptr;
     if (!lights || s.resampling_neighbours == 0)
         return std::nullopt;
     return LightReuse(*lights, camera.settings().width, camera.settings().height,
-                      {s.resampling_neighbours, s.resampling_radius, s.resampling_visibility}, shared);
+                      {s.resampling_neighbours, s.resampling_radius, s.resampling_visibility}, shared, bound);
 }
 
 // None where no light is bounded, or nothing on the screen is to make up for it.
@@ -157,25 +171,35 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
     settings_.once = lights.once();
     if (!input_.plan.surfaces)
         return render_picture(lights.field(), camera, settings_, progress_);
+    const bool asks_for_bound = has_bound_layers(input_.shot, input_.plan);
+    std::optional<BoundAccount> bound;
+    if (asks_for_bound)
+        bound.emplace(std::size_t(camera.settings().width) * camera.settings().height);
     std::optional<SharedBounce> shared;
     const double radius = input_.shot.virtual_lights.sharing_radius;
     if (lights_.virtual_lights() && input_.plan.needs(Cell::SS) && radius > 0.0)
-        shared.emplace(camera.settings().width, camera.settings().height, radius, rays_of_pixel());
-    std::optional<LightReuse> reuse = light_reuse(camera, shared ? &*shared : nullptr);
+        shared.emplace(camera.settings().width, camera.settings().height, radius, rays_of_pixel(), asks_for_bound);
+    std::optional<LightReuse> reuse = light_reuse(camera, shared ? &*shared : nullptr, bound ? &*bound : nullptr);
     std::optional<ScreenSpaceCompensation> compensated = compensation(camera);
     SurfaceShader shader({input_.plan.needed, lights.field(), *lights.paths(), lights_.medium().lighting(),
                           lights_.virtual_lights(), estimator, input_.plan.emitters_by_rays, settings_.parts,
                           camera.settings().width, rays_of_pixel(), lengths_ ? &*lengths_ : nullptr,
                           shared ? &*shared : nullptr, camera.pixel_angle(), reuse ? &*reuse : nullptr,
-                          compensated ? &*compensated : nullptr, lights.fire_on_surfaces()});
+                          compensated ? &*compensated : nullptr, lights.fire_on_surfaces(), bound ? &*bound : nullptr});
     Image image = render_picture(lights.field(), camera, settings_, progress_,
                                  [&](const auto& samples, auto& light) { shader.shade(samples, light); });
     if (reuse)
         add_to_cell(image, Cell::SS, reuse->take_pixels());
     if (shared)
         add_to_cell(image, Cell::SS, shared->take_pixels());
+    if (shared && bound)
+        bound->add_residual(shared->residual_pixels());
     if (compensated)
-        add_to_cell(image, Cell::SS, compensated->take_pixels());
+        add_compensation(image, *compensated, bound ? &*bound : nullptr);
+    if (bound) {
+        bound_costs_ += bound->costs();
+        add_bound_sums(image, input_.shot, *bound);
+    }
     return image;
 }
 

@@ -6,6 +6,7 @@
 
 #include "camera_rays/picture.h"
 #include "render/shutter/moment_lights.h"
+#include "surface_lighting/bound_account.h"
 #include "surface_lighting/light_reuse.h"
 #include "surface_lighting/path_lengths.h"
 #include "surface_lighting/screen_space_compensation.h"
@@ -30,6 +31,7 @@ public:
 
     double samples_per_pixel() const;  // of all moments
     double seconds_on_estimators() const { return seconds_on_estimators_; }
+    const BoundTally& bound_costs() const { return bound_costs_; }  // of the layers of output.layers.bound
     const PathLengths* path_lengths() const { return lengths_ ? &*lengths_ : nullptr; }
 
 private:
@@ -40,7 +42,7 @@ private:
     Image pass(const InScattering* estimator, int number);
     Image picture(const InScattering* estimator, int number, const MomentLights& lights, const Camera& camera,
                   const Surroundings* surroundings);
-    std::optional<LightReuse> light_reuse(const Camera& camera, SharedBounce* shared) const;
+    std::optional<LightReuse> light_reuse(const Camera& camera, SharedBounce* shared, BoundAccount* bound) const;
     std::optional<ScreenSpaceCompensation> compensation(const Camera& camera) const;
     Image order_picture(const NodeSources& order, PictureSettings settings);
 
@@ -50,6 +52,7 @@ private:
     PictureSettings settings_;
     Progress& progress_;
     std::optional<PathLengths> lengths_;
+    BoundTally bound_costs_;
     double seconds_on_estimators_ = 0.0;
 };
 

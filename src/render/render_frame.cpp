@@ -12,6 +12,7 @@
 #include "forecast/plan.h"
 #include "reference/trace_picture.h"
 #include "render/believe.h"
+#include "render/bound_layers.h"
 #include "render/checkpoint_key.h"
 #include "render/choice/choose_method.h"
 #include "render/choice/time_budget.h"
@@ -168,6 +169,7 @@ void render_into(RenderedFrame& out, const Shot& given, const FrameView& frame, 
     if (shot.output.virtual_lights)
         if (const std::optional<std::string> reason = why_no_virtual_lights(shot, plan))
             progress.warning("virtual-lights", kNoLightPictures + *reason);
+    check_bound_layers(shot, plan, progress);
     if (shot.method == RenderMethod::Path)
         trace_into(out, input, checkpoint, progress);
     else

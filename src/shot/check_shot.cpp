@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "virtual_lights/choices.h"
 
 namespace brisance {
 namespace {
@@ -82,6 +83,11 @@ void check_scattering(const Given& given, const ScatteringSettings& scattering) 
                "scattering.solver=diffusion knows the sum of all bounces only; give all, or at most 2");
 }
 
+void check_layers(const Given& given, const Shot& shot) {
+    if (const std::string reason = why_no_bound_layers(shot); !reason.empty())
+        throw Error(ExitCode::Usage, fmt::format("{}: {}", given.at("output.layers.bound"), reason));
+}
+
 void check_lights(const Given& given, const SceneSettings& scene) {
     int environments = 0;
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
@@ -124,6 +130,14 @@ void check_volumes(const Given& given, const std::vector<FurtherVolume>& volumes
 
 }  // namespace
 
+std::string why_no_bound_layers(const Shot& shot) {
+    if (!shot.output.bound_layers)
+        return {};
+    if (!shot.output.cell_layers)
+        return "output.layers.bound needs output.layers.cells=true: it divides the layer SS";
+    return why_no_bound(shot.virtual_lights, "output.layers.bound", "output.layers.bound=false");
+}
+
 void check_shot(const Shot& shot, const Given& given, const std::string& source) {
     if (shot.volume.file.empty() && shot.volumes.empty() && shot.scene.empty())
         throw Error(ExitCode::Usage,
@@ -139,6 +153,7 @@ void check_shot(const Shot& shot, const Given& given, const std::string& source)
     check_fire_lights(given, shot);
     check_tracing(given, shot);
     check_scattering(given, shot.scattering);
+    check_layers(given, shot);
 }
 
 }  // namespace brisance

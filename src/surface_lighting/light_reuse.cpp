@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/cpu_clock.h"
 #include "core/parallel.h"
 
 namespace brisance {
@@ -27,13 +28,14 @@ bool alike(const LightReuse::Sample& a, const LightReuse::Sample& b) {
 }  // namespace
 
 LightReuse::LightReuse(const ReservoirLights& lights, int width, int height, const Settings& settings,
-                       SharedBounce* shared)
+                       SharedBounce* shared, BoundAccount* bound)
     : lights_(lights),
       width_(width),
       height_(height),
       settings_(settings),
       reach_(static_cast<int>(std::ceil(settings.radius))),
       shared_(shared),
+      bound_(bound),
       rows_(std::size_t(height)),
       pixels_(std::size_t(width) * height, Rgb(0.0f)) {}
 
@@ -63,9 +65,14 @@ void LightReuse::light_rows(int end) {
     for (int y = lit_; y < end; ++y)
         for (Sample& s : rows_[y].samples)
             samples.push_back(&s);
-    std::vector<Rgb> found(samples.size());
+    std::vector<Found> found(samples.size());
     parallel_for(
-        samples.size(), [&](std::size_t i) { found[i] = light(*samples[i]); }, kReusesAtOnce);
+        samples.size(),
+        [&](std::size_t i) {
+            const AddedCpuTime time(bound_ ? &found[i].seconds : nullptr);
+            found[i].light = light(*samples[i]);
+        },
+        kReusesAtOnce);
     for (std::size_t i = 0; i < samples.size(); ++i)
         show(*samples[i], found[i]);
     lit_ = end;
@@ -156,7 +163,7 @@ void LightReuse::offer_visible(const std::vector<const Sample*>& set, Reservoir<
     }
 }
 
-Rgb LightReuse::light(const Sample& sample) const {
+BoundedLight LightReuse::light(const Sample& sample) const {
     Rng rng(kReuse, sample.pixel, 3 * sample.number + static_cast<std::uint64_t>(sample.lobes));
     const std::vector<const Sample*> set = set_of(sample, rng);
     Reservoir<LightReservoir> kept;
@@ -165,13 +172,21 @@ Rgb LightReuse::light(const Sample& sample) const {
     else
         offer_unoccluded(set, kept, rng);
     if (!(kept.sum() > 0.0))
-        return Rgb(0.0f);
+        return {};
     LightReservoir y = kept.kept();
     y.weight *= kept.sum();
     return lights_.from_reservoir(y, sample.vertex, rng);
 }
 
-void LightReuse::show(Sample& sample, const Rgb& light) {
+void LightReuse::show(Sample& sample, const Found& found) {
+    const Rgb& light = found.light.light;
+    if (bound_) {
+        BoundTally tally;
+        tally.shown = luminance(light);
+        tally.lost = found.light.lost;
+        tally.light_seconds = found.seconds;
+        bound_->add(sample.pixel, tally, Rgb(sample.share));
+    }
     Rgb& pixel = pixels_[sample.pixel];
     if (!sample.shared) {
         pixel += sample.share * light;
@@ -180,8 +195,11 @@ void LightReuse::show(Sample& sample, const Rgb& light) {
     SharedBounce::Sample& s = *sample.shared;
     for (int c = 0; c < 3; ++c)
         s.light[c] += sample.colour[c] > 0.0f ? light[c] / sample.colour[c] : 0.0f;
-    if (!shared_->add(s))
-        pixel += s.light * s.weight;
+    if (shared_->add(s))
+        return;
+    pixel += s.light * s.weight;
+    if (bound_)
+        bound_->add_residual(sample.pixel, s.residual * s.weight);
 }
 
 }  // namespace brisance

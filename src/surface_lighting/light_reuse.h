@@ -35,6 +35,7 @@
 #include <optional>
 #include <vector>
 
+#include "surface_lighting/bound_account.h"
 #include "surface_lighting/shared_bounce.h"
 #include "virtual_lights/gatherers/light_reservoir.h"
 #include "virtual_lights/gatherers/reservoir.h"
@@ -65,7 +66,9 @@ public:
     };
 
     // Keeps references. `shared`: gets the light of samples that have something to share; null where none has.
-    LightReuse(const ReservoirLights& lights, int width, int height, const Settings& settings, SharedBounce* shared);
+    // `bound`: gets what the bound of point lights takes of what is reused; null: nobody asks.
+    LightReuse(const ReservoirLights& lights, int width, int height, const Settings& settings, SharedBounce* shared,
+               BoundAccount* bound = nullptr);
 
     // Samples of whole rows, in the order of rows. Not thread-safe. Rows whose neighbours are all known are lit, and
     // their samples forgotten: those of 2 radius + 1 rows are kept.
@@ -75,6 +78,10 @@ public:
     std::vector<Rgb> take_pixels();
 
 private:
+    struct Found {
+        BoundedLight light;
+        double seconds = 0.0;  // processor time, where somebody asks
+    };
     struct Row {
         std::vector<Sample> samples;
         std::vector<std::uint32_t> first;  // sample of each pixel, and an end
@@ -82,18 +89,19 @@ private:
 
     void light_rows(int end);
     void count_samples(Row& row) const;
-    Rgb light(const Sample& sample) const;
+    BoundedLight light(const Sample& sample) const;
     std::vector<const Sample*> set_of(const Sample& sample, Rng& rng) const;
     void offer_unoccluded(const std::vector<const Sample*>& set, Reservoir<LightReservoir>& kept, Rng& rng) const;
     void offer_visible(const std::vector<const Sample*>& set, Reservoir<LightReservoir>& kept, Rng& rng) const;
     const Sample* choose_around(const Sample& sample, Rng& rng) const;
-    void show(Sample& sample, const Rgb& light);
+    void show(Sample& sample, const Found& found);
 
     const ReservoirLights& lights_;
     int width_, height_;
     Settings settings_;
     int reach_;  // [rows]
     SharedBounce* shared_;
+    BoundAccount* bound_;
     std::vector<Row> rows_;
     int lit_ = 0;  // rows
     std::vector<Rgb> pixels_;

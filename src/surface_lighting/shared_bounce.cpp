@@ -41,10 +41,11 @@ float turned(float lobe) {
 
 }  // namespace
 
-SharedBounce::SharedBounce(int width, int height, double radius, int rays)
+SharedBounce::SharedBounce(int width, int height, double radius, int rays, bool tells_residual)
     : width_(width),
       height_(height),
       radius_(float(radius * std::pow(double(kUsualRays) / std::max(rays, 1), 1.0 / 6.0))),
+      tells_residual_(tells_residual),
       first_(std::size_t(width) * height, kNone) {}
 
 bool SharedBounce::add(const Sample& s) {
@@ -64,7 +65,11 @@ bool SharedBounce::add(const Sample& s) {
     if (*at == kNone) {
         *at = static_cast<std::uint32_t>(found);
         patches_.emplace_back();  // may move what `at` points to
+        if (tells_residual_)
+            residual_.emplace_back(0.0f);
     }
+    if (tells_residual_)
+        residual_[found] += s.residual;
     Patch& p = patches_[found];
     p.position += s.position;
     p.normal += s.normal;
@@ -80,6 +85,8 @@ bool SharedBounce::add(const Sample& s) {
 }
 
 void SharedBounce::take_means() {
+    for (std::size_t k = 0; k < residual_.size(); ++k)
+        residual_[k] /= patches_[k].samples;
     for (Patch& p : patches_) {
         const float each = 1.0f / p.samples;
         p.position *= each;
@@ -149,14 +156,14 @@ std::vector<float> SharedBounce::radii() const {
 }
 
 void SharedBounce::share(const std::vector<float>& radius, int step) {
-    std::vector<Rgb> light(patches_.size());
+    std::vector<Rgb> light(patches_.size()), residual(residual_);
     for_each_patch([&](std::size_t pixel, std::uint32_t k) {
         const Patch& p = patches_[k];
         light[k] = p.light;
         // What is nearer than a step has been shared by the step before.
         if (radius[k] <= (step > 1 ? float(step) * p.pixel_size : 0.0f))
             return;
-        Rgb sum(0.0f);
+        Rgb sum(0.0f), sum_of_residual(0.0f);
         float weights = 0.0f;
         for_neighbours(pixel, p, std::min(radius[k], float(kReach * step) * p.pixel_size), step,
                        [&](std::uint32_t j, float w) {
@@ -168,10 +175,16 @@ void SharedBounce::share(const std::vector<float>& radius, int step) {
                            w *= j == k ? 1.0f : square(within);
                            sum += w * patches_[j].light;
                            weights += w;
+                           if (tells_residual_)
+                               sum_of_residual += w * residual_[j];
                        });
-        if (weights > 0.0f)
-            light[k] = sum / weights;
+        if (!(weights > 0.0f))
+            return;
+        light[k] = sum / weights;
+        if (tells_residual_)
+            residual[k] = sum_of_residual / weights;
     });
+    residual_.swap(residual);
     for (std::size_t k = 0; k < patches_.size(); ++k)
         patches_[k].light = light[k];
 }
@@ -183,6 +196,13 @@ std::vector<Rgb> SharedBounce::take_pixels() {
         share(radius, step);
     std::vector<Rgb> out(first_.size(), Rgb(0.0f));
     for_each_patch([&](std::size_t pixel, std::uint32_t k) { out[pixel] += patches_[k].weight * patches_[k].light; });
+    return out;
+}
+
+std::vector<Rgb> SharedBounce::residual_pixels() const {
+    std::vector<Rgb> out(first_.size(), Rgb(0.0f));
+    if (tells_residual_)
+        for_each_patch([&](std::size_t pixel, std::uint32_t k) { out[pixel] += patches_[k].weight * residual_[k]; });
     return out;
 }
 

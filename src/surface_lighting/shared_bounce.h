@@ -36,10 +36,12 @@ public:
         Rgb light{0.0f};         // radiance that the lobe reflects, over its colour [W/(m^2 sr)]
         Rgb weight{0.0f};        // the pixel shows light times weight
         float closeness = 0.0f;  // inverse distance of the surface that the path met first; 0: none [1/m]
+        Rgb residual{0.0f};      // a part of `light` that is shared likewise, and told apart
     };
 
-    // `radius`: over the distance to surrounding surfaces, for 16 rays per pixel. `rays`: of a pixel.
-    SharedBounce(int width, int height, double radius, int rays);
+    // `radius`: over the distance to surrounding surfaces, for 16 rays per pixel. `rays`: of a pixel. `tells_residual`:
+    // residual_pixels() is asked for.
+    SharedBounce(int width, int height, double radius, int rays, bool tells_residual = false);
 
     // Samples of a pixel in any order that does not depend on threads. Not thread-safe. False: the pixel has samples of
     // too many surfaces already, and this one is not taken.
@@ -47,6 +49,8 @@ public:
 
     // Radiance of each pixel. Uses up the samples.
     std::vector<Rgb> take_pixels();
+    // After that: the part of it that comes from Sample::residual.
+    std::vector<Rgb> residual_pixels() const;
 
 private:
     // The samples of a pixel that lie on one surface, of lobes of one width: sums, then their means, but for `weight`.
@@ -71,8 +75,10 @@ private:
 
     int width_, height_;
     float radius_;
+    bool tells_residual_;
     std::vector<std::uint32_t> first_;  // patch of each pixel
     std::vector<Patch> patches_;
+    std::vector<Rgb> residual_;  // of each patch, as Patch::light; empty: not told
 };
 
 }  // namespace brisance

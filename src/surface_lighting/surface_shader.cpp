@@ -2,9 +2,12 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base_lighting/shared_receivers.h"
+#include "core/cpu_clock.h"
 #include "core/parallel.h"
+#include "surface_lighting/shown_area.h"
 
 namespace brisance {
 
@@ -29,15 +32,6 @@ float width_of_gloss(float roughness) {
 
 // Glossy lobes reflect at grazing angles what the colour of their metal does not hold: light is divided by no less.
 constexpr float kLeastColour = 0.04f;
-
-// The cosine below which the area that a pixel shows counts as if it were this.
-constexpr double kGrazing = 0.02;
-
-// The area [m^2] of the surface that a pixel shows, if its width is `pixel_size` there [m].
-float shown_area(const SurfacePoint& point, const dvec3& arriving, double pixel_size) {
-    const double facing = std::abs(glm::dot(point.geometric_normal, arriving));
-    return float(pixel_size * pixel_size / std::max(facing, kGrazing));
-}
 
 // Voxels of a segment of a path between surfaces are not cut: the path is one of many.
 constexpr int kPartsForPaths = 1;
@@ -74,6 +68,7 @@ struct SurfaceShader::ShadedPoint {
     int vertices;
     std::optional<SharedBounce::Sample> base = std::nullopt, gloss = std::nullopt;  // left to all pixels
     std::vector<LightReuse::Sample> chosen = {};                                    // left to samples around
+    BoundTally bound = {};                                                          // of what is not left to all pixels
 };
 
 // The samples of a pixel divide the emitters among themselves: a sequence of evenly spread choices runs through them
@@ -210,8 +205,13 @@ void SurfaceShader::reflect_scattered(const SurfacePoint& point, const dvec3& to
 }
 
 VirtualLights::Shading SurfaceShader::shading(ShadedPoint& at) const {
-    return {samples_through_panes() ? VirtualLights::Panes::Sampled : VirtualLights::Panes::Followed, &smoke_of_paths_,
-            walks_, &at.vertices};
+    return {samples_through_panes() ? VirtualLights::Panes::Sampled : VirtualLights::Panes::Followed,
+            &smoke_of_paths_,
+            walks_,
+            &at.vertices,
+            nullptr,
+            nullptr,
+            input_.bound ? &at.bound : nullptr};
 }
 
 // What the sample itself shows; the rest is left to all pixels, where they share it.
@@ -260,6 +260,7 @@ SharedBounce::Sample SurfaceShader::shared_sample(const SurfaceSample& sample, c
     VirtualLights::Shading how = shading(at);
     double distance = std::numeric_limits<double>::infinity();
     how.distance = &distance;
+    const Rgb own_residual = std::exchange(at.bound.residual, Rgb(0.0f));
     const Rgb light = shade_vertex(sample, PathVertex(point, lobes, at.seen.arriving), which, how, rng, at);
     if (!at.chosen.empty())
         at.chosen.back().colour = colour;
@@ -271,8 +272,12 @@ SharedBounce::Sample SurfaceShader::shared_sample(const SurfaceSample& sample, c
     out.pixel_size = float(input_.pixel_angle * from_eye);
     out.area = shown_area(point, at.seen.arriving, out.pixel_size);
     out.lobe = lobe;
+    const Rgb residual = std::exchange(at.bound.residual, own_residual);
     for (int c = 0; c < 3; ++c)
-        out.light[c] = colour[c] > 0.0f ? light[c] / colour[c] : 0.0f;
+        if (colour[c] > 0.0f) {
+            out.light[c] = light[c] / colour[c];
+            out.residual[c] = residual[c] / colour[c];
+        }
     out.weight = sample.share * colour;
     out.closeness = float(1.0 / distance);
     // Along a glossy surface the direction to the eye changes, too.
@@ -367,15 +372,22 @@ void SurfaceShader::hand_over(const std::vector<SurfaceSample>& samples, std::ve
         ShadedPoint& at = points[i];
         if (!(samples[i].share > 0.0f))
             continue;
-        if (input_.compensation && !at.seen.lost && at.seen.mirrors == 0)
+        if (input_.compensation && !at.seen.lost && at.seen.mirrors == 0) {
+            const AddedCpuTime time(input_.bound ? &input_.bound->costs().compensation_seconds : nullptr);
             input_.compensation->add(compensated_sample(samples[i], at, light[i]));
+        }
+        if (input_.bound)
+            input_.bound->add(samples[i].pixel, at.bound, samples[i].share * at.seen.throughput);
         for (LightReuse::Sample& c : at.chosen) {
             c.shared.swap(c.lobes == Lobes::Base ? at.base : at.gloss);
             chosen.push_back(std::move(c));
         }
         for (const std::optional<SharedBounce::Sample>& s : {at.base, at.gloss})
-            if (s && !input_.shared->add(*s))
+            if (s && !input_.shared->add(*s)) {
                 light[i].at(Cell::SS) += s->light * s->weight / samples[i].share;
+                if (input_.bound)
+                    input_.bound->add_residual(samples[i].pixel, s->residual * s->weight);
+            }
     }
     if (input_.reuse)
         input_.reuse->add(std::move(chosen));

@@ -25,6 +25,7 @@
 #include "light_selection/in_scattering.h"
 #include "medium_lighting/medium_lighting.h"
 #include "reference/path_tracer.h"
+#include "surface_lighting/bound_account.h"
 #include "surface_lighting/light_reuse.h"
 #include "surface_lighting/mirrors.h"
 #include "surface_lighting/path_lengths.h"
@@ -53,6 +54,7 @@ struct SurfaceLightingInput {
     // Gets what all samples show; null: the bound's loss is not looked for on the screen. Not beside `reuse`.
     ScreenSpaceCompensation* compensation = nullptr;
     const SampledFire* fire = nullptr;  // owns SV of the base; null: the lighting grid does
+    BoundAccount* bound = nullptr;      // gets what the bound of point lights does to SS; null: nobody asks
 };
 
 class SurfaceShader {

@@ -87,10 +87,10 @@ void refine_cut(std::vector<Node>& cut, std::size_t most, const Enough& enough, 
 }
 
 // The light of all nodes of a cut, which is divided until no node may err by more than `error` of the sum, or it has
-// `most` nodes. contribution(node); divide(node, add) as replace() above.
+// `most` nodes. contribution(node): has a luminance(); divide(node, add) as replace() above.
 template <class Node, class Contribution, class Divide>
-Rgb sum_of_cut(std::vector<Node>& cut, double error, std::size_t most, const Contribution& contribution,
-               const Divide& divide) {
+auto sum_of_cut(std::vector<Node>& cut, double error, std::size_t most, const Contribution& contribution,
+                const Divide& divide) {
     double sum = 0.0;
     for (const Node& node : cut)
         sum += luminance(contribution(node));
@@ -103,7 +103,7 @@ Rgb sum_of_cut(std::vector<Node>& cut, double error, std::size_t most, const Con
                 add(child);
             });
         });
-    Rgb total(0.0f);
+    auto total = decltype(contribution(cut.front()))(Rgb(0.0f));
     for (const Node& node : cut)
         total += contribution(node);
     return total;

@@ -14,6 +14,7 @@
 // the top by orientation and area, not by clustering from below.
 #pragma once
 
+#include <type_traits>
 #include <utility>
 
 #include "transport/light_cut.h"
@@ -28,24 +29,25 @@ public:
           error_(error),
           most_(static_cast<std::size_t>(most)) {}
 
-    // What the vertex scatters of all lights. light_of(light): of one of them, not weighted. `extinction`: of smoke
-    // that bounds take to be all around the vertex [1/m]; then they may be too low.
-    template <class LightOf>
-    Rgb at(const PathVertex& vertex, const LightOf& light_of, double extinction = 0.0) const {
+    // What the vertex scatters of all lights. light_of(light): of one of them, not weighted; Rgb or what adds up and
+    // has a luminance() likewise. `extinction`: of smoke that bounds take to be all around the vertex [1/m]; then they
+    // may be too low.
+    template <class LightOf, class Light = std::invoke_result_t<const LightOf&, std::size_t>>
+    Light at(const PathVertex& vertex, const LightOf& light_of, double extinction = 0.0) const {
         if (tree_.empty())
-            return Rgb(0.0f);
+            return Light(Rgb(0.0f));
         const VertexBounds bounds(tree_, vertex, extinction);
-        thread_local std::vector<Represented> cut;
+        using Node = Represented<Light>;
+        thread_local std::vector<Node> cut;
         cut.clear();
-        const auto node_of = [&](std::uint32_t node, const NodeBound& bound, const Rgb& light) {
-            return Represented{{node, tree_.is_leaf(node) ? 0.0 : bound.largest()}, light};
+        const auto node_of = [&](std::uint32_t node, const NodeBound& bound, const Light& light) {
+            return Node{{node, tree_.is_leaf(node) ? 0.0 : bound.largest()}, light};
         };
         if (const NodeBound root = bounds.of(0); root.scattered > 0.0)
             cut.push_back(node_of(0, root, light_of(representatives_[0])));
         return sum_of_cut(
-            cut, error_, most_,
-            [&](const Represented& node) { return node.light * ratio_to_representative(node.node); },
-            [&](const Represented& divided, const auto& add) {
+            cut, error_, most_, [&](const Node& node) { return node.light * ratio_to_representative(node.node); },
+            [&](const Node& divided, const auto& add) {
                 for (const std::uint32_t child : {tree_.left(divided.node), tree_.right(divided.node)}) {
                     const NodeBound bound = bounds.of(child);
                     if (!(bound.scattered > 0.0))
@@ -69,8 +71,9 @@ public:
     std::uint64_t bytes() const { return tree_.bytes() + representatives_.size() * sizeof(std::uint32_t); }
 
 private:
+    template <class Light>
     struct Represented : CutNode {
-        Rgb light{0.0f};  // the whole of the representative alone
+        Light light;  // the whole of the representative alone
     };
 
     LightTree tree_;

@@ -12,6 +12,7 @@
 // below or along Morton's curve.
 #pragma once
 
+#include <type_traits>
 #include <utility>
 
 #include "core/rng.h"
@@ -24,12 +25,12 @@ public:
     // `size`: nodes of a cut.
     StochasticLightcut(LightTree tree, int size) : tree_(std::move(tree)), size_(size) {}
 
-    // What the vertex scatters of all lights. estimate(light, probability): of one that is chosen so, weighted.
-    // `extinction`: of smoke that is taken to be all around the vertex [1/m].
-    template <class Estimate>
-    Rgb at(const PathVertex& vertex, Rng& rng, const Estimate& estimate, double extinction = 0.0) const {
+    // What the vertex scatters of all lights. estimate(light, probability): of one that is chosen so, weighted;
+    // Rgb or what adds up likewise. `extinction`: of smoke that is taken to be all around the vertex [1/m].
+    template <class Estimate, class Light = std::invoke_result_t<const Estimate&, std::size_t, double>>
+    Light at(const PathVertex& vertex, Rng& rng, const Estimate& estimate, double extinction = 0.0) const {
         if (tree_.empty())
-            return Rgb(0.0f);
+            return Light(Rgb(0.0f));
         const VertexBounds bounds(tree_, vertex, extinction);
         thread_local std::vector<CutNode> cut;
         cut.assign(1, {0, tree_.is_leaf(0) ? 0.0 : bounds.of(0).largest()});
@@ -40,7 +41,7 @@ public:
                     if (const double largest = bounds.of(child).largest(); largest > 0.0)
                         add({child, tree_.is_leaf(child) ? 0.0 : largest});
             });
-        Rgb sum(0.0f);
+        auto sum = Light(Rgb(0.0f));
         for (const CutNode& node : cut) {
             const std::optional<LightTree::Choice> choice =
                 tree_.choose_below(node.node, rng.next_double(), [&](std::uint32_t left, std::uint32_t right) {

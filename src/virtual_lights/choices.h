@@ -46,6 +46,10 @@ const std::vector<TechniquePreset>& light_presets();
 // Why the choices do not go together, with what would do; empty where they do. Throws Error Usage for an unknown name.
 std::string why_not_together(const VirtualLightSettings& settings);
 
+// Why something that needs lights with a bound does not go with these, with what would do; empty where it does. `what`:
+// needs them; `otherwise`: goes with all. Throws Error Usage for an unknown name.
+std::string why_no_bound(const VirtualLightSettings& settings, const std::string& what, const std::string& otherwise);
+
 // Throws Error Usage for settings out of range and for choices that do not go together.
 void check(const VirtualLightSettings& settings);
 

@@ -25,6 +25,15 @@ std::string compensations_that(const std::function<bool(const CompensationChoice
     return out;
 }
 
+std::string compensation_complaint(const VirtualLightSettings& s) {
+    const CompensationChoice& choice = choice_of(s.compensation);
+    if (!choice.needs_bound)
+        return {};
+    return why_no_bound(
+        s, "compensation " + choice.name,
+        "compensation " + compensations_that([](const CompensationChoice& other) { return !other.needs_bound; }));
+}
+
 std::string pixels_complaint(const VirtualLightSettings& s) {
     const CompensationChoice& choice = choice_of(s.compensation);
     if (s.resampling_neighbours == 0 || !choice.reads_pixels)

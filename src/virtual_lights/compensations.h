@@ -13,6 +13,9 @@ const CompensationChoice& choice_of(BoundCompensation value);
 // The names of those for which it holds: "none, exact".
 std::string compensations_that(const std::function<bool(const CompensationChoice&)>& holds);
 
+// Why the compensation does not go with the kind of light, with what would do; empty where it does.
+std::string compensation_complaint(const VirtualLightSettings& settings);
+
 // Why the compensation does not go with reuse among pixels, with what would do; empty where it does.
 std::string pixels_complaint(const VirtualLightSettings& settings);
 

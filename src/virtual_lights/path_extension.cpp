@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/cpu_clock.h"
 #include "transport/emitters_along_ray.h"
 #include "transport/path_step.h"
 #include "virtual_lights/kinds/bounded_geometry.h"
@@ -39,6 +40,57 @@ double VirtualLights::share_kept(const PathVertex& vertex, const RaySegment& seg
     return kept_by_bound(s, vertex.lit(), segment.ray.direction, cosine, glm::dot(offset, offset));
 }
 
+// What a path finds out about the bound of point lights, for a BoundTally; nothing, and at no cost, without one.
+class BoundWatch {
+public:
+    explicit BoundWatch(BoundTally* tally) : tally_(tally), since_(tally ? thread_cpu_seconds() : 0.0) {}
+
+    void light(const Rgb& found) {
+        if (tally_)
+            tally_->residual += compensation_ * found;
+    }
+
+    // Bounded lights at a vertex that no compensation has led to, by gather().
+    template <class Gather>
+    BoundedLight lights(bool receiver, const Gather& gather) {
+        if (!tally_ || compensation_ > 0.0f)
+            return gather();
+        count(tally_->ray_seconds);
+        const BoundedLight found = gather();
+        count(tally_->light_seconds);
+        if (receiver) {
+            tally_->shown += luminance(found);
+            tally_->lost += found.lost;
+        }
+        return found;
+    }
+
+    // Of the light where a ray ends, lights hold a share and give `kept` of that: the path goes on for the rest.
+    void goes_on(double held, double kept) {
+        if (!tally_ || !(held > kept))
+            return;
+        if (compensation_ == 0.0f)
+            count(tally_->ray_seconds);
+        compensation_ += (1.0f - compensation_) * float((held - kept) / (1.0 - kept));
+    }
+
+    void end() {
+        if (tally_)
+            count(compensation_ > 0.0f ? tally_->compensation_seconds : tally_->ray_seconds);
+    }
+
+private:
+    void count(double& seconds) {
+        const double now = thread_cpu_seconds();
+        seconds += now - since_ - cost_of_thread_clock();
+        since_ = now;
+    }
+
+    BoundTally* tally_;
+    double since_;
+    float compensation_ = 0.0f;  // of the path's throughput, what it goes on with for the rest
+};
+
 // A path from a receiver over surfaces, until virtual lights hold what they reflect. The receiver itself gathers only
 // what surfaces reflect toward it; later vertices gather all light.
 class VirtualLights::ExtendedPath : public PlainPath {
@@ -49,14 +101,20 @@ public:
           panes_(how.panes),
           smoke_(smoke),
           reservoir_(how.reservoir),
+          bound_(how.bound),
           lamps_along_(scene_.has_emitters() && aims_at_lamps(scene_) && !scene_.field().bricks().empty()) {}
 
-    Rgb own_lights(const PathState& state, Rng& rng) const {
+    Rgb own_lights(const PathState& state, Rng& rng) {
         if (!lights_.samples_lights() || state.vertex.only_delta())
             return Rgb(0.0f);
-        if (reservoir_ && state.order == 1)
-            return lights_.reservoirs()->fill(state.vertex, *reservoir_, rng);
-        return lights_.from_lights(state.vertex, rng);
+        return bound_
+            .lights(state.order == 1,
+                    [&]() -> BoundedLight {
+                        if (reservoir_ && state.order == 1)
+                            return lights_.reservoirs()->fill(state.vertex, *reservoir_, rng);
+                        return lights_.from_lights(state.vertex, rng);
+                    })
+            .light;
     }
 
     // Where lamps are estimated along segments, vertices in the medium would count their light twice. Estimates there
@@ -82,14 +140,14 @@ public:
 
     void gather(const PathState& state, const PathStep& step) {
         ++vertices_;
-        sum_ += state.throughput * step.from_own_lights;
-        sum_ += state.throughput * step.from_fire;
-        sum_ += state.throughput * step.from_emitters;
+        add(state.throughput * step.from_own_lights);
+        add(state.throughput * step.from_fire);
+        add(state.throughput * step.from_emitters);
         if (step.sample) {
             const Rgb light = step.medium.scattered + step.medium.emission * step.emission_weight;
-            sum_ += state.throughput * step.sample->weight * light;
+            add(state.throughput * step.sample->weight * light);
         }
-        sum_ += step.leaving * step.at_end;
+        add(step.leaving * step.at_end);
     }
 
     // On a surface the virtual lights take over what they hold; the path continues with the rest.
@@ -99,10 +157,12 @@ public:
         if (step.medium.collision || step.sample->delta)
             return true;
         const Seen seen = lights_.seen_by(step.segment);
-        const auto ended = static_cast<float>(lights_.termination_probability(seen, step.sample->pdf) *
-                                              lights_.share_kept(state.vertex, step.segment));
+        const double held = lights_.termination_probability(seen, step.sample->pdf);
+        const double kept = held * lights_.share_kept(state.vertex, step.segment);
+        const auto ended = static_cast<float>(kept);
         if (ended > 0.0f)
-            sum_ += next.throughput * ended * lights_.at_end_of_ray(state.vertex, seen, step.sample->pdf);
+            add(next.throughput * ended * lights_.at_end_of_ray(state.vertex, seen, step.sample->pdf));
+        bound_.goes_on(held, kept);
         next.throughput *= 1.0f - ended;
         return true;
     }
@@ -110,11 +170,18 @@ public:
     // Here in the medium as well: the path serves one receiver among many, and need not be long.
     bool is_long(const PathState& state) const { return state.order - 1 > kManyScatterings; }
 
+    void end() { bound_.end(); }
+
     const Rgb& sum() const { return sum_; }
     int vertices() const { return vertices_; }
     const std::optional<double>& first_end() const { return first_end_; }  // of the first ray, on a surface [m]
 
 private:
+    void add(const Rgb& light) {
+        sum_ += light;
+        bound_.light(light);
+    }
+
     // The receiver has been lit by the medium along this segment already.
     SegmentMedium transmitted_along(const PathState& state, const RaySegment& segment, Rng& rng) const {
         SegmentMedium medium;
@@ -127,8 +194,9 @@ private:
     Panes panes_;
     const LitSmoke* smoke_;      // null: paths walk through the smoke
     LightReservoir* reservoir_;  // of the receiver; null: it gathers its light at once
-    bool lamps_along_;           // estimate lamps along segments, not at vertices in the medium
-    bool receiver_lit_ = true;   // by the medium along the current segment
+    BoundWatch bound_;
+    bool lamps_along_;          // estimate lamps along segments, not at vertices in the medium
+    bool receiver_lit_ = true;  // by the medium along the current segment
     Rgb sum_{0.0f};
     int vertices_ = 0;
     std::optional<double> first_end_;
@@ -140,6 +208,7 @@ Rgb VirtualLights::shade(const PathVertex& vertex, Rng& rng, const Shading& how)
     const bool walks = how.walks > 0.0f && rng.next() < how.walks;
     ExtendedPath path(*this, how, walks ? nullptr : how.smoke);
     walk_path(scene_, {vertex, Rgb(1.0f), 0.0f, 1}, path, rng);
+    path.end();
     if (how.vertices)
         *how.vertices += path.vertices();
     if (how.distance && path.first_end())

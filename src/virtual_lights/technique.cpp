@@ -292,15 +292,6 @@ std::string extension_complaint(const Chosen& c, bool path_extension) {
            " goes with path_extension=false";
 }
 
-std::string compensation_complaint(const Chosen& c, BoundCompensation compensation) {
-    const CompensationChoice& row = choice_of(compensation);
-    if (!c.with_flux().fit || c.with_flux().bounded || !row.needs_bound)
-        return {};
-    return "compensation " + row.name + " needs " + kBounded + ": kind " +
-           kinds_that([](const KindWithFlux& k) { return k.bounded; }) + "; kind " + light_kinds()[c.kind].name +
-           " goes with compensation " + compensations_that([](const CompensationChoice& r) { return !r.needs_bound; });
-}
-
 std::string reuse_complaint(const Chosen& c, int neighbours) {
     if (neighbours == 0 || kResamples[c.gatherer])
         return {};
@@ -372,12 +363,20 @@ std::string help_of(const std::vector<TechniqueChoice>& choices) {
     return out;
 }
 
+std::string why_no_bound(const VirtualLightSettings& settings, const std::string& what, const std::string& otherwise) {
+    const Chosen c = chosen(settings);
+    if (!c.with_flux().fit || c.with_flux().bounded)
+        return {};
+    return what + " needs " + kBounded + ": kind " + kinds_that([](const KindWithFlux& k) { return k.bounded; }) +
+           "; kind " + light_kinds()[c.kind].name + " goes with " + otherwise;
+}
+
 std::string why_not_together(const VirtualLightSettings& settings) {
     const Chosen c = chosen(settings);
     std::string out;
     for (const std::string& complaint :
          {flux_complaint(c), kind_complaint(c), gatherer_complaint(c), extension_complaint(c, settings.path_extension),
-          compensation_complaint(c, settings.compensation), pixels_complaint(settings),
+          compensation_complaint(settings), pixels_complaint(settings),
           reuse_complaint(c, settings.resampling_neighbours)})
         if (!complaint.empty())
             out += (out.empty() ? "" : "; and ") + complaint;

@@ -44,6 +44,7 @@ public:
     // surface which the first ray of the path meets [m], or stays as it is.
     // `reservoir`: becomes what the vertex itself has chosen of the lights, where reservoirs() is not null; that light
     // is missing in the sum then.
+    // `bound`: gets what the bound of point lights and its compensation do to the sum; processor time is taken for it.
     enum class Panes { Followed, Sampled };
     struct Shading {
         Panes panes = Panes::Followed;
@@ -52,6 +53,7 @@ public:
         int* vertices = nullptr;
         double* distance = nullptr;
         LightReservoir* reservoir = nullptr;
+        BoundTally* bound = nullptr;
     };
     Rgb shade(const PathVertex& vertex, Rng& rng, const Shading& how) const;
     Rgb shade(const PathVertex& vertex, Rng& rng) const { return shade(vertex, rng, Shading{}); }
@@ -77,7 +79,7 @@ private:
 
     // What shade() reads along a path.
     bool samples_lights() const { return !set_->lights.empty() && gatherer_->samples_lights(); }
-    Rgb from_lights(const PathVertex& vertex, Rng& rng) const { return gatherer_->from_lights(vertex, rng); }
+    BoundedLight from_lights(const PathVertex& vertex, Rng& rng) const { return gatherer_->from_lights(vertex, rng); }
     Seen seen_by(const RaySegment& segment) const { return set_->covered(segment); }
     double termination_probability(const Seen& seen, double pdf) const {
         return set_->termination_probability(seen, pdf);

@@ -16,8 +16,9 @@ constexpr float kPixel = 0.01f;  // [m]
 using Sample = SharedBounce::Sample;
 
 // A wall that faces the camera, seen by `rays` samples of each pixel. `finish` sets the light, and what else differs.
-SharedBounce wall(double radius, const std::function<void(Sample&, Rng&)>& finish, int rays = kRays) {
-    SharedBounce shared(kWidth, kHeight, radius, rays);
+SharedBounce wall(double radius, const std::function<void(Sample&, Rng&)>& finish, int rays = kRays,
+                  bool tells_residual = false) {
+    SharedBounce shared(kWidth, kHeight, radius, rays, tells_residual);
     Rng rng(Stream::Surface, 1);
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x)
@@ -69,6 +70,21 @@ TEST(SharedBounce, KeepsConstantLightOnAnyColour) {
         mean += p / float(pixels.size());
     }
     EXPECT_NEAR(mean.x, 0.5f, 0.01f);  // of the colours: 0.23 / sqrt(4 * 96 * 64) = 0.0015
+}
+
+// A quarter of the light of every pixel stays a quarter, and is nothing new to the whole.
+TEST(SharedBounce, TellsAPartApart) {
+    for (const double radius : {0.0, 0.2}) {
+        const auto divide = [](Sample& s, Rng& rng) {
+            grain(s, rng);
+            s.residual = 0.25f * s.light;
+        };
+        SharedBounce whole = wall(radius, grain), divided = wall(radius, divide, kRays, true);
+        const std::vector<Rgb> all = divided.take_pixels(), part = divided.residual_pixels();
+        EXPECT_EQ(all, whole.take_pixels());
+        for (std::size_t p = 0; p < all.size(); ++p)
+            ASSERT_EQ(part[p], 0.25f * all[p]);
+    }
 }
 
 // The mean of grains has a standard error of 4.5 % here, the variance of single pixels is divided by the number of

@@ -316,7 +316,7 @@ public:
     bool reaches(const LightReservoir& y, const PathVertex& vertex) const override {
         return shown(y, vertex.position().x) > 0.0;
     }
-    Rgb from_reservoir(const LightReservoir& y, const PathVertex& vertex, Rng&) const override {
+    BoundedLight from_reservoir(const LightReservoir& y, const PathVertex& vertex, Rng&) const override {
         return Rgb(float(y.weight * shown(y, vertex.position().x)));
     }
 };

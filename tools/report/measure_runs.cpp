@@ -36,6 +36,8 @@ void complete(const Shot& shot, std::vector<std::string>& settings) {
         settings.push_back("output.layers.cells=true");
     if (shot.output.virtual_lights)
         settings.push_back("output.virtual_lights=false");
+    if (shot.output.bound_layers)
+        settings.push_back("output.layers.bound=false");
 }
 
 PlannedRun plan_run(const Shot& shot, const Method& method, const MethodStep& step, const std::set<int>& taken) {

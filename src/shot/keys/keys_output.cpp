@@ -46,6 +46,11 @@ void add_output_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "output.layers.bounces", "one layer per order of scattering", flag(),
         [](Shot & s) -> auto& { return s.output.bounce_layers; }));
+    keys.push_back(make_key(
+        "output.layers.bound",
+        "for virtual_lights.kind point: light between surfaces (SS) as SS_bounded and SS_residual, what compensation "
+        "brings back; bound: the share of the light that the bound takes away",
+        flag(), [](Shot & s) -> auto& { return s.output.bound_layers; }));
     keys.push_back(exposure_key());
     keys.push_back(make_key(
         "output.view", "view transform of the PNG",

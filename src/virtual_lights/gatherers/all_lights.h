@@ -14,8 +14,8 @@ struct AllLights {
     public:
         Of(const LightSet& set, LightImportance) : kind_(set), lights_(set.lights.size()) {}
 
-        Rgb from_lights(const PathVertex& vertex, Rng& rng) const override {
-            Rgb sum(0.0f);
+        BoundedLight from_lights(const PathVertex& vertex, Rng& rng) const override {
+            BoundedLight sum;
             for (std::size_t light = 0; light < lights_; ++light)
                 sum += kind_.estimate(light, 1.0, vertex, rng);
             return sum;

@@ -15,7 +15,7 @@ struct BsdfRays {
         Of(const LightSet& set, LightImportance) : kind_(set) {}
 
         bool samples_lights() const override { return false; }
-        Rgb from_lights(const PathVertex&, Rng&) const override { return Rgb(0.0f); }
+        BoundedLight from_lights(const PathVertex&, Rng&) const override { return {}; }
 
         Rgb from_ray(const PathVertex&, const CoveredHit& hit, double) const override {
             Rgb sum(0.0f);

@@ -17,14 +17,14 @@ struct Combined {
     public:
         Of(const LightSet& set, LightImportance importance) : kind_(set), chooser_(set.lights, importance) {}
 
-        Rgb from_lights(const PathVertex& vertex, Rng& rng) const override {
+        BoundedLight from_lights(const PathVertex& vertex, Rng& rng) const override {
             const std::optional<LightTree::Choice> choice = chooser_.choose(vertex.lit(), rng.next_double());
             if (!choice)
-                return Rgb(0.0f);
+                return {};
             Connection connection{choice->light, kind_.sample(choice->light, vertex, rng), {}, {}};
             connection.scattered = vertex.at(connection.direction);
             if (connection.scattered.value == Rgb(0.0f))
-                return Rgb(0.0f);
+                return {};
             const double pdf = choice->probability * kind_.pdf(choice->light, vertex, connection.direction);
             const double density = pdf + connection.scattered.pdf;
             return density > 0.0 ? kind_.incident(connection, vertex, rng) / float(density) : Rgb(0.0f);

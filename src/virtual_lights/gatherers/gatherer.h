@@ -2,6 +2,7 @@
 // called for every light is a template over its kind.
 #pragma once
 
+#include "virtual_lights/bounded_light.h"
 #include "virtual_lights/gatherers/light_reservoir.h"
 #include "virtual_lights/light_set.h"
 #include "virtual_lights/placement/placement.h"
@@ -14,9 +15,9 @@ public:
 
     // Whether lights themselves are sampled; if not, from_lights() is black.
     virtual bool samples_lights() const { return true; }
-    // One sample of what the vertex scatters of the light of all lights [W/(m^2 sr)], as far as it is not found by
-    // rays.
-    virtual Rgb from_lights(const PathVertex& vertex, Rng& rng) const = 0;
+    // One sample of what the vertex scatters of the light of all lights, as far as it is not found by rays, and what
+    // their bound takes away.
+    virtual BoundedLight from_lights(const PathVertex& vertex, Rng& rng) const = 0;
     // The radiance that a ray finds at its end, weighted against sampling the lights. `pdf`: of the ray, which the
     // vertex sampled [1/sr].
     virtual Rgb from_ray(const PathVertex&, const CoveredHit&, double /*pdf*/) const { return Rgb(0.0f); }

@@ -15,6 +15,7 @@
 #include <cstddef>
 
 #include "transport/path_vertex.h"
+#include "virtual_lights/bounded_light.h"
 
 namespace brisance {
 
@@ -40,7 +41,7 @@ public:
     // Whether surfaces let any of it through.
     virtual bool reaches(const LightReservoir& sample, const PathVertex& vertex) const = 0;
     // What it adds, times its weight, with exact visibility and transmittance [W/(m^2 sr)].
-    virtual Rgb from_reservoir(const LightReservoir& sample, const PathVertex& vertex, Rng& rng) const = 0;
+    virtual BoundedLight from_reservoir(const LightReservoir& sample, const PathVertex& vertex, Rng& rng) const = 0;
 };
 
 }  // namespace brisance

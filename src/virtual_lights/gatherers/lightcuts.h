@@ -19,7 +19,7 @@ struct Lightcuts {
               cut_(LightTree(bounds_of(set.lights, LobeBrightness::Peak)), set.settings().seed,
                    set.settings().lightcuts_error, set.settings().lightcuts_most) {}
 
-        Rgb from_lights(const PathVertex& vertex, Rng& rng) const override {
+        BoundedLight from_lights(const PathVertex& vertex, Rng& rng) const override {
             return cut_.at(vertex, [&](std::size_t light) { return kind_.estimate(light, 1.0, vertex, rng); });
         }
 

@@ -17,8 +17,8 @@ struct OneLight {
         Of(const LightSet& set, LightImportance importance)
             : kind_(set), chooser_(set.lights, importance), samples_(set.settings().light_samples) {}
 
-        Rgb from_lights(const PathVertex& vertex, Rng& rng) const override {
-            Rgb sum(0.0f);
+        BoundedLight from_lights(const PathVertex& vertex, Rng& rng) const override {
+            BoundedLight sum;
             for (int i = 0; i < samples_; ++i)
                 if (const std::optional<LightTree::Choice> choice = chooser_.choose(vertex.lit(), rng.next_double()))
                     sum += kind_.estimate(choice->light, choice->probability, vertex, rng);

@@ -50,15 +50,17 @@ struct Resampled {
               visibility_(set.settings().resampling_visibility),
               smoke_(set.settings().resampling_transmittance && !set.scene().field().bricks().empty()) {}
 
-        Rgb from_lights(const PathVertex& vertex, Rng& rng) const override {
+        BoundedLight from_lights(const PathVertex& vertex, Rng& rng) const override {
             Reservoir<CandidateLight> reservoir;
             offer_lights(vertex, reservoir, rng);
             const Rgb found = by_rays(vertex, rng);
             if (!(reservoir.sum() > 0.0))
                 return found;
             const CandidateLight& kept = reservoir.kept();
-            return found +
-                   kind_.connect(kept.connection, vertex, static_cast<float>(reservoir.sum() / kept.target), rng);
+            BoundedLight out =
+                kind_.connect(kept.connection, vertex, static_cast<float>(reservoir.sum() / kept.target), rng);
+            out.light = found + out.light;
+            return out;
         }
         std::uint64_t bytes() const override { return chooser_.bytes(); }
         const ReservoirLights* reservoirs() const override { return this; }
@@ -87,10 +89,10 @@ struct Resampled {
             return c && kind_.reaches(c->connection, vertex);
         }
 
-        Rgb from_reservoir(const LightReservoir& sample, const PathVertex& vertex, Rng& rng) const override {
+        BoundedLight from_reservoir(const LightReservoir& sample, const PathVertex& vertex, Rng& rng) const override {
             const std::optional<CandidateLight> c = candidate(sample.light, sample.numbers, vertex);
             if (!c)
-                return Rgb(0.0f);
+                return {};
             return kind_.connect(c->connection, vertex, float(sample.weight * share_of_lights(*c)), rng);
         }
 

@@ -18,7 +18,7 @@ struct StochasticLightcuts {
             : kind_(set),
               cut_(LightTree(bounds_of(set.lights, LobeBrightness::Mean)), set.settings().stochastic_cut_size) {}
 
-        Rgb from_lights(const PathVertex& vertex, Rng& rng) const override {
+        BoundedLight from_lights(const PathVertex& vertex, Rng& rng) const override {
             return cut_.at(vertex, rng, [&](std::size_t light, double probability) {
                 return kind_.estimate(light, probability, vertex, rng);
             });

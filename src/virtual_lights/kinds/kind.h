@@ -5,6 +5,7 @@
 #include <concepts>
 
 #include "transport/path_vertex.h"
+#include "virtual_lights/bounded_light.h"
 #include "virtual_lights/light_set.h"
 
 namespace brisance {
@@ -34,12 +35,12 @@ concept VirtualLightKind = requires(const Kind& kind, LightSet& set, std::size_t
     // What the light sends to the vertex, without occlusion [W/(m^2 sr)]; of a kind with one direction the irradiance
     // across it [W/m^2].
     { kind.radiance(light, vertex, direction) } -> std::same_as<Rgb>;
-    // The connection's scattered light with occlusion, times a factor.
-    { kind.connect(connection, vertex, float(factor), rng) } -> std::same_as<Rgb>;
+    // The connection's scattered light with occlusion, times a factor, and what a bound takes of it.
+    { kind.connect(connection, vertex, float(factor), rng) } -> std::convertible_to<BoundedLight>;
     // Whether surfaces let any of it through.
     { kind.reaches(connection, vertex) } -> std::same_as<bool>;
-    // An estimate of what the vertex scatters of the whole light, over the probability of having chosen that.
-    { kind.estimate(light, factor, vertex, rng) } -> std::same_as<Rgb>;
+    // An estimate of what the vertex scatters of the whole light, over the probability of having chosen that; likewise.
+    { kind.estimate(light, factor, vertex, rng) } -> std::convertible_to<BoundedLight>;
 };
 
 // A ray can hit lights of this kind: BSDF sampling and multiple importance sampling work, and paths can be extended.

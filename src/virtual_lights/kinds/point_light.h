@@ -39,38 +39,49 @@ struct PointKind {
         double pdf(std::size_t, const PathVertex&, const dvec3&) const { return 1.0; }
 
         // The vertex's cosine belongs to its BSDF.
-        Rgb radiance(std::size_t index, const PathVertex& vertex, const dvec3& direction) const {
-            const VirtualLight& light = set_.lights[index];
-            const dvec3 offset = light.position - vertex.position();
-            const double square = glm::dot(offset, offset), cosine = -glm::dot(light.frame.normal, direction);
-            if (!(cosine > 0.0) || !(square > 0.0))
-                return Rgb(0.0f);
-            const double kept = kept_by_bound(set_.settings(), vertex.lit(), direction, cosine, square);
-            return flux_.intensity(light, -direction) * float(kept / square);
+        Rgb radiance(std::size_t light, const PathVertex& vertex, const dvec3& direction) const {
+            return sent(light, vertex, direction).radiance;
         }
 
-        Rgb connect(const Connection& c, const PathVertex& vertex, float factor, Rng& rng) const {
-            return connect_by_shadow_ray(set_.scene(), vertex, set_.lights[c.light], c, factor, rng);
+        BoundedLight connect(const Connection& c, const PathVertex& vertex, float factor, Rng& rng) const {
+            return bounded_to(sent(c.light, vertex, c.direction).kept,
+                              connect_by_shadow_ray(set_.scene(), vertex, set_.lights[c.light], c, factor, rng));
         }
 
         bool reaches(const Connection& c, const PathVertex& vertex) const {
             return shadow_ray(set_.scene(), vertex, set_.lights[c.light]).clear;
         }
 
-        Rgb estimate(std::size_t index, double probability, const PathVertex& vertex, Rng& rng) const {
+        BoundedLight estimate(std::size_t index, double probability, const PathVertex& vertex, Rng& rng) const {
             const dvec3 direction = sample(index, vertex, rng);
-            const Rgb reflected = radiance(index, vertex, direction);
+            const auto [reflected, kept] = sent(index, vertex, direction);
             const Rgb scattered = reflected == Rgb(0.0f) ? Rgb(0.0f) : reflected * vertex.at(direction).value;
             if (scattered == Rgb(0.0f))
-                return scattered;
+                return {};
             const ShadowRay shadow = shadow_ray(set_.scene(), vertex, set_.lights[index]);
             if (!shadow.clear)
-                return Rgb(0.0f);
-            return scattered *
-                   float(set_.scene().lines().transmittance(shadow.ray, shadow.distance, rng) / probability);
+                return {};
+            return bounded_to(
+                kept,
+                scattered * float(set_.scene().lines().transmittance(shadow.ray, shadow.distance, rng) / probability));
         }
 
     private:
+        struct Sent {
+            Rgb radiance{0.0f};
+            double kept = 1.0;  // by the bound
+        };
+
+        Sent sent(std::size_t index, const PathVertex& vertex, const dvec3& direction) const {
+            const VirtualLight& light = set_.lights[index];
+            const dvec3 offset = light.position - vertex.position();
+            const double square = glm::dot(offset, offset), cosine = -glm::dot(light.frame.normal, direction);
+            if (!(cosine > 0.0) || !(square > 0.0))
+                return {};
+            const double kept = kept_by_bound(set_.settings(), vertex.lit(), direction, cosine, square);
+            return {flux_.intensity(light, -direction) * float(kept / square), kept};
+        }
+
         const LightSet& set_;
         Flux flux_;
     };
