@@ -23,16 +23,17 @@ struct PhaseLobe {
 };
 
 // A phase function along the angle is (a - b cos(angle - middle))^(-3/2), but for a factor; the angle is 0 at the foot
-// of the apex. Directions are its cosine and sine. 1 / (a - b cos), which has the same peak, is inverted in closed form.
+// of the apex. Directions are its cosine and sine. 1 / (a - b cos), which has the same peak, is inverted in closed
+// form.
 struct AnglePeak {
-    double middle = 0.0;  // angle of the peak
+    double middle = 0.0;   // angle of the peak
     dvec2 axis{1.0, 0.0};  // the same as a direction
     double a_minus_b = 1.0, a_plus_b = 1.0, root = 1.0;
     double first = 0.0, integral = 1.0;  // of 1 / (a - b cos) over the segment
 
     double base(double angle) const;  // a - b cos
     double base(const dvec2& direction) const;
-    double quantile(double xi) const;  // the angle below which that part of 1 / (a - b cos) is
+    double quantile(double xi) const;            // the angle below which that part of 1 / (a - b cos) is
     dvec2 direction_at(double xi) const;         // the same as a direction
     double primitive(double from_middle) const;  // integral of 1 / (a - b cos x) from 0, for any x
     double inverse(double value) const;

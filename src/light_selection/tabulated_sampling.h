@@ -58,7 +58,8 @@ private:
 };
 
 // A density [1/m] over a segment as seen from the apex, like AngularDensity: uniform in the angle times a table of the
-// product of the phase functions. Knots lie evenly over the angle, and at quantiles of 1 / (a - b cos) around each peak.
+// product of the phase functions. Knots lie evenly over the angle, and at quantiles of 1 / (a - b cos) around each
+// peak.
 class TabulatedAngle {
 public:
     // The segment's length must be above zero. `radius`: of beams [m], see SegmentAngle.

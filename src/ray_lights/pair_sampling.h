@@ -1,5 +1,5 @@
-// Ways in which points on ray lights are drawn: pairs of a point on the camera's ray and one on the light, and points on
-// the light for a point of a surface. All are unbiased.
+// Ways in which points on ray lights are drawn: pairs of a point on the camera's ray and one on the light, and points
+// on the light for a point of a surface. All are unbiased.
 #pragma once
 
 #include <optional>
