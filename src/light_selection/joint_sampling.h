@@ -4,11 +4,12 @@
 // describe.
 #pragma once
 
+#include <initializer_list>
 #include <optional>
 
 #include "core/rng.h"
 #include "core/vec.h"
-#include "tracking/segment.h"
+#include "light_selection/segment_angle.h"
 
 namespace brisance {
 
@@ -16,23 +17,14 @@ namespace brisance {
 // where |g| is almost 1, as 1 - cos is taken from the difference of the vectors.
 double phase_about(const dvec3& axis, const dvec3& direction, double mean_cosine);
 
-// A phase function as it is seen from the apex of an AngularDensity: its cosine is that of `axis` and of the direction
-// from the apex to the point.
-struct PhaseLobe {
-    dvec3 axis{0.0, 0.0, 1.0};
-    double mean_cosine = 0.0;
-};
-
 // A density [1/m] over a segment for an integrand 1 / distance^2 times up to two phase functions, as seen from a point,
 // the apex. The inverse square alone is uniform in the angle under which the apex sees the segment (Kulla and Fajardo,
 // Importance Sampling Techniques for Path Tracing in Participating Media, EGSR 2012). Along that angle a phase function
 // is a peak of the form (a - b cos)^(-3/2); the density adds one peak (a - b cos)^-1 for each, which can be inverted in
 // closed form, and the ratio of both has a variance that stays bounded when |g| goes to 1.
-// For beams (beam.h) of a radius above 0 the distance is kept apart from 0, where their kernel is flat, and peaks are
-// widened by the angle under which their balls are seen.
 class AngularDensity {
 public:
-    // Lobes of g = 0 are left out. The segment's length must be above zero.
+    // Lobes of g = 0 are left out. The segment's length must be above zero. `radius`: of beams [m], see SegmentAngle.
     AngularDensity(const dvec3& apex, const Segment& segment, std::initializer_list<PhaseLobe> lobes,
                    double radius = 0.0);
 
@@ -40,22 +32,8 @@ public:
     double pdf(double t) const;     // [1/m]
 
 private:
-    struct Lobe {
-        double middle = 0.0;  // angle of the peak
-        double a_minus_b = 1.0, a_plus_b = 1.0, root = 1.0;
-        double first = 0.0, integral = 1.0;  // of 1 / (a - b cos) over the segment
-    };
-    double angle_of(double t) const;
-    double distance_at(double angle_from_start) const;
-    static double primitive(const Lobe& lobe, double x);
-    static double inverse(const Lobe& lobe, double value);
-
-    double length_;
-    double height_;  // distance of the apex from the line
-    double before_;  // from the foot of the apex to the segment's start, along the line
-    double begin_;   // angle at the start, 0 at the foot
-    double angle_;   // from the start to the end
-    Lobe lobes_[2];
+    SegmentAngle seen_;
+    AnglePeak peaks_[2];
     int count_ = 0;
 };
 
@@ -67,6 +45,7 @@ class InverseDistanceDensity {
 public:
     InverseDistanceDensity(const Segment& ray, const Segment& other, double radius = 0.0);
     double quantile(double xi) const;  // inverse of the distribution function [m]
+    double cumulative(double t) const;
     double sample(Rng& rng) const { return quantile(rng.next_double()); }
     double pdf(double t) const;
 
@@ -82,23 +61,58 @@ struct PairSample {
     double u = 0.0, v = 0.0, pdf = 0.0;
 };
 
+// How the factors of a pair's density are made: `OnLight` over v, and `Angular` over either segment as seen from a
+// point of the other.
+struct ClosedFormSampling {
+    using OnLight = InverseDistanceDensity;
+    using Angular = AngularDensity;
+    static OnLight on_light(const Segment& camera, const Segment& light, double mean_cosine, double radius);
+};
+
 // Light goes from v on `light` to u on `camera` and on against the camera ray's direction; it arrives at v along
 // `light`.
-class PairDensity {
+template <class Sampling>
+class PairDensityOf {
 public:
-    // `radius`: of the light [m].
-    PairDensity(const Segment& camera, const Segment& light, double mean_cosine, double radius = 0.0);
-    // None where one of the segments has no length.
-    std::optional<PairSample> sample(Rng& rng) const;
-    double pdf(double u, double v) const;
+    using Angular = typename Sampling::Angular;
 
-    AngularDensity on_camera(double v) const;
-    AngularDensity on_light(double u) const;
+    // `radius`: of the light [m].
+    PairDensityOf(const Segment& camera, const Segment& light, double mean_cosine, double radius = 0.0)
+        : camera_(camera),
+          light_(light),
+          g_(mean_cosine),
+          radius_(radius),
+          marginal_(Sampling::on_light(camera, light, mean_cosine, radius)) {}
+
+    bool empty() const { return !(camera_.length > 0.0) || !(light_.length > 0.0); }
+
+    // None where one of the segments has no length.
+    std::optional<PairSample> sample(Rng& rng) const {
+        if (empty())
+            return std::nullopt;
+        PairSample s;
+        s.v = marginal_.sample(rng);
+        const Angular on_camera_ray = on_camera(s.v);
+        s.u = on_camera_ray.sample(rng);
+        s.pdf = marginal_.pdf(s.v) * on_camera_ray.pdf(s.u);
+        return s;
+    }
+    double pdf(double u, double v) const { return marginal_.pdf(v) * on_camera(v).pdf(u); }
+
+    Angular on_camera(double v) const {
+        return {light_.at(v), camera_, {{light_.direction, g_}, {-camera_.direction, g_}}, radius_};
+    }
+    // Seen from u, light travels against the direction from the apex.
+    Angular on_light(double u) const {
+        return {camera_.at(u), light_, {{-light_.direction, g_}, {camera_.direction, g_}}, radius_};
+    }
 
 private:
     Segment camera_, light_;
     double g_, radius_;
-    InverseDistanceDensity marginal_;  // over v
+    typename Sampling::OnLight marginal_;  // over v
 };
+
+using PairDensity = PairDensityOf<ClosedFormSampling>;
 
 }  // namespace brisance

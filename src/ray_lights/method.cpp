@@ -1,8 +1,27 @@
 #include "ray_lights/method.h"
 
+#include "ray_lights/pair_sampling.h"
 #include "ray_lights/ray_lights.h"
 
 namespace brisance {
+
+namespace {
+
+std::vector<std::pair<std::string, RaySampling>> sampling_words() {
+    std::vector<std::pair<std::string, RaySampling>> words;
+    for (const PairSampling& row : pair_samplings())
+        words.emplace_back(row.name, row.value);
+    return words;
+}
+
+std::string sampling_help() {
+    std::string help = "how points on a ray light are drawn.";
+    for (const PairSampling& row : pair_samplings())
+        help += (help.back() == '.' ? " " : "; ") + row.name + ": " + row.help;
+    return help;
+}
+
+}  // namespace
 
 std::vector<SettingKey<RayLightSettings>> RayLightsMethod::keys() {
     using S = RayLightSettings;
@@ -15,6 +34,7 @@ std::vector<SettingKey<RayLightSettings>> RayLightsMethod::keys() {
                     whole(1, 65536), &S::samples),
         setting_key("length", "short: to the particle's next collision; long: to where the smoke or a surface ends it",
                     choice<RayLength>({{"short", RayLength::Short}, {"long", RayLength::Long}}), &S::length),
+        setting_key("sampling", sampling_help(), choice<RaySampling>(sampling_words()), &S::sampling),
         setting_key("seed", "another number gives other rays", whole(0, 2147483647), &S::seed),
         setting_key("radius",
                     "of beams in the first pass [m]: a blur that lowers the noise of sharp lobes; 0: none, without "

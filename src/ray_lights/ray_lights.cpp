@@ -52,6 +52,7 @@ RayLights::RayLights(const DirectLight& scene, const RayLightSettings& settings,
     : InScattering(settings.seed),
       scene_(scene),
       settings_(settings),
+      sampling_(pair_sampling(settings.sampling)),
       lights_(thickened(thin_lights(trace_ray_lights(scene, settings, bounces, report_), receivers,
                                     static_cast<std::size_t>(settings.count), scene.field().mean_cosine(),
                                     Stream::RayLightRoulette, settings.seed),
@@ -71,21 +72,10 @@ bool RayLights::occluded(const Ray& ray, double end) const {
 Rgb RayLights::pair(const RayMedium& seen, const RayLight& light, Rng& rng) const {
     const Segment& camera = seen.segment();
     const double g = scene_.field().mean_cosine();
-    const PairDensity joint(camera, light.segment, g, light.radius);
-    PairSample s;
-    if (rng.next_double() < 0.5) {
-        const std::optional<PairSample> drawn = joint.sample(rng);
-        if (!drawn)
-            return Rgb(0.0f);
-        s = *drawn;
-        s.pdf += seen.pdf_of_flight(s.u) * joint.on_light(s.u).pdf(s.v);
-    } else {
-        s.u = seen.sample_flight(rng.next_double());
-        const AngularDensity on_light = joint.on_light(s.u);
-        s.v = on_light.sample(rng);
-        s.pdf = joint.pdf(s.u, s.v) + seen.pdf_of_flight(s.u) * on_light.pdf(s.v);
-    }
-    s.pdf *= 0.5;
+    const std::optional<PairSample> drawn = sampling_.draw(seen, light, g, rng);
+    if (!drawn)
+        return Rgb(0.0f);
+    const PairSample& s = *drawn;
     const Coefficients at_u = seen.coefficients(s.u);
     const Coefficients at_v = RayProbe(scene_.field(), {light.segment.start, light.segment.direction}).at(s.v);
     if (at_u.scattering == Rgb(0.0f) || at_v.scattering == Rgb(0.0f))
@@ -107,8 +97,7 @@ Rgb RayLights::pair(const RayMedium& seen, const RayLight& light, Rng& rng) cons
 Rgb RayLights::to_surface(const SurfacePoint& point, const ReceiverLobes& lobes, const dvec3& toward_viewer,
                           const RayLight& light, Rng& rng) const {
     const double g = scene_.field().mean_cosine();
-    const AngularDensity density(point.position, light.segment, {{-light.segment.direction, g}}, light.radius);
-    const double v = density.sample(rng);
+    const auto [v, pdf] = sampling_.draw_on_light(point.position, light, g, rng);
     const Coefficients at_v = RayProbe(scene_.field(), {light.segment.start, light.segment.direction}).at(v);
     if (at_v.scattering == Rgb(0.0f))
         return Rgb(0.0f);
@@ -123,7 +112,7 @@ Rgb RayLights::to_surface(const SurfacePoint& point, const ReceiverLobes& lobes,
     if (scattered == Rgb(0.0f) || occluded(ray, w))
         return Rgb(0.0f);
     const double through = reaches_along(light, v, rng) * scene_.lines().transmittance(ray, w, rng);
-    return light.power * at_v.scattering * scattered * float(through * cone.kernel() / density.pdf(v));
+    return light.power * at_v.scattering * scattered * float(through * cone.kernel() / pdf);
 }
 
 // The double integral of a pair, approximated with a few points on the light.

@@ -5,8 +5,7 @@
 // Radiance along a camera ray due to one light of power P; u on the ray and v on the light are at the distance w:
 //   P * integral over u and v of  sigma_s(u) sigma_s(v) p(u) p(v) T(0, u) T(0, v) T(u, v) V(u, v) / w^2  [W/(m^2 sr)]
 // T(0, v) is 1 for short lights, which end where their particle collided. The integral is estimated with one pair,
-// sampled from one of two densities combined by the balance heuristic: the inverse square times both phase functions,
-// and a free flight along the camera ray followed by the same density seen from its collision.
+// drawn as pair_sampling.h describes.
 //
 // At a point of a surface, BSDF times cosine replaces sigma_s(u) p(u) T(0, u), and there is no integral over u; v is
 // sampled by the inverse square times the light's phase function. The BSDF is only evaluated, so that narrow lobes are
@@ -24,6 +23,7 @@
 #include "light_selection/in_scattering.h"
 #include "light_selection/medium_light_tree.h"
 #include "ray_lights/beam.h"
+#include "ray_lights/pair_sampling.h"
 #include "ray_lights/trace_ray_lights.h"
 
 namespace brisance {
@@ -63,6 +63,7 @@ private:
 
     const DirectLight& scene_;
     RayLightSettings settings_;
+    const PairSampling& sampling_;
     RayLightReport report_;
     std::vector<RayLight> lights_;
     MediumLightTree tree_;

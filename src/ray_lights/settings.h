@@ -10,11 +10,18 @@ enum class RayLength {
     Long    // to the end of the medium or a surface, attenuated by the smoke: less noise per light, more time
 };
 
+// How points on ray lights are drawn (pair_sampling.h).
+enum class RaySampling {
+    ClosedForm,  // by densities that are inverted in closed form
+    Tabulated    // by tables of the integrand that are made for each pair
+};
+
 struct RayLightSettings {
     int paths = 16384;   // particles that are followed
     int count = 131072;  // mean number of pieces of rays that are kept
     int samples = 4;     // lights evaluated per camera ray and per point of a surface
     RayLength length = RayLength::Short;
+    RaySampling sampling = RaySampling::ClosedForm;
     std::uint32_t seed = 0;
     double radius = 0.0;            // of the first pass [m]; 0: rays, without bias; above: beams (beam.h)
     int passes = 1;                 // pictures that are averaged, each with lights of its own

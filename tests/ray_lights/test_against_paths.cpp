@@ -48,6 +48,17 @@ TEST(AgainstPaths, ForwardScatteringOverAFloor) {
     expect_same_by_both(Stage(lumpy_ball(8, 3.0f, 0.6f), floor_below(0.7f)), "lumps, g 0.6", kPathsOverFloor, 2);
 }
 
+// Points drawn by tables, on short and on long rays, in smoke and at a floor.
+TEST(AgainstPaths, TabulatedSampling) {
+    const Stage stage(lumpy_ball(8, 3.0f, 0.6f), floor_below(0.7f));
+    const Estimate paths = mean_by_paths(stage, kPathsOverFloor);
+    RayLightSettings tables = few();
+    tables.sampling = RaySampling::Tabulated;
+    expect_same_light(stage, tables, "lumps, g 0.6, tables", paths);
+    tables.length = RayLength::Long;
+    expect_same_light(stage, tables, "lumps, g 0.6, tables, long", paths, 2);
+}
+
 TEST(AgainstPaths, BackwardScattering) {
     const Stage stage(coloured_ball(8, 2.0f, -0.7f), {});
     expect_same_light(stage, few(), "ball, g -0.7", mean_by_paths(stage, kPathsInSmoke), 2);

@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "fixtures/ray_fixture.h"
-#include "light_selection/joint_sampling.h"
+#include "light_selection/tabulated_sampling.h"
 
 namespace brisance {
 namespace {
@@ -127,8 +127,9 @@ struct Parallel {
         }
         return sum;
     }
+    template <class Pairs>
     Estimate by_pairs() const {
-        const PairDensity pairs(camera(), light(), g, radius);
+        const Pairs pairs(camera(), light(), g, radius);
         return estimate(1, 400, [&](const dvec3&, Rng& rng, double* out) {
             const PairSample p = *pairs.sample(rng);
             const dvec3 offset = camera().at(p.u) - light().at(p.v);
@@ -139,10 +140,11 @@ struct Parallel {
     }
     void expect_same() const {
         const double truth = by_quadrature();
-        const Estimate pairs = by_pairs();
-        EXPECT_NEAR(pairs.mean[0], truth, kSigmas * pairs.error[0] + 1e-5 * truth)
-            << height << " apart, g " << g << ", radius " << radius << (opposite ? ", opposite" : "");
-        EXPECT_LT(pairs.error[0], 0.05 * truth) << height << " apart, g " << g << (opposite ? ", opposite" : "");
+        for (const Estimate& pairs : {by_pairs<PairDensity>(), by_pairs<TabulatedPairs>()}) {
+            EXPECT_NEAR(pairs.mean[0], truth, kSigmas * pairs.error[0] + 1e-5 * truth)
+                << height << " apart, g " << g << ", radius " << radius << (opposite ? ", opposite" : "");
+            EXPECT_LT(pairs.error[0], 0.05 * truth) << height << " apart, g " << g << (opposite ? ", opposite" : "");
+        }
     }
 };
 

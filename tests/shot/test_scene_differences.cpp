@@ -44,6 +44,7 @@ TEST(SceneDifferences, AreNotInTheMethodNorInWhatIsWritten) {
                            "scattering.alpha=4",
                            "scattering.method=ray_lights",
                            "ray_lights.samples=9",
+                           "ray_lights.sampling=tabulated",
                            "ray_lights.length=long",
                            "ray_lights.radius=auto",
                            "ray_lights.passes=3",
