@@ -505,8 +505,8 @@ class Rendering(VolumeCase):
 
     def test_interruption_leaves_nothing(self):
         for sent, code in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
-            with subprocess.Popen([BINARY, "render", self.volume, "--set", "camera.width=4096", "--set",
-                                   "camera.height=4096", "-o", self.out, "--progress", "plain"], stdout=subprocess.PIPE,
+            with subprocess.Popen([BINARY, "render", self.volume, "--set", "camera.width=1024", "--set",
+                                   "camera.height=1024", "-o", self.out, "--progress", "plain"], stdout=subprocess.PIPE,
                                   stderr=subprocess.PIPE, cwd=self.folder) as process:
                 process.stderr.readline()  # signal handlers are installed before the first line
                 process.send_signal(sent)
