@@ -51,7 +51,7 @@ Shared expect_same(const Stage& stage, RayLightSettings settings, float roughnes
     settings.paths = 600;
     settings.samples = kPoints;
     constexpr double kSplits[] = {0.0, 1e12, kPoints};
-    const Estimate e = estimate(3, 2, [&](const dvec3&, Rng& rng, double* out) {
+    const Estimate e = estimate(3, 1, [&](const dvec3&, Rng& rng, double* out) {
         settings.seed = static_cast<std::uint32_t>(rng.next_double() * 0x1p32);
         const RayLights lights = stage.lights(settings, 16, settings.seed);
         std::fill(out, out + 3, 0.0);
