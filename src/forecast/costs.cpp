@@ -23,6 +23,7 @@ constexpr double kEvaluation = 14e-9, kDirectional = 1.25, kEvaluationsOfNode = 
 constexpr double kMapValue = 7e-9, kMapValuesOfNode = 650.0, kMapValuesAtTop = 26e6, kKnownMap = 12.0 * 12.0 * 10.0;
 // The operator and the series, for each node of their lattice. A level has about a sixth of the next finer one's nodes.
 constexpr double kCoarseNode = 80e-6, kNodesOfParent = 6.0;
+constexpr double kFineBounce = 0.3;  // the evaluations of one, over those of the last flight
 constexpr double kFrame = 0.25;
 constexpr double kSegment = 1.2e-6;  // of a path: 0.7 to 1.9
 constexpr double kCameraRay = 2.4e-6;
@@ -70,9 +71,13 @@ CountedMedium::CountedMedium(const Medium& counted)
     lit_nodes = double(std::count_if(needed.begin(), needed.end(), [](std::uint8_t n) { return n != 0; }));
 }
 
-int forecast_lattice_level(const ScatteringSettings& settings, const CountedMedium& counted) {
-    int level = std::max(settings.lattice_level, 0);
-    while (settings.lattice_level < 0 && counted.lattice_fullness / std::pow(kNodesOfParent, level) > 1.0)
+int forecast_lattice_level(const Shot& shot, const CountedMedium& counted) {
+    const ScatteringSettings settings = settings_of_orders(shot.scattering, shot.output.bounce_layers);
+    if (settings.lattice_level >= 0)
+        return settings.lattice_level;
+    const double full = crowding(settings, shot.lighting.error) * counted.lattice_fullness;
+    int level = 0;
+    while (full / std::pow(kNodesOfParent, level) > 1.0)
         ++level;
     return level;
 }
@@ -83,8 +88,10 @@ double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& 
     double evaluations = kEvaluationsOfNode * nodes * std::pow(double(shot.lighting.alpha), kPowerOfAlpha);
     double coarse = 0.0;
     if (plan.multiple) {
-        evaluations += kEvaluationsOfNode * nodes * std::pow(double(shot.scattering.alpha), kPowerOfAlpha);
-        coarse = counted.lit_nodes / std::pow(kNodesOfParent, forecast_lattice_level(shot.scattering, counted));
+        const int series = forecast_lattice_level(shot, counted);
+        const double flights = 1.0 + (series > 0 ? kFineBounce * std::abs(shot.scattering.fine_bounces) : 0.0);
+        evaluations += flights * kEvaluationsOfNode * nodes * std::pow(double(shot.scattering.alpha), kPowerOfAlpha);
+        coarse = counted.lit_nodes / std::pow(kNodesOfParent, series);
     }
     const double map =
         std::pow(double(shadow_resolution(shot.lighting)), 2.0) * shadow_distances(shot.lighting) / kKnownMap;

@@ -18,7 +18,7 @@ struct CountedMedium {
 };
 
 // That of the lattice on which the orders of scattering are solved, about.
-int forecast_lattice_level(const ScatteringSettings& settings, const CountedMedium& counted);
+int forecast_lattice_level(const Shot& shot, const CountedMedium& counted);
 
 // A picture by the lighting grid: evaluations of lights at nodes, shadow maps, orders of scattering, and the camera's
 // rays.

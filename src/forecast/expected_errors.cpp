@@ -5,6 +5,7 @@
 #include "gathering/map_layouts.h"
 #include "medium/extinction_met.h"
 #include "medium_lighting/levels/lighting_level.h"
+#include "scattering/lattice_level.h"
 
 namespace brisance {
 
@@ -13,8 +14,9 @@ namespace {
 // Shadow maps of 12^2 texels add 1 % to a picture of dense smoke, and the error falls as the resolution's power 4/3
 // (gathering/map_layouts.cpp).
 constexpr double kErrorOfMaps = 0.01, kResolutionOfMaps = 12.0, kPowerOfMaps = 4.0 / 3.0;
-// The orders of scattering err with the optical depth of a voxel of their lattice.
-constexpr double kErrorOfLattice = 0.045;
+// The orders of scattering err with the optical depth of a voxel of their lattice. After a bounce on the light's own
+// lattice this counts less, and the gather on that lattice remains.
+constexpr double kErrorOfLattice = 0.045, kErrorOfLatticeBefore = 0.0105, kErrorOfFineBounce = 0.066;
 // Fire seen directly: the camera's samples, and beyond them voxels that hide what burns in them.
 constexpr double kErrorOfRays = 0.001, kErrorOfBurningVoxels = 0.002;
 // Of light that surfaces send on or receive, and of scattering methods with random samples: not modelled.
@@ -47,13 +49,15 @@ double voxel_depth(const Medium& medium) {
 
 class ErrorModel {
 public:
-    // `coarse_light`: the error of light on a coarser lattice than the medium's.
-    ErrorModel(const ModelledFrame& frame, double coarse_light, double lattice_level, double remainder)
+    // `coarse_light`: the error of light on a coarser lattice than the medium's. `fine_bounces`: the share of the
+    // light of the orders on a lattice of `lattice_level` that they replace.
+    ErrorModel(const ModelledFrame& frame, double coarse_light, double lattice_level, double fine_bounces,
+               double remainder)
         : plan_(frame.plan),
           coarse_light_(coarse_light),
           interpolation_(tolerated_interpolation(frame.shot.lighting, std::size_t(frame.counted.lit_nodes))),
           depth_(voxel_depth(frame.counted.medium)),
-          lattice_(std::exp2(lattice_level)),
+          orders_(depth_ * error_of_orders(std::exp2(lattice_level), fine_bounces)),
           remainder_(remainder) {
         const LightingSettings& settings = frame.shot.lighting;
         if (settings.shadows == ShadowMethod::Maps)
@@ -71,15 +75,18 @@ public:
                     kSpread};
         if (cell == "MM")
             return mixed(
-                {cell,
-                 limited(std::sqrt(gathered + square(coarse_light_) + square(kErrorOfLattice * lattice_ * depth_)) +
-                         remainder_),
-                 kSpread});
+                {cell, limited(std::sqrt(gathered + square(coarse_light_) + square(orders_)) + remainder_), kSpread});
         const ExpectedError rest{cell, kErrorOfSurfaces, kSpreadOfRest};
         return cell == "SM" ? mixed(rest) : rest;
     }
 
 private:
+    // Over the optical depth of a voxel of the light. `width`: of the orders' voxels, in those.
+    static double error_of_orders(double width, double fine_bounces) {
+        return fine_bounces * std::hypot(kErrorOfFineBounce, kErrorOfLatticeBefore * width) +
+               (1.0 - fine_bounces) * kErrorOfLattice * width;
+    }
+
     // A scattering method's share of the cell's light errs by itself.
     ExpectedError mixed(const ExpectedError& grid) const {
         const double share = plan_.share_of_method;
@@ -88,7 +95,7 @@ private:
     }
 
     const Plan& plan_;
-    double coarse_light_, interpolation_, depth_, lattice_, remainder_, maps_ = 0.0;
+    double coarse_light_, interpolation_, depth_, orders_, remainder_, maps_ = 0.0;
 };
 
 // The cell that is taken for the picture where nothing is known of their shares.
@@ -111,9 +118,9 @@ double sum_of_squares(const Layer& layer) {
 std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFrame& frame,
                                            const Statistics& statistics) {
     const std::string series = "orders of scattering on the coarse lattice";
-    const ErrorModel model(frame, noted(statistics, "lattice of the light", "error"),
-                           noted(statistics, series, "lattice_level"),
-                           noted(statistics, series, "estimated_remainder"));
+    const ErrorModel model(
+        frame, noted(statistics, "lattice of the light", "error"), noted(statistics, series, "lattice_level"),
+        noted(statistics, series, "share_of_fine_bounces"), noted(statistics, series, "estimated_remainder"));
     std::vector<ExpectedError> out(1);
     double errors = 0.0, spreads = 0.0, light = 0.0;
     for (const std::string& cell : frame.plan.cells())
@@ -135,9 +142,11 @@ std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFra
 
 ExpectedError expected_error(const ModelledFrame& frame) {
     const ScatteringSettings& settings = frame.shot.scattering;
-    const int level = forecast_lattice_level(settings, frame.counted);
+    const int level = forecast_lattice_level(frame.shot, frame.counted);
     const double coarse_light = lighting_level(frame.counted.medium, frame.shot.lighting).error;
-    ExpectedError out = ErrorModel(frame, coarse_light, level, settings.remainder).of(brightest(frame.plan));
+    const double fine_bounces = share_of_fine_bounces({level}, settings, frame.shot.lighting.error);
+    ExpectedError out =
+        ErrorModel(frame, coarse_light, level, fine_bounces, settings.remainder).of(brightest(frame.plan));
     out.cell.clear();
     return out;
 }

@@ -12,7 +12,7 @@ AutomaticLevels automatic_levels_of(const Medium& medium, const LightingSettings
         return {};
     const ExtinctionPyramid pyramid(medium, ExtinctionPyramid::kMaxLevels);
     return {lighting_level(medium, settings).level, automatic_levels(medium),
-            lattice_of_series(pyramid, scattering).level};
+            lattice_of_series(pyramid, scattering, settings.error).level};
 }
 
 }  // namespace brisance

@@ -8,11 +8,18 @@ namespace {
 
 // Voxels in the volume that the smoke fills, and in all that holds smoke.
 constexpr double kMostFilled = 90000.0, kMostOfAll = 1000000.0;
-// The same, over that of a coarse lattice whose light is corrected by a bounce on the medium's own: as much as is left
-// of the voxels where the medium's own lattice is full, so that no lattice is passed over.
-constexpr double kRoomOfCorrected = 4.5;
+// What a bounce on the medium's own lattice corrects, the series need not know: voxels 1.65 times as wide will do.
+constexpr double kCrowding = 4.5;
+// The errors at which such bounces begin, and at which they are whole. Below, finer lattices err less.
+constexpr float kErrorOfNoBounce = 0.01f, kErrorOfBounce = 0.02f;
 // Above this part of either, the next coarser level begins to count.
 constexpr float kNearlyDue = 0.75f;
+
+float weight_of_fine_bounces(const ScatteringSettings& settings, float error) {
+    if (settings.fine_bounces >= 0)
+        return settings.fine_bounces > 0 ? 1.0f : 0.0f;
+    return std::clamp((error - kErrorOfNoBounce) / (kErrorOfBounce - kErrorOfNoBounce), 0.0f, 1.0f);
+}
 
 }  // namespace
 
@@ -27,31 +34,28 @@ double lattice_fullness(std::span<const float> extinction) {
     return std::max(filled / kMostFilled, all / kMostOfAll);
 }
 
-double least_room(int level, bool corrected) {
-    return corrected && level > 0 ? kRoomOfCorrected : 1.0;
+double crowding(const ScatteringSettings& settings, float error) {
+    return 1.0 + (kCrowding - 1.0) * weight_of_fine_bounces(settings, error);
 }
 
-LatticeChoice automatic_lattice(const ExtinctionPyramid& pyramid, bool corrected) {
+LatticeChoice automatic_lattice(const ExtinctionPyramid& pyramid, double crowding) {
     const int last = pyramid.level_count() - 1;
     LatticeChoice choice;
-    const auto fullness = [&](int level) {
-        return least_room(level, corrected) * lattice_fullness(pyramid.nodes(level));
-    };
-    double full = fullness(0);
+    double full = crowding * lattice_fullness(pyramid.nodes(0));
     while (choice.level < last && full > 1.0)
-        full = fullness(++choice.level);
+        full = crowding * lattice_fullness(pyramid.nodes(++choice.level));
     if (choice.level < last)
         choice.share_of_coarser = glm::smoothstep(kNearlyDue, 1.0f, float(full));
     return choice;
 }
 
-float share_of_fine_bounces(const LatticeChoice& lattice) {
-    return lattice.level > 0 ? 1.0f : lattice.share_of_coarser;
+float share_of_fine_bounces(const LatticeChoice& lattice, const ScatteringSettings& settings, float error) {
+    return weight_of_fine_bounces(settings, error) * (lattice.level > 0 ? 1.0f : lattice.share_of_coarser);
 }
 
-LatticeChoice lattice_of_series(const ExtinctionPyramid& pyramid, const ScatteringSettings& settings) {
+LatticeChoice lattice_of_series(const ExtinctionPyramid& pyramid, const ScatteringSettings& settings, float error) {
     const int wish = settings.lattice_level;
-    return wish < 0 ? automatic_lattice(pyramid, settings.fine_bounces > 0)
+    return wish < 0 ? automatic_lattice(pyramid, crowding(settings, error))
                     : LatticeChoice{std::min(wish, pyramid.level_count() - 1), 0.0f};
 }
 

@@ -21,20 +21,20 @@ struct LatticeChoice {
 // of all that holds smoke.
 double lattice_fullness(std::span<const float> extinction);
 
+// How much fuller a lattice counts than lattice_fullness() says, at least 1. Where bounces on the medium's own lattice
+// follow the series (ScatteringSettings::fine_bounces), it may be coarser. `error`: as of LightingSettings.
+double crowding(const ScatteringSettings& settings, float error);
+
 // What scattering.lattice_level=auto means for this medium alone: the finest level that is not over full. Shortly
 // before it is full, the share of the next coarser level rises from 0 to 1, so that the light changes continuously with
-// the medium. `corrected`: a bounce on the medium's own lattice follows, so that lattices coarser than that may be
-// coarser still.
-LatticeChoice automatic_lattice(const ExtinctionPyramid& pyramid, bool corrected);
+// the medium.
+LatticeChoice automatic_lattice(const ExtinctionPyramid& pyramid, double crowding);
 
 // The lattice of a series: as stated, or automatic.
-LatticeChoice lattice_of_series(const ExtinctionPyramid& pyramid, const ScatteringSettings& settings);
+LatticeChoice lattice_of_series(const ExtinctionPyramid& pyramid, const ScatteringSettings& settings, float error);
 
-// Of the light of a series, the part that bounces on the medium's own lattice replace
-// (ScatteringSettings::fine_bounces): all that was solved on coarser ones.
-float share_of_fine_bounces(const LatticeChoice& lattice);
-
-// How much fuller a lattice of this level is, with the number of voxels it may have.
-double least_room(int level, bool corrected);
+// Of the light of a series, the part that bounces on the medium's own lattice replace: all that was solved on coarser
+// ones, as far as there are such bounces.
+float share_of_fine_bounces(const LatticeChoice& lattice, const ScatteringSettings& settings, float error);
 
 }  // namespace brisance

@@ -18,7 +18,7 @@ LatticeChoice choice(const NodeBox& box, const NodeScalar& density) {
     recipe.density = density;
     recipe.settings = black_smoke();
     const Medium medium = make_medium(recipe);
-    return automatic_lattice(ExtinctionPyramid(medium, ExtinctionPyramid::kMaxLevels), false);
+    return automatic_lattice(ExtinctionPyramid(medium, ExtinctionPyramid::kMaxLevels), 1.0);
 }
 
 double mean_level(const LatticeChoice& c) {

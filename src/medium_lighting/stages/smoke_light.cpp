@@ -17,8 +17,8 @@ namespace brisance {
 namespace {
 
 std::vector<ScatteredLight> orders_of_scattering(const LitLattice& lattice, const Gathered& first,
-                                                 const ScatteringSettings& settings, Statistics& statistics,
-                                                 Progress& progress) {
+                                                 const ScatteringSettings& settings, float fine_bounces,
+                                                 Statistics& statistics, Progress& progress) {
     progress.stage("orders of scattering");
     const Stopwatch watch;
     const MediumLightingInput& input = lattice.input();
@@ -29,6 +29,7 @@ std::vector<ScatteredLight> orders_of_scattering(const LitLattice& lattice, cons
     series.detail = {{"lattice_level", lattice.level() + costs.lattice_level},
                      {"share_of_coarser_level", costs.share_of_coarser},
                      {"nodes", costs.coarse_nodes},
+                     {"share_of_fine_bounces", fine_bounces},
                      {"operator_seconds", costs.operator_seconds},
                      {"series_seconds", costs.series_seconds},
                      {"bounces", costs.bounces},
@@ -70,8 +71,10 @@ struct FineBounces {
 
 // Where orders end at a stated number, the series in `settings` leaves the last of them to these bounces.
 FineBounces plan_fine_bounces(const LitLattice& lattice, ScatteringSettings& settings) {
+    const float error = lattice.input().lighting.error;
+    FineBounces out{std::abs(settings.fine_bounces),
+                    share_of_fine_bounces(lattice_of_series(lattice.pyramid(), settings, error), settings, error)};
     const bool endless = settings.bounces < 0;
-    FineBounces out{settings.fine_bounces, share_of_fine_bounces(lattice_of_series(lattice.pyramid(), settings))};
     if (!endless)
         out.count = std::min(out.count, std::max(0, settings.bounces - 2));
     if (!(out.share > 0.0f))
@@ -82,6 +85,9 @@ FineBounces plan_fine_bounces(const LitLattice& lattice, ScatteringSettings& set
     out.share = 1.0f;
     return out;
 }
+
+// Where light is gathered adaptively, the finest level of a bounce: what scatters on is smoothed.
+constexpr int kFinestOfBounce = 2;
 
 // The flights on the light's own lattice. The last ends where the light is scattered toward the camera.
 class FineFlights {
@@ -165,7 +171,8 @@ private:
         request.least_coarsening = flight.scatters_on ? 1 : 0;
         const LevelLights of_levels(lattice_, lights, input.scattering.alpha, costs, progress_,
                                     keeps_maps_ ? &maps_ : nullptr);
-        AdaptiveLight light = gather_adaptively(lattice_, request, of_levels, detail_, flight.scatters_on ? 1 : 0);
+        AdaptiveLight light =
+            gather_adaptively(lattice_, request, of_levels, detail_, flight.scatters_on ? kFinestOfBounce : 0);
         if (!thin)
             return light;
         LightField of_thin = thin->lights.field(lattice_.pyramid(), input.scattering.alpha, input.lighting, nullptr);
@@ -247,7 +254,8 @@ SmokeLight light_from_smoke(const LitLattice& lattice, const Gathered& first, St
                             Progress& progress) {
     ScatteringSettings settings = lattice.input().scattering;
     const FineBounces bounces = plan_fine_bounces(lattice, settings);
-    std::vector<ScatteredLight> orders = orders_of_scattering(lattice, first, settings, statistics, progress);
+    std::vector<ScatteredLight> orders =
+        orders_of_scattering(lattice, first, settings, bounces.count > 0 ? bounces.share : 0.0f, statistics, progress);
     progress.stage("light from the smoke (MM)");
     FineFlights flights(lattice, progress);
     SmokeLight out;
