@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "fixtures/media.h"
+#include "layer_difference.h"
 #include "render/render_frame.h"
 
 namespace brisance {
@@ -61,17 +62,6 @@ std::map<int, std::size_t> lit_nodes(const RenderedFrame& frame) {
     return out;
 }
 
-// Root of the summed squared differences over that of the squares.
-double difference(const RenderedFrame& a, const RenderedFrame& b, const char* layer = "") {
-    const std::vector<float>&x = a.image.layer(layer).pixels, &y = b.image.layer(layer).pixels;
-    double square = 0.0, norm = 0.0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        square += std::pow(double(x[i]) - y[i], 2);
-        norm += double(y[i]) * y[i];
-    }
-    return std::sqrt(square / norm);
-}
-
 // What the error bounds is the light in smoke; interpolation errors of single nodes vary by a factor of two.
 TEST(AdaptiveGather, IsAsNearToTheFullLightingAsItIsAskedToBe) {
     const Medium medium = burst(3.0f);
@@ -82,10 +72,11 @@ TEST(AdaptiveGather, IsAsNearToTheFullLightingAsItIsAskedToBe) {
     for (const float error : {0.005f, 0.02f, 0.08f}) {
         const RenderedFrame frame = picture(medium, shot_of(error));
         const std::size_t nodes = lit_nodes(frame).at(0);
-        std::printf("error %.3f: picture %.4f, MV %.4f, MM %.4f, %zu nodes\n", error, difference(frame, full),
-                    difference(frame, full, "MV"), difference(frame, full, "MM"), nodes);
+        std::printf("error %.3f: picture %.4f, MV %.4f, MM %.4f, %zu nodes\n", error,
+                    layer_difference(frame.image, full.image), layer_difference(frame.image, full.image, "MV"),
+                    layer_difference(frame.image, full.image, "MM"), nodes);
         for (const char* layer : {"", "MV", "MM"})
-            EXPECT_LT(difference(frame, full, layer), 2.0 * error) << layer;
+            EXPECT_LT(layer_difference(frame.image, full.image, layer), 2.0 * error) << layer;
         EXPECT_LT(nodes, before);
         before = nodes;
     }
@@ -149,10 +140,11 @@ TEST(AdaptiveGather, DependsOnTheViewAndNotOnThePlace) {
     const RenderedFrame padded = picture(burst(3.0f, ivec3(0), 21), shot_of(0.02f)), moved = moved_picture(),
                         turned = turned_picture();
     for (const char* layer : {"", "MV", "MM"}) {
-        EXPECT_LT(difference(padded, frame, layer), 0.02) << "empty voxels around the volume, " << layer;
-        EXPECT_LT(difference(turned, frame, layer), 0.02) << "turned with its volume, " << layer;
+        EXPECT_LT(layer_difference(padded.image, frame.image, layer), 0.02)
+            << "empty voxels around the volume, " << layer;
+        EXPECT_LT(layer_difference(turned.image, frame.image, layer), 0.02) << "turned with its volume, " << layer;
     }
-    EXPECT_LT(difference(moved, frame), 0.02) << "moved with its volume";
+    EXPECT_LT(layer_difference(moved.image, frame.image), 0.02) << "moved with its volume";
     // Smoke smaller than a pixel stays coarse: a picture of 4 x 4 pixels needs three quarters of the nodes of one of
     // 32 x 32 at most.
     EXPECT_LT(4 * lit_nodes(picture(medium, shot_of(0.02f, 4))).at(0), 3 * lit_nodes(frame).at(0));
@@ -188,9 +180,10 @@ TEST(AdaptiveGather, TheSameSmokeInOtherVoxelsLooksTheSame) {
                         moved = picture(smooth_burst(0.075, {0.4, 0.3, -0.2}), shot);
     for (const char* layer : {"", "MV", "MM"}) {
         std::printf("%s voxels half as wide: %.4f, moved by a part of a voxel: %.4f\n", layer,
-                    difference(finer, frame, layer), difference(moved, frame, layer));
-        EXPECT_LT(difference(finer, frame, layer), 0.02) << layer;
-        EXPECT_LT(difference(moved, frame, layer), 0.02) << layer;
+                    layer_difference(finer.image, frame.image, layer),
+                    layer_difference(moved.image, frame.image, layer));
+        EXPECT_LT(layer_difference(finer.image, frame.image, layer), 0.02) << layer;
+        EXPECT_LT(layer_difference(moved.image, frame.image, layer), 0.02) << layer;
     }
 }
 

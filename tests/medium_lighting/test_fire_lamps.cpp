@@ -8,6 +8,7 @@
 #include "fixtures/media.h"
 #include "fixtures/sets.h"
 #include "gathering/gather.h"
+#include "layer_difference.h"
 #include "lighting_grid/light_clusters.h"
 #include "render/render_frame.h"
 
@@ -51,16 +52,6 @@ Shot lamp_shot(int lamps) {
 Shot scattered_once(Shot shot) {
     shot.scattering.bounces = 1;
     return shot;
-}
-
-double layer_difference(const Image& a, const Image& b, const char* layer) {
-    const std::vector<float>&x = a.layer(layer).pixels, &y = b.layer(layer).pixels;
-    double square = 0.0, norm = 0.0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        square += std::pow(double(x[i]) - y[i], 2);
-        norm += double(y[i]) * y[i];
-    }
-    return std::sqrt(square / norm);
 }
 
 double layer_sum(const Image& image, const char* layer) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fixtures/media.h"
+#include "layer_difference.h"
 #include "lighting_grid/voxel_lights.h"
 #include "medium_lighting/levels/coarse_lighting.h"
 #include "medium_lighting/levels/lighting_level.h"
@@ -43,16 +44,6 @@ RenderedFrame picture_on(const Medium& medium, int level) {
     return render_medium(shot, medium, silent);
 }
 
-double off_by(const RenderedFrame& a, const RenderedFrame& b, const char* layer) {
-    const std::vector<float>&x = a.image.layer(layer).pixels, &y = b.image.layer(layer).pixels;
-    double square = 0.0, norm = 0.0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        square += std::pow(double(x[i]) - y[i], 2);
-        norm += double(y[i]) * y[i];
-    }
-    return std::sqrt(square / norm);
-}
-
 TEST(LightingLevel, ExponentialDecayAlongAnAxisIsInterpolatedAsTheCameraSeesIt) {
     const Medium fine = smooth_fire(1.0f);
     for (const int level : {1, 2}) {
@@ -89,7 +80,7 @@ TEST(LightingLevel, SmoothFireInThinSmokeNeedsNoFineLattice) {
     const RenderedFrame fine = picture_on(medium, 0);
     const RenderedFrame coarse = picture_on(medium, 1);
     for (const char* layer : {"MV", "MM"})
-        EXPECT_LT(off_by(coarse, fine, layer), 2.0 * 0.02) << layer;
+        EXPECT_LT(layer_difference(coarse.image, fine.image, layer), 2.0 * 0.02) << layer;
 }
 
 TEST(LightingLevel, SmallMediaAndStatedInterpolationKeepTheirLattice) {

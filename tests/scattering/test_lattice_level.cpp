@@ -53,5 +53,29 @@ TEST(LatticeLevel, IsTheSameAmongSmokeTooThinToBeSeen) {
     EXPECT_NEAR(mean_level(among(1e-7f)), mean_level(among(0.0f)), 1e-3);
 }
 
+// More error, coarser lattices, and as much more of a bounce that corrects them.
+TEST(LatticeLevel, FineBouncesFadeInWithTheError) {
+    const ScatteringSettings automatic;
+    double room = 0.0, share = -1.0;
+    for (const float error : {0.005f, 0.01f, 0.0125f, 0.015f, 0.0175f, 0.02f, 0.05f}) {
+        const double now = crowding(automatic, error), part = share_of_fine_bounces({2, 0.0f}, automatic, error);
+        EXPECT_GE(now, room) << error;
+        EXPECT_GE(part, share) << error;
+        if (share >= 0.0 && error <= 0.02f)
+            EXPECT_LT(part - share, 0.3) << error;
+        room = now;
+        share = part;
+    }
+    EXPECT_EQ(crowding(automatic, 0.01f), 1.0);
+    EXPECT_EQ(share_of_fine_bounces({2, 0.0f}, automatic, 0.01f), 0.0f);
+    EXPECT_EQ(share, 1.0);
+    EXPECT_EQ(share_of_fine_bounces({0, 0.25f}, automatic, 0.02f), 0.25f)
+        << "as much as is solved on a coarser lattice";
+    ScatteringSettings none;
+    none.fine_bounces = 0;
+    EXPECT_EQ(crowding(none, 0.05f), 1.0);
+    EXPECT_EQ(share_of_fine_bounces({2, 0.0f}, none, 0.05f), 0.0f);
+}
+
 }  // namespace
 }  // namespace brisance
