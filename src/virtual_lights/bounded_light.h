@@ -11,7 +11,7 @@ struct BoundedLight {
     double lost = 0.0;  // luminance that the bound takes away [W/(m^2 sr)]
 
     BoundedLight() = default;
-    BoundedLight(const Rgb& of, double taken = 0.0) : light(of), lost(taken) {}
+    BoundedLight(const Rgb& of, double taken = 0.0) : light(of), lost(taken) {}  // NOLINT(google-explicit-constructor)
 
     BoundedLight& operator+=(const BoundedLight& other) {
         light += other.light;
