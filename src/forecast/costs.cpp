@@ -71,8 +71,12 @@ CountedMedium::CountedMedium(const Medium& counted)
     lit_nodes = double(std::count_if(needed.begin(), needed.end(), [](std::uint8_t n) { return n != 0; }));
 }
 
+ScatteringSettings orders_of(const Shot& shot) {
+    return settings_of_orders(shot.scattering, shot.output.bounce_layers);
+}
+
 int forecast_lattice_level(const Shot& shot, const CountedMedium& counted) {
-    const ScatteringSettings settings = settings_of_orders(shot.scattering, shot.output.bounce_layers);
+    const ScatteringSettings settings = orders_of(shot);
     if (settings.lattice_level >= 0)
         return settings.lattice_level;
     const double full = crowding(settings, shot.lighting.error) * counted.lattice_fullness;
@@ -89,7 +93,7 @@ double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& 
     double coarse = 0.0;
     if (plan.multiple) {
         const int series = forecast_lattice_level(shot, counted);
-        const double flights = 1.0 + (series > 0 ? kFineBounce * std::abs(shot.scattering.fine_bounces) : 0.0);
+        const double flights = 1.0 + (series > 0 ? kFineBounce * count_of_fine_bounces(orders_of(shot)) : 0.0);
         evaluations += flights * kEvaluationsOfNode * nodes * std::pow(double(shot.scattering.alpha), kPowerOfAlpha);
         coarse = counted.lit_nodes / std::pow(kNodesOfParent, series);
     }

@@ -17,6 +17,9 @@ struct CountedMedium {
     double lattice_fullness;  // scattering/lattice_level.h
 };
 
+// How the shot's orders of scattering are solved.
+ScatteringSettings orders_of(const Shot& shot);
+
 // That of the lattice on which the orders of scattering are solved, about.
 int forecast_lattice_level(const Shot& shot, const CountedMedium& counted);
 

@@ -141,7 +141,7 @@ std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFra
 }
 
 ExpectedError expected_error(const ModelledFrame& frame) {
-    const ScatteringSettings& settings = frame.shot.scattering;
+    const ScatteringSettings settings = orders_of(frame.shot);
     const int level = forecast_lattice_level(frame.shot, frame.counted);
     const double coarse_light = lighting_level(frame.counted.medium, frame.shot.lighting).error;
     const double fine_bounces = share_of_fine_bounces({level}, settings, frame.shot.lighting.error);

@@ -22,7 +22,11 @@ struct ScatteringSettings {
     bool flux_limiter = true;  // with diffusion: DiffusionSettings::flux_limiter
 };
 
-// The same without fine bounces where there are none: orders that are kept apart, or end at the second, are gathered on
+inline int count_of_fine_bounces(const ScatteringSettings& settings) {
+    return settings.fine_bounces < 0 ? 1 : settings.fine_bounces;
+}
+
+// Settings without fine bounces where there are none: orders that are kept apart, or end at the second, are gathered on
 // the light's own lattice anyway, and diffusion stands for all bounces.
 inline ScatteringSettings settings_of_orders(ScatteringSettings settings, bool apart) {
     if (apart || settings.bounces == 2 || settings.solver == ScatteringSolver::Diffusion)

@@ -10,6 +10,7 @@
 #include "fixtures/media.h"
 #include "layer_difference.h"
 #include "render/render_frame.h"
+#include "small_view.h"
 
 namespace brisance {
 namespace {
@@ -35,15 +36,8 @@ Medium burst(float extinction, const ivec3& shift = ivec3(0), int border = 0) {
 }
 
 Shot shot_of(float error, int size = 32) {
-    Shot shot;
+    Shot shot = small_view(size);
     shot.lighting.interpolation = error;
-    shot.camera_given = true;
-    shot.camera.eye = {0.5, -5.0, 0.5};
-    shot.camera.vertical_fov_degrees = 28.0;
-    shot.camera.width = shot.camera.height = size;
-    shot.camera.samples_per_axis = 2;
-    shot.output.cell_layers = true;
-    shot.certify.belief = 0.0;  // nobody looks at it
     return shot;
 }
 

@@ -7,6 +7,7 @@
 #include "fixtures/media.h"
 #include "layer_difference.h"
 #include "render/render_frame.h"
+#include "small_view.h"
 
 namespace brisance {
 namespace {
@@ -29,18 +30,11 @@ Medium lumpy_smoke(float mean_cosine) {
 }
 
 Image picture(const Medium& medium, int bounces, int lattice_level, int fine_bounces) {
-    Shot shot;
+    Shot shot = small_view(24);
     shot.scattering_methods.method = kLightingGridMethod;
     shot.scattering.bounces = bounces;
     shot.scattering.lattice_level = lattice_level;
     shot.scattering.fine_bounces = fine_bounces;
-    shot.camera_given = true;
-    shot.camera.eye = {0.5, -5.0, 0.5};
-    shot.camera.vertical_fov_degrees = 28.0;
-    shot.camera.width = shot.camera.height = 24;
-    shot.camera.samples_per_axis = 2;
-    shot.output.cell_layers = true;
-    shot.certify.belief = 0.0;  // nobody looks at it
     Progress silent;
     return render_medium(shot, medium, silent).image;
 }

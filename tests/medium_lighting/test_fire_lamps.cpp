@@ -11,6 +11,7 @@
 #include "layer_difference.h"
 #include "lighting_grid/light_clusters.h"
 #include "render/render_frame.h"
+#include "small_view.h"
 
 namespace brisance {
 namespace {
@@ -36,15 +37,8 @@ Medium three_fires(float extinction, float mean_cosine = 0.0f) {
 }
 
 Shot lamp_shot(int lamps) {
-    Shot shot;
+    Shot shot = small_view(24);
     shot.lighting.clusters = lamps;
-    shot.camera_given = true;
-    shot.camera.eye = {0.5, -5.0, 0.5};
-    shot.camera.vertical_fov_degrees = 28.0;
-    shot.camera.width = shot.camera.height = 24;
-    shot.camera.samples_per_axis = 2;
-    shot.output.cell_layers = true;
-    shot.certify.belief = 0.0;
     return shot;
 }
 

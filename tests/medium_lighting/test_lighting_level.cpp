@@ -9,6 +9,7 @@
 #include "medium_lighting/levels/coarse_lighting.h"
 #include "medium_lighting/levels/lighting_level.h"
 #include "render/render_frame.h"
+#include "small_view.h"
 
 namespace brisance {
 namespace {
@@ -32,14 +33,8 @@ Medium smooth_fire(float extinction) {
 }
 
 RenderedFrame picture_on(const Medium& medium, int level) {
-    Shot shot;
+    Shot shot = small_view(24);
     shot.lighting.lattice_level = level;
-    shot.camera_given = true;
-    shot.camera.eye = {0.5, -5.0, 0.5};
-    shot.camera.vertical_fov_degrees = 28.0;
-    shot.camera.width = shot.camera.height = 24;
-    shot.camera.samples_per_axis = 2;
-    shot.output.cell_layers = true;
     Progress silent;
     return render_medium(shot, medium, silent);
 }

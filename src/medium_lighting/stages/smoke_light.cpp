@@ -72,7 +72,7 @@ struct FineBounces {
 // Where orders end at a stated number, the series in `settings` leaves the last of them to these bounces.
 FineBounces plan_fine_bounces(const LitLattice& lattice, ScatteringSettings& settings) {
     const float error = lattice.input().lighting.error;
-    FineBounces out{std::abs(settings.fine_bounces),
+    FineBounces out{count_of_fine_bounces(settings),
                     share_of_fine_bounces(lattice_of_series(lattice.pyramid(), settings, error), settings, error)};
     const bool endless = settings.bounces < 0;
     if (!endless)

@@ -44,7 +44,7 @@ struct PointKind {
         }
 
         BoundedLight connect(const Connection& c, const PathVertex& vertex, float factor, Rng& rng) const {
-            return bounded_to(sent(c.light, vertex, c.direction).kept,
+            return bounded_to(geometry(c.light, vertex, c.direction).kept,
                               connect_by_shadow_ray(set_.scene(), vertex, set_.lights[c.light], c, factor, rng));
         }
 
@@ -67,19 +67,29 @@ struct PointKind {
         }
 
     private:
+        struct Geometry {
+            double square = 0.0;  // of the distance [m^2]; 0: the light sends nothing there
+            double kept = 1.0;    // by the bound
+        };
         struct Sent {
             Rgb radiance{0.0f};
-            double kept = 1.0;  // by the bound
+            double kept = 1.0;
         };
 
-        Sent sent(std::size_t index, const PathVertex& vertex, const dvec3& direction) const {
+        Geometry geometry(std::size_t index, const PathVertex& vertex, const dvec3& direction) const {
             const VirtualLight& light = set_.lights[index];
             const dvec3 offset = light.position - vertex.position();
             const double square = glm::dot(offset, offset), cosine = -glm::dot(light.frame.normal, direction);
             if (!(cosine > 0.0) || !(square > 0.0))
                 return {};
-            const double kept = kept_by_bound(set_.settings(), vertex.lit(), direction, cosine, square);
-            return {flux_.intensity(light, -direction) * float(kept / square), kept};
+            return {square, kept_by_bound(set_.settings(), vertex.lit(), direction, cosine, square)};
+        }
+
+        Sent sent(std::size_t index, const PathVertex& vertex, const dvec3& direction) const {
+            const Geometry g = geometry(index, vertex, direction);
+            if (!(g.square > 0.0))
+                return {};
+            return {flux_.intensity(set_.lights[index], -direction) * float(g.kept / g.square), g.kept};
         }
 
         const LightSet& set_;
