@@ -20,6 +20,35 @@ constexpr std::uint32_t kPixelsAside = 4;
 
 constexpr std::size_t kNeighbourhoodsAtOnce = 4;
 
+// Batches of draws in a penumbra after which their spread tells the error of their mean.
+constexpr std::size_t kLeastBatches = 4;
+// Of all light that would arrive without surfaces between: what is darker may err as if it were that bright.
+constexpr float kDarkest = 0.05f;
+constexpr float kTiny = 1e-30f;
+
+// Mean of what batches of draws found, and whether it is known well enough.
+class BatchMean {
+public:
+    void add(float value) {
+        sum_ += value;
+        squares_ += value * value;
+        ++count_;
+    }
+    // `darkest`: a smaller mean may err like it.
+    bool within(float tolerance, float darkest) const {
+        if (count_ < kLeastBatches)
+            return false;
+        const float n = float(count_), mean = sum_ / n,
+                    variance = std::max(0.0f, squares_ / n - mean * mean) / (n - 1.0f),
+                    tolerated = tolerance * std::max(mean, darkest);
+        return variance <= tolerated * tolerated;
+    }
+
+private:
+    float sum_ = 0.0f, squares_ = 0.0f;
+    std::size_t count_ = 0;
+};
+
 // Samples sorted by their receiver.
 struct SamplesOfReceivers {
     std::vector<std::uint32_t> first, samples;  // `first` has one more than there are receivers, as an end
@@ -44,21 +73,12 @@ Rgb arriving(const SurfaceReceiver& receiver, int light) {
     return light < 2 ? receiver.fire[light] : receiver.smoke[light - 2];
 }
 
-void add(int light, const Rgb& scattered, BaseLight& out) {
-    (light < 2 ? out.from_fire : out.from_smoke) += scattered;
+float all_arriving(const SurfaceReceiver& receiver) {
+    return luminance(receiver.fire[0] + receiver.fire[1] + receiver.smoke[0] + receiver.smoke[1]);
 }
 
-// The base's share of what a white Lambert surface reflects of light from there; none from below.
-Rgb relative_to_white(const BasePoint& at, const vec3& light) {
-    const SurfacePoint& surface = *at.surface;
-    const dvec3 toward_light = glm::normalize(dvec3(light) - surface.position);
-    const double cosine = glm::dot(surface.frame.normal, toward_light);
-    const bool above =
-        glm::dot(surface.geometric_normal, toward_light) * glm::dot(surface.geometric_normal, at.toward_viewer) > 0.0;
-    if (!above || !(cosine > 0.0))
-        return Rgb(0.0f);
-    const Bsdf base(surface.material, surface.frame, Lobes::Base);
-    return base.evaluate(at.toward_viewer, toward_light) * (std::numbers::pi_v<float> / float(cosine));
+void add(int light, const Rgb& scattered, BaseLight& out) {
+    (light < 2 ? out.from_fire : out.from_smoke) += scattered;
 }
 
 bool may_look_together(std::span<const std::uint32_t> samples, std::span<const BasePoint> points) {
@@ -66,6 +86,41 @@ bool may_look_together(std::span<const std::uint32_t> samples, std::span<const B
 }
 
 }  // namespace
+
+// A sample's base, as its viewer sees it.
+class BaseLighting::Base {
+public:
+    // Keeps a reference to the surface.
+    Base(const BasePoint& at, std::uint32_t sample)
+        : sample_(sample),
+          surface_(*at.surface),
+          viewer_below_(glm::dot(surface_.geometric_normal, at.toward_viewer) < 0.0),
+          lobe_(surface_.material, surface_.frame, Lobes::Base),
+          viewed_(lobe_, at.toward_viewer) {}
+    Base(const Base&) = delete;
+    Base& operator=(const Base&) = delete;
+
+    std::uint32_t sample() const { return sample_; }
+    const SurfacePoint& surface() const { return surface_; }
+
+    // The share of what a white Lambert surface reflects of light from there; none from below.
+    Rgb relative_to_white(const vec3& light) const {
+        const dvec3 toward_light = glm::normalize(dvec3(light) - surface_.position);
+        const double cosine = glm::dot(surface_.frame.normal, toward_light),
+                     height = glm::dot(surface_.geometric_normal, toward_light);
+        const bool above = viewer_below_ ? height < 0.0 : height > 0.0;
+        if (!above || !(cosine > 0.0))
+            return Rgb(0.0f);
+        return viewed_.evaluate(toward_light) * (std::numbers::pi_v<float> / float(cosine));
+    }
+
+private:
+    std::uint32_t sample_;
+    const SurfacePoint& surface_;
+    bool viewer_below_;
+    Bsdf lobe_;
+    Bsdf::Viewed viewed_;
+};
 
 // What the samples of a receiver found together.
 struct BaseLighting::Together {
@@ -115,8 +170,12 @@ private:
 };
 
 BaseLighting::BaseLighting(const Medium& medium, const MediumLighting& lighting, const Panes& panes, bool through_panes,
-                           int width)
-    : medium_(medium), panes_(panes), through_panes_(through_panes), width_(static_cast<std::uint32_t>(width)) {
+                           int width, float tolerance)
+    : medium_(medium),
+      panes_(panes),
+      through_panes_(through_panes),
+      width_(static_cast<std::uint32_t>(width)),
+      tolerance_(tolerance) {
     const VisibilityRatios fire = lighting.fire_visibility(), smoke = lighting.smoke_visibility();
     ratios_ = {fire[0], fire[1], smoke[0], smoke[1]};
 }
@@ -128,27 +187,25 @@ Panes::Passage BaseLighting::passage(const SurfacePoint& surface, const vec3& li
 }
 
 BaseLighting::Seen BaseLighting::see_together(int light, const SurfaceReceiver& receiver,
-                                              const WeightedTargets& targets, std::span<const std::uint32_t> samples,
-                                              std::span<const BasePoint> points, Rng& rng,
+                                              const WeightedTargets& targets, const Bases& bases, Rng& rng,
                                               std::span<BaseLight> out) const {
     if (targets.empty())
         return Seen::NoLight;
     const Rgb there = arriving(receiver, light);
-    const std::size_t rays = (kRaysTogether + samples.size() - 1) / samples.size(), all = rays * samples.size();
+    const std::size_t rays = (kRaysTogether + bases.size() - 1) / bases.size(), all = rays * bases.size();
     const float shift = rng.next();
     std::size_t arrived = 0;
     for (std::size_t i = 0; i < all; ++i) {
-        const std::uint32_t sample = samples[i / rays];
-        const BasePoint& p = points[sample];
+        const Base& base = bases[i / rays];
         const vec3& from = targets.at((float(i) + shift) / float(all));
-        const Panes::Passage way = passage(*p.surface, from);
-        const Rgb share = relative_to_white(p, from);
+        const Panes::Passage way = passage(base.surface(), from);
+        const Rgb share = base.relative_to_white(from);
         if (way.panes > 0 || share == Rgb(0.0f))
             return Seen::Part;
         if (way.blocked)
             continue;
         ++arrived;
-        add(light, there * share / float(rays), out[sample]);
+        add(light, there * share / float(rays), out[base.sample()]);
     }
     return arrived == all ? Seen::All : (arrived == 0 ? Seen::Nothing : Seen::Part);
 }
@@ -159,11 +216,14 @@ BaseLighting::Together BaseLighting::light_together(const SurfaceReceiver& recei
     Together found{{}, points[samples[0]].pixel, false};
     if (!may_look_together(samples, points))
         return found;
+    Bases bases;
+    for (const std::uint32_t i : samples)
+        bases.emplace_back(points[i], i);
     Rng rng(kTogether, found.pixel, points[samples[0]].number);
     for (int light = 0; light < kLights; ++light)
         if (ratios_[light] && arriving(receiver, light) != Rgb(0.0f))
             found.seen[light] =
-                see_together(light, receiver, around.targets(light, points[samples[0]]), samples, points, rng, out);
+                see_together(light, receiver, around.targets(light, points[samples[0]]), bases, rng, out);
     found.tried = true;
     return found;
 }
@@ -183,53 +243,65 @@ bool BaseLighting::settled(std::span<const Together> all, std::size_t r) const {
 }
 
 // What arrives past other surfaces at the samples of a receiver, each along its own part of the rays.
-void BaseLighting::measure(int light, const SurfaceReceiver& receiver, const LightFront& around,
-                           std::span<const std::uint32_t> samples, std::span<const BasePoint> points, Rng& rng,
-                           std::span<BaseLight> out) const {
+void BaseLighting::measure(int light, const SurfaceReceiver& receiver, const LightFront& around, const Bases& bases,
+                           Rng& rng, std::span<BaseLight> out) const {
     const LitPoint lit{dvec3(receiver.local), dvec3(receiver.normal), LitPoint::Kind::Surface};
-    const std::size_t n = samples.size();
+    const std::size_t n = bases.size();
     std::vector<Shares> seen(n);
     std::array<VisibilityRatio::Draw, VisibilityRatio::kDraws> draws;
+    const float darkest = kDarkest * all_arriving(receiver) / std::max(luminance(arriving(receiver, light)), kTiny);
+    BatchMean known;
     float all = 0.0f;
-    for (std::size_t b = 0; b < n && ratios_[light]->draw(around, lit, rng, draws); ++b)
+    for (std::size_t b = 0; b < n && ratios_[light]->draw(around, lit, rng, draws); ++b) {
+        float of_batch = 0.0f, seen_of_batch = 0.0f;
         for (std::size_t k = 0; k < draws.size(); ++k) {
             const VisibilityRatio::Draw& d = draws[k];
             if (!(d.weight > 0.0f))
                 continue;
-            all += d.weight;
+            of_batch += d.weight;
             const std::size_t to = (b + k) % n;  // every sample gets draws of all strata
-            const BasePoint& p = points[samples[to]];
-            const Rgb share = relative_to_white(p, d.point);
+            const Base& base = bases[to];
+            const Rgb share = base.relative_to_white(d.point);
             if (share == Rgb(0.0f))
                 continue;
-            const Panes::Passage way = passage(*p.surface, d.point);
-            if (!way.blocked)
-                (way.panes > 0 ? seen[to].through_panes : seen[to].clear) += share * d.weight * way.weight;
+            const Panes::Passage way = passage(base.surface(), d.point);
+            if (way.blocked)
+                continue;
+            const Rgb passes = share * d.weight * way.weight;
+            (way.panes > 0 ? seen[to].through_panes : seen[to].clear) += passes;
+            seen_of_batch += luminance(passes);
         }
+        all += of_batch;
+        known.add(of_batch > 0.0f ? seen_of_batch / of_batch : 0.0f);
+        const bool even = (b + 1) * draws.size() % n == 0;  // samples got equally many draws
+        if (even && known.within(tolerance_, darkest))
+            break;
+    }
     if (!(all > 0.0f))
         return;
     const Rgb there = arriving(receiver, light) * (float(n) / all);
     for (std::size_t k = 0; k < n; ++k) {
-        add(light, there * seen[k].clear, out[samples[k]]);
+        add(light, there * seen[k].clear, out[bases[k].sample()]);
         if (through_panes_)
-            out[samples[k]].through_panes += there * seen[k].through_panes;
+            out[bases[k].sample()].through_panes += there * seen[k].through_panes;
     }
 }
 
 void BaseLighting::light_alone(const SurfaceReceiver& receiver, Fronts& around, std::span<const std::uint32_t> samples,
                                std::span<const BasePoint> points, std::span<BaseLight> out) const {
-    std::vector<std::uint32_t> on_surface;
+    Bases bases;
     for (const std::uint32_t i : samples) {
         out[i] = {};
         if (points[i].surface)
-            on_surface.push_back(i);
+            bases.emplace_back(points[i], i);
     }
-    if (on_surface.empty())
+    if (bases.empty())
         return;
-    Rng rng(kAlone, points[on_surface[0]].pixel, points[on_surface[0]].number);
+    const BasePoint& first = points[bases.front().sample()];
+    Rng rng(kAlone, first.pixel, first.number);
     for (int light = 0; light < kLights; ++light)
         if (ratios_[light] && arriving(receiver, light) != Rgb(0.0f))
-            measure(light, receiver, around.of(light), on_surface, points, rng, out);
+            measure(light, receiver, around.of(light), bases, rng, out);
 }
 
 std::vector<BaseLight> BaseLighting::light(std::span<const BasePoint> points, const SharedReceivers& receivers) const {

@@ -4,7 +4,8 @@
 // arrives is measured by shadow rays toward points of the medium (visibility_ratio.h). The samples of a receiver first
 // test one set of such points together (shared_targets.h), a ray for each sample. Where every ray arrives, or none
 // does, and it is so for its neighbours in the row of pixels, that is the answer. Elsewhere may be a penumbra: every
-// receiver draws points of its own, sixteen for each of its samples.
+// receiver draws points of its own, in batches of sixteen: one for each of its samples, or fewer where the batches
+// agree on the part that arrives.
 //
 // What is missed: with n rays around, a part f of the light that is hidden, or seen, goes unnoticed with probability
 // (1 - f)^n, so that the mean is wrong by at most 1 / (e n). n is 144 for pixels of 16 samples.
@@ -12,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <vector>
 
@@ -39,8 +41,9 @@ struct BaseLight {
 class BaseLighting {
 public:
     // Keeps references. `through_panes`: light that passes panes is wanted. `width`: of the picture, in pixels.
+    // `tolerance`: standard error, over itself, of the light of a receiver in a penumbra, of which it tests no more.
     BaseLighting(const Medium& medium, const MediumLighting& lighting, const Panes& panes, bool through_panes,
-                 int width);
+                 int width, float tolerance);
 
     // One for each point, in the order in which they were added to the receivers, which are lit. Independent of other
     // rows of the picture.
@@ -56,16 +59,16 @@ private:
     };
 
     class Fronts;
+    class Base;
+    using Bases = std::deque<Base>;  // of a receiver's samples
     Together light_together(const SurfaceReceiver& receiver, Fronts& around, std::span<const std::uint32_t> samples,
                             std::span<const BasePoint> points, std::span<BaseLight> out) const;
     bool settled(std::span<const Together> all, std::size_t receiver) const;
-    Seen see_together(int light, const SurfaceReceiver& receiver, const WeightedTargets& targets,
-                      std::span<const std::uint32_t> samples, std::span<const BasePoint> points, Rng& rng,
-                      std::span<BaseLight> out) const;
+    Seen see_together(int light, const SurfaceReceiver& receiver, const WeightedTargets& targets, const Bases& bases,
+                      Rng& rng, std::span<BaseLight> out) const;
     void light_alone(const SurfaceReceiver& receiver, Fronts& around, std::span<const std::uint32_t> samples,
                      std::span<const BasePoint> points, std::span<BaseLight> out) const;
-    void measure(int light, const SurfaceReceiver& receiver, const LightFront& around,
-                 std::span<const std::uint32_t> samples, std::span<const BasePoint> points, Rng& rng,
+    void measure(int light, const SurfaceReceiver& receiver, const LightFront& around, const Bases& bases, Rng& rng,
                  std::span<BaseLight> out) const;
     Panes::Passage passage(const SurfacePoint& surface, const vec3& light) const;
 
@@ -73,6 +76,7 @@ private:
     const Panes& panes_;
     bool through_panes_;
     std::uint32_t width_;
+    float tolerance_;
     std::array<const VisibilityRatio*, kLights> ratios_;
 };
 

@@ -50,14 +50,15 @@ private:
     }
 
     void light(const std::vector<std::vector<FoundSurface>>& rows, int begin) {
+        const std::size_t first = std::size_t(begin) * width_;
         std::vector<SurfaceSample> all;
         for (const auto& row : rows)
             for (const FoundSurface& f : row)
-                all.push_back({f.sample.pixel, f.sample.number, f.sample.ray, f.sample.hit, f.weight});
+                all.push_back({f.sample.pixel, f.sample.number, f.sample.ray, f.sample.hit, f.weight,
+                               luminance(sums_[f.sample.pixel - first].cells)});
         std::vector<CellSum> lit(all.size());
         light_surfaces_(all, lit);
         std::size_t next = 0;
-        const std::size_t first = std::size_t(begin) * width_;
         for (const auto& row : rows)
             for (const FoundSurface& f : row)
                 sums_[f.sample.pixel - first].cells.add(lit[next++], Rgb(f.weight));

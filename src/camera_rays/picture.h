@@ -52,7 +52,8 @@ struct SurfaceSample {
     std::uint64_t number;  // of the ray in its pixel, and of the pass (PictureSettings)
     Ray ray;
     SurfaceHit hit;
-    float share = 1.0f;  // of the light along the ray, what the pixel shows
+    float share = 1.0f;   // of the light along the ray, what the pixel shows
+    float beside = 0.0f;  // luminance that the pixel shows beside its surfaces' light [W/(m^2 sr)]
 };
 
 // Light that surfaces scatter toward the camera: fills the row S of `light`, one entry per sample. A call has whole

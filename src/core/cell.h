@@ -42,6 +42,14 @@ struct CellSum : std::array<Rgb, kCells> {
     }
 };
 
+// Of all cells together.
+inline float luminance(const CellSum& cells) {
+    float sum = 0.0f;
+    for (const Rgb& cell : cells)
+        sum += luminance(cell);
+    return sum;
+}
+
 // The cell of light seen from a medium point or a surface point, by what sent it there.
 enum class Sender { V, M, S, A };
 constexpr Cell cell_of(bool on_surface, Sender sender) {

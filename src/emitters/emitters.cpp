@@ -13,6 +13,8 @@ namespace {
 using std::numbers::pi;
 
 constexpr double kDegree = pi / 180.0;
+// Luminance of the background that is even, over the environments' mean over the sphere.
+constexpr double kEvenOverMean = 4.0;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Least luminance of a triangle, relative to its largest: a texture that is black at the sample points may be bright
 // elsewhere.
@@ -137,6 +139,7 @@ void Emitters::add_light(const LightSettings& light, const Texture* picture) {
             const dvec3 d = far.environment->sample((column + 0.5) / kSide, (row + 0.5) / kSide);
             irradiance += luminance(far.environment->radiance(d)) / far.environment->pdf(d) / (kSide * kSide);
         }
+        even_luminance_ += static_cast<float>(kEvenOverMean * irradiance / (4.0 * pi));
     }
     const double before = far_irradiance_.empty() ? 0.0 : far_irradiance_.back();
     far_irradiance_.push_back(before + irradiance);
@@ -270,6 +273,11 @@ Rgb Emitters::background(const dvec3& direction) const {
     for (const Far& far : far_)
         sum += radiance_of_far(far, direction);
     return sum;
+}
+
+float Emitters::even_share(const dvec3& direction) const {
+    const float there = luminance(background(direction));
+    return there > even_luminance_ ? even_luminance_ / there : 1.0f;
 }
 
 double Emitters::pdf_of_background(const dvec3& direction) const {

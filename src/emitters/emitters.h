@@ -61,6 +61,10 @@ public:
     double pdf_of_hit(const LitPoint& point, const SurfaceHit& hit, const dvec3& direction, double distance) const;
     Rgb background(const dvec3& direction) const;
     double pdf_of_background(const dvec3& direction) const;
+    // The share of background() that is even: up to some times the environments' mean over the sphere. It has no small
+    // bright parts, and its shadows no sharp edges.
+    float even_share(const dvec3& direction) const;
+    bool has_even_background() const { return even_luminance_ > 0.0f; }
 
     // A particle; lights are chosen in proportion to their power. Light from infinity starts on a disc that covers the
     // ball around everything that can be lit (local, m). None without lights.
@@ -105,6 +109,7 @@ private:
     std::vector<double> near_power_;    // luminance [W], cumulative
     std::vector<PointEmitter> points_;  // of near_
     std::vector<Far> far_;
+    float even_luminance_ = 0.0f;                   // the largest that is even [W/(m^2 sr)]; 0: there is none
     std::vector<double> far_irradiance_;            // luminance [W/m^2] on a disc that faces it
     std::vector<std::vector<std::int32_t>> light_;  // per mesh that emits, per triangle: in near_, or -1
     LightTree tree_;

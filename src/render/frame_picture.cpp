@@ -20,6 +20,9 @@ constexpr int kSurfaceSamples = 4;
 // What a single pixel may err by for want of rays, in parts of `lighting.error`. Most pixels err by far less.
 constexpr float kShareOfSampling = 0.25f;
 
+// Standard error of a pixel of surfaces for want of shaded samples, in parts of `lighting.error`.
+constexpr float kShareOfShading = 1.0f;
+
 // Few rays first, and more where they err. Not where each ray carries random estimates, which want all rays, nor where
 // the layers of bounces have to add up, nor where moments of the shutter share the rays of a pixel.
 bool looks_twice(const DrawInput& input, bool moments) {
@@ -157,9 +160,21 @@ std::optional<ScreenSpaceCompensation> FramePicture::compensation(const Camera& 
     if (s.compensation != BoundCompensation::ScreenSpace || !input_.plan.needs(Cell::SS) || !lights_.virtual_lights() ||
         lights_.virtual_lights()->lights().empty())
         return std::nullopt;
-    const std::size_t rays =
-        pixel_samples(camera.settings(), settings_.samples_per_axis, settings_.sample_shift).size();
-    return ScreenSpaceCompensation(camera.settings().width, camera.settings().height, s, int(rays));
+    return ScreenSpaceCompensation(camera.settings().width, camera.settings().height, s, samples_of_pixel(camera));
+}
+
+// Wider filters have more.
+int FramePicture::samples_of_pixel(const Camera& camera) const {
+    return static_cast<int>(
+        pixel_samples(camera.settings(), settings_.samples_per_axis, settings_.sample_shift).size());
+}
+
+// Passes of a scattering method divide the error among them, and compensation in screen space looks at all samples. Who
+// states the samples of a pixel wants them all.
+float FramePicture::shading_tolerance() const {
+    const bool all = input_.plan.scattering_method || input_.camera.settings().samples_per_axis > 0 ||
+                     input_.shot.virtual_lights.compensation == BoundCompensation::ScreenSpace;
+    return all ? 0.0f : kShareOfShading * static_cast<float>(input_.shot.lighting.error);
 }
 
 Image FramePicture::picture(const InScattering* estimator, int number, const MomentLights& lights, const Camera& camera,
@@ -179,19 +194,39 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
     const double radius = input_.shot.virtual_lights.sharing_radius;
     if (lights_.virtual_lights() && input_.plan.needs(Cell::SS) && radius > 0.0)
         shared.emplace(camera.settings().width, camera.settings().height, radius, rays_of_pixel(), asks_for_bound);
+    std::optional<SharedBounce> shared_sky;
+    if (radius > 0.0 && input_.plan.needs(Cell::SA) && surroundings->emitters().has_even_background())
+        shared_sky.emplace(camera.settings().width, camera.settings().height, radius, rays_of_pixel());
     std::optional<LightReuse> reuse = light_reuse(camera, shared ? &*shared : nullptr, bound ? &*bound : nullptr);
     std::optional<ScreenSpaceCompensation> compensated = compensation(camera);
-    SurfaceShader shader({input_.plan.needed, lights.field(), *lights.paths(), lights_.medium().lighting(),
-                          lights_.virtual_lights(), estimator, input_.plan.emitters_by_rays, settings_.parts,
-                          camera.settings().width, rays_of_pixel(), lengths_ ? &*lengths_ : nullptr,
-                          shared ? &*shared : nullptr, camera.pixel_angle(), reuse ? &*reuse : nullptr,
-                          compensated ? &*compensated : nullptr, lights.fire_on_surfaces(), bound ? &*bound : nullptr});
+    SurfaceShader shader({input_.plan.needed,
+                          lights.field(),
+                          *lights.paths(),
+                          lights_.medium().lighting(),
+                          lights_.virtual_lights(),
+                          estimator,
+                          input_.plan.emitters_by_rays,
+                          settings_.parts,
+                          camera.settings().width,
+                          static_cast<float>(input_.shot.lighting.error),
+                          shading_tolerance(),
+                          samples_of_pixel(camera),
+                          lengths_ ? &*lengths_ : nullptr,
+                          shared ? &*shared : nullptr,
+                          shared_sky ? &*shared_sky : nullptr,
+                          camera.pixel_angle(),
+                          reuse ? &*reuse : nullptr,
+                          compensated ? &*compensated : nullptr,
+                          lights.fire_on_surfaces(),
+                          bound ? &*bound : nullptr});
     Image image = render_picture(lights.field(), camera, settings_, progress_,
                                  [&](const auto& samples, auto& light) { shader.shade(samples, light); });
     if (reuse)
         add_to_cell(image, Cell::SS, reuse->take_pixels());
     if (shared)
         add_to_cell(image, Cell::SS, shared->take_pixels());
+    if (shared_sky)
+        add_to_cell(image, Cell::SA, shared_sky->take_pixels());
     if (shared && bound)
         bound->add_residual(shared->residual_pixels());
     if (compensated)

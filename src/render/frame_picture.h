@@ -44,6 +44,8 @@ private:
                   const Surroundings* surroundings);
     std::optional<LightReuse> light_reuse(const Camera& camera, SharedBounce* shared, BoundAccount* bound) const;
     std::optional<ScreenSpaceCompensation> compensation(const Camera& camera) const;
+    int samples_of_pixel(const Camera& camera) const;
+    float shading_tolerance() const;
     Image order_picture(const NodeSources& order, PictureSettings settings);
 
     const DrawInput& input_;

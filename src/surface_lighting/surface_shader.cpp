@@ -7,6 +7,7 @@
 #include "base_lighting/shared_receivers.h"
 #include "core/cpu_clock.h"
 #include "core/parallel.h"
+#include "surface_lighting/share_light.h"
 #include "surface_lighting/shown_area.h"
 
 namespace brisance {
@@ -22,16 +23,6 @@ bool has_base(const SurfaceMaterial& m) {
 bool has_specular(const SurfaceMaterial& m) {
     return needs_energy_tables(m);
 }
-
-// Half the angle [rad] in which a glossy lobe reflects is about twice the width of its microfacet slopes. It stays
-// below a base's, and rises with roughness throughout: pixels tell lobes by it.
-float width_of_gloss(float roughness) {
-    constexpr float kWidest = 0.7f;
-    return kWidest * -std::expm1(-2.0f * roughness * roughness / kWidest);
-}
-
-// Glossy lobes reflect at grazing angles what the colour of their metal does not hold: light is divided by no less.
-constexpr float kLeastColour = 0.04f;
 
 // Voxels of a segment of a path between surfaces are not cut: the path is one of many.
 constexpr int kPartsForPaths = 1;
@@ -55,6 +46,7 @@ SurfaceShader::SurfaceShader(const SurfaceLightingInput& input)
     : input_(input),
       surroundings_(*input.paths.direct().surroundings()),
       medium_(input.field, input.paths.direct(), input.parts, input.in_scattering, input.emitters_by_rays),
+      emitters_(input.paths.direct(), input.samples),
       panes_(surroundings_),
       mirrors_(input.paths.direct(), medium_, input.needed.contains(Cell::SS)),
       planar_(input.paths.direct().field().medium()),
@@ -66,43 +58,12 @@ struct SurfaceShader::ShadedPoint {
     BehindMirrors seen;
     Rng ray_rng;  // for rays through the medium
     int vertices;
-    std::optional<SharedBounce::Sample> base = std::nullopt, gloss = std::nullopt;  // left to all pixels
-    std::vector<LightReuse::Sample> chosen = {};                                    // left to samples around
-    BoundTally bound = {};                                                          // of what is not left to all pixels
+    float stands_for = 1.0f;                                                        // that of SurfaceRounds
+    std::optional<SharedBounce::Sample> base = std::nullopt, gloss = std::nullopt,  // left to all pixels
+        sky = std::nullopt;
+    std::vector<LightReuse::Sample> chosen = {};  // left to samples around
+    BoundTally bound = {};                        // of what is not left to all pixels
 };
-
-// The samples of a pixel divide the emitters among themselves: a sequence of evenly spread choices runs through them
-// (golden ratio), shifted at random from pixel to pixel. A sample makes several choices where a pixel has fewer samples
-// than there are kinds of light to choose from.
-Rgb SurfaceShader::from_chosen_emitters(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng) const {
-    constexpr double kGolden = 0.6180339887498949;
-    const auto samples = static_cast<std::uint64_t>(input_.samples);
-    const std::uint64_t number = (sample.number >> 32) * samples + (sample.number & 0xffffffffu);
-    const std::uint64_t choices = (surroundings_.emitters().choices() + samples - 1) / samples;
-    const double start = Rng(stream_of("surface_lighting/emitters"), sample.pixel).next_double() +
-                         std::fmod(double(number) * kGolden, 1.0);
-    Rgb sum(0.0f);
-    for (std::uint64_t k = 0; k < choices; ++k) {
-        const double at = start + double(k) / double(choices);
-        sum += input_.paths.direct().from_emitters(vertex, at - std::floor(at), rng);
-    }
-    return choices > 0 ? sum / float(choices) : sum;
-}
-
-Rgb SurfaceShader::from_emitters(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng) const {
-    const DirectLight& direct = input_.paths.direct();
-    Rgb sum(0.0f);
-    if (!vertex.only_delta())
-        sum += from_chosen_emitters(sample, vertex, rng);
-    const std::optional<PathVertex::Sample> turn = vertex.sample(rng);
-    if (!turn)
-        return sum;
-    const RaySegment segment = direct.segment_along(vertex.leaving(turn->wi));
-    const Rgb seen = direct.at_end(segment, turn->pdf, turn->delta, &vertex);
-    if (seen != Rgb(0.0f))
-        sum += turn->weight * seen * float(direct.lines().transmittance(segment.ray, segment.end, rng));
-    return sum;
-}
 
 std::vector<SurfaceShader::ShadedPoint> SurfaceShader::shaded_points(const std::vector<SurfaceSample>& samples,
                                                                      std::vector<CellSum>& light) const {
@@ -139,7 +100,8 @@ std::vector<BaseLight> SurfaceShader::light_bases(const std::vector<SurfaceSampl
     }
     planar_.light(receivers.receivers(),
                   [&](std::vector<SurfaceReceiver>& at) { input_.medium_lighting->at_surfaces(at); });
-    return BaseLighting(medium, *input_.medium_lighting, panes_, samples_through_panes(), input_.width)
+    return BaseLighting(medium, *input_.medium_lighting, panes_, samples_through_panes(), input_.width,
+                        input_.tolerance)
         .light(bases, receivers);
 }
 
@@ -230,10 +192,8 @@ Rgb SurfaceShader::from_virtual_lights(const SurfaceSample& sample, const PathVe
     const Bsdf others(point.material, point.frame, Lobes::Specular);
     if (point.material.transmission > 0.0f || !has_wide_lobes(point.material))
         return shade_vertex(sample, PathVertex(point, others, at.seen.arriving), Lobes::Specular, shading(at), rng, at);
-    const Rgb colour =
-        glm::max(glm::mix(Rgb(1.0f), point.material.base_colour, point.material.metallic), Rgb(kLeastColour));
-    at.gloss =
-        shared_sample(sample, others, Lobes::Specular, colour, width_of_gloss(point.material.roughness), rng, at);
+    at.gloss = shared_sample(sample, others, Lobes::Specular, colour_of_gloss(point.material),
+                             width_of_gloss(point.material.roughness), rng, at);
     return Rgb(0.0f);
 }
 
@@ -256,34 +216,32 @@ Rgb SurfaceShader::shade_vertex(const SurfaceSample& sample, const PathVertex& v
 // Of some lobes of the sample's surface. `colour`: of them; `lobe`: their width.
 SharedBounce::Sample SurfaceShader::shared_sample(const SurfaceSample& sample, const Bsdf& lobes, Lobes which,
                                                   const Rgb& colour, float lobe, Rng& rng, ShadedPoint& at) const {
-    const SurfacePoint& point = at.seen.point;
     VirtualLights::Shading how = shading(at);
     double distance = std::numeric_limits<double>::infinity();
     how.distance = &distance;
     const Rgb own_residual = std::exchange(at.bound.residual, Rgb(0.0f));
-    const Rgb light = shade_vertex(sample, PathVertex(point, lobes, at.seen.arriving), which, how, rng, at);
+    const Rgb light = shade_vertex(sample, PathVertex(at.seen.point, lobes, at.seen.arriving), which, how, rng, at);
     if (!at.chosen.empty())
         at.chosen.back().colour = colour;
-    const double from_eye = glm::distance(point.position, sample.ray.origin);
-    SharedBounce::Sample out;
-    out.pixel = sample.pixel;
-    out.position = vec3(point.position);
-    out.normal = vec3(point.frame.normal);
-    out.pixel_size = float(input_.pixel_angle * from_eye);
-    out.area = shown_area(point, at.seen.arriving, out.pixel_size);
-    out.lobe = lobe;
-    const Rgb residual = std::exchange(at.bound.residual, own_residual);
-    for (int c = 0; c < 3; ++c)
-        if (colour[c] > 0.0f) {
-            out.light[c] = light[c] / colour[c];
-            out.residual[c] = residual[c] / colour[c];
-        }
-    out.weight = sample.share * colour;
-    out.closeness = float(1.0 / distance);
-    // Along a glossy surface the direction to the eye changes, too.
-    if (lobe < 1.0f && out.closeness > 0.0f)
-        out.closeness += float(1.0 / from_eye);
-    return out;
+    const LightToShare to_share{colour, light, std::exchange(at.bound.residual, own_residual), lobe, distance};
+    return share_light(sample, at.seen.point, at.seen.arriving, input_.pixel_angle, to_share);
+}
+
+// Even light from infinity that the base reflects is left to all pixels, where they share it.
+Rgb SurfaceShader::from_emitters(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng,
+                                 ShadedPoint& at) const {
+    const SurfacePoint& point = at.seen.point;
+    const Bsdf base(point.material, point.frame, Lobes::Base);
+    const Rgb albedo = input_.shared_sky && at.seen.mirrors == 0 ? base.base_albedo(-at.seen.arriving) : Rgb(0.0f);
+    if (albedo == Rgb(0.0f))
+        return emitters_.at(sample, vertex, rng).all();
+    const LightOfEmitters::Seen of_base = emitters_.at(sample, PathVertex(point, base, at.seen.arriving), rng);
+    at.sky = share_light(sample, point, at.seen.arriving, input_.pixel_angle,
+                         {albedo, of_base.even, Rgb(0.0f), 1.0f, of_base.distance});
+    if (!has_specular(point.material))
+        return of_base.other;
+    const Bsdf others(point.material, point.frame, Lobes::Specular);
+    return of_base.other + emitters_.at(sample, PathVertex(point, others, at.seen.arriving), rng).all();
 }
 
 // By the fire's single lights. What the grid holds of the fire then serves panes alone.
@@ -296,18 +254,28 @@ Rgb SurfaceShader::base_from_fire(const SurfaceSample& sample, const ShadedPoint
     return input_.fire->on_surface(vertex, rng);
 }
 
-void SurfaceShader::shade_point(const SurfaceSample& sample, const BaseLight& base, ShadedPoint& at,
-                                CellSum& out) const {
+void SurfaceShader::add_base(const BaseLight& base, const ShadedPoint& at, CellSum& out) const {
+    const Rgb fire = input_.fire ? Rgb(0.0f) : base.from_fire;  // else the single lights' (base_from_fire)
+    if (at.seen.mirrors > 0) {
+        out.at(Cell::SS) += at.seen.throughput * (fire + base.from_smoke + base.through_panes);
+        return;
+    }
+    out.at(Cell::SV) += fire;
+    out.at(Cell::SM) += base.from_smoke;
+    out.at(Cell::SS) += base.through_panes;
+}
+
+// All but what the lighting grids bring to the base.
+void SurfaceShader::shade_point(const SurfaceSample& sample, ShadedPoint& at, CellSum& out) const {
     const SurfacePoint& point = at.seen.point;
     const dvec3 toward_viewer = -at.seen.arriving;
     Rng rng(Stream::Surface, sample.pixel, sample.number);
-    out.at(Cell::SV) += input_.fire ? base_from_fire(sample, at) : base.from_fire;
-    out.at(Cell::SM) += base.from_smoke;
-    out.at(Cell::SS) += base.through_panes;
+    if (input_.fire)
+        out.at(Cell::SV) += base_from_fire(sample, at);
     reflect_scattered(point, toward_viewer, rng, at.ray_rng, out);
     const PathVertex vertex(point, at.seen.arriving);
     if (input_.needed.contains(Cell::SA))
-        out.at(Cell::SA) += from_emitters(sample, vertex, rng);
+        out.at(Cell::SA) += from_emitters(sample, vertex, rng, at);
     if (!input_.needed.contains(Cell::SS))
         return;
     if (input_.virtual_lights) {
@@ -322,25 +290,47 @@ void SurfaceShader::shade_point(const SurfaceSample& sample, const BaseLight& ba
 void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) {
     std::vector<ShadedPoint> points = shaded_points(samples, light);
     const std::vector<BaseLight> bases = light_bases(samples, points);
-    parallel_for(
-        samples.size(),
-        [&](std::size_t i) {
-            const BehindMirrors& seen = points[i].seen;
-            if (seen.lost)
-                return;
-            if (seen.mirrors == 0) {
-                shade_point(samples[i], bases[i], points[i], light[i]);
-                return;
-            }
-            CellSum there;
-            shade_point(samples[i], bases[i], points[i], there);
-            for (const Rgb& cell : there)
-                light[i].at(Cell::SS) += seen.throughput * cell;
-        },
-        kSamplesAtOnce);
+    std::vector<float> even(samples.size()), sampled(samples.size(), 0.0f);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (!points[i].seen.lost)
+            add_base(bases[i], points[i], light[i]);
+        even[i] = luminance(light[i]);
+    }
+    std::vector<CellSum> found(samples.size());
+    const auto shade_some = [&](const std::vector<std::size_t>& some) {
+        parallel_for(
+            some.size(),
+            [&](std::size_t k) {
+                const std::size_t i = some[k];
+                if (!points[i].seen.lost)
+                    shade_sample(samples[i], points[i], found[i]);
+                sampled[i] = luminance(found[i]);
+            },
+            kSamplesAtOnce);
+    };
+    SurfaceRounds rounds(samples, input_.width, std::size_t(input_.samples), input_.tolerance);
+    shade_some(rounds.first());
+    shade_some(rounds.second(even, sampled));
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        points[i].stands_for = rounds.stands_for(i);
+        light[i].add(found[i], Rgb(points[i].stands_for));
+    }
     for (std::size_t i = 0; input_.lengths && i < samples.size(); ++i)
-        input_.lengths->add(samples[i].pixel, points[i].vertices);
+        if (points[i].stands_for > 0.0f)
+            input_.lengths->add(samples[i].pixel, points[i].vertices);
     hand_over(samples, points, light);
+}
+
+// Behind mirrors all of it is light between surfaces.
+void SurfaceShader::shade_sample(const SurfaceSample& sample, ShadedPoint& at, CellSum& light) const {
+    if (at.seen.mirrors == 0) {
+        shade_point(sample, at, light);
+        return;
+    }
+    CellSum there;
+    shade_point(sample, at, there);
+    for (const Rgb& cell : there)
+        light.at(Cell::SS) += at.seen.throughput * cell;
 }
 
 // With the light of one sample itself where all pixels share: its mean is that of theirs.
@@ -355,7 +345,7 @@ ScreenSpaceCompensation::Sample SurfaceShader::compensated_sample(const SurfaceS
     out.area = shown_area(point, at.seen.arriving, input_.pixel_angle * from_eye);
     for (const Rgb& cell : light)
         out.light += cell;
-    for (const std::optional<SharedBounce::Sample>& s : {at.base, at.gloss})
+    for (const std::optional<SharedBounce::Sample>& s : {at.base, at.gloss, at.sky})
         if (s)
             out.light += s->light * s->weight / sample.share;
     if (has_base(point.material))
@@ -370,15 +360,20 @@ void SurfaceShader::hand_over(const std::vector<SurfaceSample>& samples, std::ve
     std::vector<LightReuse::Sample> chosen;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         ShadedPoint& at = points[i];
-        if (!(samples[i].share > 0.0f))
+        const float share = samples[i].share * at.stands_for;
+        if (!(share > 0.0f))
             continue;
         if (input_.compensation && !at.seen.lost && at.seen.mirrors == 0) {
             const AddedCpuTime time(input_.bound ? &input_.bound->costs().compensation_seconds : nullptr);
             input_.compensation->add(compensated_sample(samples[i], at, light[i]));
         }
         if (input_.bound)
-            input_.bound->add(samples[i].pixel, at.bound, samples[i].share * at.seen.throughput);
+            input_.bound->add(samples[i].pixel, at.bound, share * at.seen.throughput);
+        for (std::optional<SharedBounce::Sample>* s : {&at.base, &at.gloss, &at.sky})
+            if (*s)
+                (*s)->weight *= at.stands_for;
         for (LightReuse::Sample& c : at.chosen) {
+            c.share = share;
             c.shared.swap(c.lobes == Lobes::Base ? at.base : at.gloss);
             chosen.push_back(std::move(c));
         }
@@ -388,6 +383,8 @@ void SurfaceShader::hand_over(const std::vector<SurfaceSample>& samples, std::ve
                 if (input_.bound)
                     input_.bound->add_residual(samples[i].pixel, s->residual * s->weight);
             }
+        if (at.sky && !input_.shared_sky->add(*at.sky))
+            light[i].at(Cell::SA) += at.sky->light * at.sky->weight / samples[i].share;
     }
     if (input_.reuse)
         input_.reuse->add(std::move(chosen));

@@ -7,7 +7,7 @@
 // base and also shine along those rays; ray lights and rays share the glossy reflection of multiple scattering
 // (gloss_split.h). The grid gives the glossy reflection of single scattering without noise.
 //
-// SA: a point on one of the emitters, and a ray sampled from the BSDF. SS: the virtual lights or, without them, paths.
+// SA: light_of_emitters.h. SS: the virtual lights or, without them, paths.
 // Behind mirrors and clear glass the same estimators are used at the first surface that scatters (mirrors.h), and all
 // of that light is SS. Light of fire and smoke that comes straight through panes (panes.h) is SS, too; base and other
 // lobes sample it by the same two techniques.
@@ -26,11 +26,13 @@
 #include "medium_lighting/medium_lighting.h"
 #include "reference/path_tracer.h"
 #include "surface_lighting/bound_account.h"
+#include "surface_lighting/light_of_emitters.h"
 #include "surface_lighting/light_reuse.h"
 #include "surface_lighting/mirrors.h"
 #include "surface_lighting/path_lengths.h"
 #include "surface_lighting/screen_space_compensation.h"
 #include "surface_lighting/shared_bounce.h"
+#include "surface_lighting/surface_rounds.h"
 #include "virtual_lights/virtual_lights.h"
 
 namespace brisance {
@@ -46,10 +48,13 @@ struct SurfaceLightingInput {
     float emitters_by_rays = 0.0f;                    // share of MA along rays (medium_along_ray.h)
     int parts = 2;                                    // that of PictureSettings
     int width = 0;                                    // of the picture, in pixels
+    float base_tolerance = 0.0f;                      // that of BaseLighting
+    float tolerance = 0.0f;                           // that of SurfaceRounds
     int samples = 1;                                  // rays of a pixel
     PathLengths* lengths = nullptr;                   // counts the paths of virtual lights; null: not counted
     SharedBounce* shared = nullptr;                   // gets SS of bases and rough lobes; null: samples keep it
-    double pixel_angle = 0.0;                         // [rad], for `shared` and `compensation`
+    SharedBounce* shared_sky = nullptr;               // gets SA of bases from light at infinity that is even
+    double pixel_angle = 0.0;                         // [rad], for what is shared and `compensation`
     LightReuse* reuse = nullptr;                      // gets what samples chose of the lights; null: they keep it
     // Gets what all samples show; null: the bound's loss is not looked for on the screen. Not beside `reuse`.
     ScreenSpaceCompensation* compensation = nullptr;
@@ -71,7 +76,10 @@ private:
                                            std::vector<CellSum>& light) const;
     std::vector<BaseLight> light_bases(const std::vector<SurfaceSample>& samples,
                                        const std::vector<ShadedPoint>& points);
-    void shade_point(const SurfaceSample& sample, const BaseLight& base, ShadedPoint& at, CellSum& light) const;
+    void add_base(const BaseLight& base, const ShadedPoint& at, CellSum& light) const;
+    void shade_sample(const SurfaceSample& sample, ShadedPoint& at, CellSum& light) const;
+    void shade_point(const SurfaceSample& sample, ShadedPoint& at, CellSum& light) const;
+    Rgb from_emitters(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng, ShadedPoint& at) const;
     Rgb base_from_fire(const SurfaceSample& sample, const ShadedPoint& at) const;
     Rgb from_virtual_lights(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng, ShadedPoint& at) const;
     SharedBounce::Sample shared_sample(const SurfaceSample& sample, const Bsdf& lobes, Lobes which, const Rgb& colour,
@@ -83,8 +91,6 @@ private:
                    std::vector<CellSum>& light) const;
     ScreenSpaceCompensation::Sample compensated_sample(const SurfaceSample& sample, const ShadedPoint& at,
                                                        const CellSum& light) const;
-    Rgb from_emitters(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng) const;
-    Rgb from_chosen_emitters(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng) const;
     void reflect_scattered(const SurfacePoint& point, const dvec3& toward_viewer, Rng& rng, Rng& ray_rng,
                            CellSum& light) const;
     void reflect_medium(const SurfacePoint& point, const dvec3& toward_viewer, const GlossyLobes& lobes, Rng& rng,
@@ -101,6 +107,7 @@ private:
     SurfaceLightingInput input_;
     const Surroundings& surroundings_;
     MediumAlongRay medium_;
+    LightOfEmitters emitters_;
     Panes panes_;
     Mirrors mirrors_;
     PlanarLight planar_;

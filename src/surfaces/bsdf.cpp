@@ -289,7 +289,10 @@ double Bsdf::density(const View& view, const dvec3& wi) const {
 }
 
 Rgb Bsdf::evaluate(const dvec3& wo, const dvec3& wi, Transport transport) const {
-    const View view = view_from(wo);
+    return evaluate(view_from(wo), wi, transport);
+}
+
+Rgb Bsdf::evaluate(const View& view, const dvec3& wi, Transport transport) const {
     dvec3 there = frame_.local_from_world(wi);
     if (view.side == 1)
         there.z = -there.z;

@@ -55,6 +55,9 @@ public:
     // BSDF times |cosine of wi to the normal| [1/sr], without delta lobes.
     Rgb evaluate(const dvec3& wo, const dvec3& wi, Transport transport = Transport::Radiance) const;
 
+    // evaluate() for one `wo`.
+    class Viewed;
+
     // Density [1/sr] by which sample() draws wi, without delta lobes. Over the sphere it integrates to 1 less the
     // probabilities of delta lobes and of drawing nothing.
     double pdf(const dvec3& wo, const dvec3& wi) const;
@@ -100,6 +103,7 @@ private:
     Rgb reflected(const View& view, const dvec3& wi) const;
     Rgb refracted(const View& view, const dvec3& wi) const;
     Rgb value(const View& view, const dvec3& wi) const;
+    Rgb evaluate(const View& view, const dvec3& wi, Transport transport) const;
     double density(const View& view, const dvec3& wi) const;
 
     std::optional<dvec3> draw_facet(const View& view, const dvec3& u, double choice) const;
@@ -122,6 +126,20 @@ private:
     double lost_both_mean_[2] = {0.0, 0.0};
     double crossing_[2] = {0.0, 0.0};  // share of View::lost_both that crosses to the other side
     float base_share_mean_ = 1.0f;
+};
+
+// What depends on `wo` alone is computed once, for many `wi`.
+class Bsdf::Viewed {
+public:
+    // Keeps a reference.
+    Viewed(const Bsdf& bsdf, const dvec3& wo) : bsdf_(bsdf), view_(bsdf.view_from(wo)) {}
+    Rgb evaluate(const dvec3& wi, Transport transport = Transport::Radiance) const {
+        return bsdf_.evaluate(view_, wi, transport);
+    }
+
+private:
+    const Bsdf& bsdf_;
+    View view_;
 };
 
 }  // namespace brisance

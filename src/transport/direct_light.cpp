@@ -65,7 +65,7 @@ float DirectLight::weight_of_sample(float fire_lines, const Ray& ray, double pdf
     return static_cast<float>(pdf / (fire_lines * fire_.pdf(ray) + pdf));
 }
 
-Rgb DirectLight::from_emitters(const PathVertex& vertex, double choice, Rng& rng) const {
+Rgb DirectLight::from_emitters(const PathVertex& vertex, double choice, Rng& rng, ChosenEmitter* chosen) const {
     const std::optional<EmitterSample> light = surroundings_->emitters().sample(vertex.lit(), choice, rng);
     if (!light)
         return Rgb(0.0f);
@@ -77,6 +77,8 @@ Rgb DirectLight::from_emitters(const PathVertex& vertex, double choice, Rng& rng
     const Ray ray = near ? vertex.toward(light->end, end) : vertex.leaving(light->direction);
     if (surroundings_->intersector().occluded(ray, end))
         return Rgb(0.0f);
+    if (chosen)
+        *chosen = {!near && light->pdf > 0.0, light->direction};
     const double seen = lines_.transmittance(ray, end, rng);
     const double weight = light->pdf > 0.0 ? light->pdf / (light->pdf + scattered.pdf) : 1.0;
     return scattered.value * light->weight * float(seen * weight);

@@ -48,8 +48,13 @@ public:
     Rgb from_emitters(const PathVertex& vertex, Rng& rng) const {
         return from_emitters(vertex, rng.next_double(), rng);
     }
-    // The same, where `choice` in [0, 1) chooses the emitter; it may come from a stratified sequence.
-    Rgb from_emitters(const PathVertex& vertex, double choice, Rng& rng) const;
+    // The same, where `choice` in [0, 1) chooses the emitter; it may come from a stratified sequence. `chosen`: null,
+    // or gets where it is, if there is light from it.
+    struct ChosenEmitter {
+        bool in_background = false;  // an environment, or a sun with a disc
+        dvec3 direction{0.0};        // unit, toward it
+    };
+    Rgb from_emitters(const PathVertex& vertex, double choice, Rng& rng, ChosenEmitter* chosen = nullptr) const;
     // Radiance [W/(m^2 sr)] that the surface at the segment's end, or the background, emits, weighted against
     // from_emitters(). `pdf` and `delta`: of the direction; `from`: the vertex that sampled it, null: the camera.
     Rgb at_end(const RaySegment& segment, double pdf, bool delta, const PathVertex* from) const;

@@ -169,5 +169,28 @@ TEST(Emitters, DarkLightsAreNoLights) {
     EXPECT_FALSE(set.emitters().emit({}, 1.0, rng));
 }
 
+// A constant sky is even everywhere. Of a bright spot in it only the part up to some times the mean is; a sun with a
+// disc is not, and one without lies in no background.
+TEST(Emitters, BrightSpotsOfTheSkyAreNotEven) {
+    LightSettings sky = lamp(LightKind::Environment, {});
+    const Surroundings constant(Scene{}, {sky});
+    EXPECT_TRUE(constant.emitters().has_even_background());
+    EXPECT_EQ(constant.emitters().even_share(glm::normalize(dvec3(0.2, 0.5, 0.7))), 1.0f);
+
+    LightSettings sun = lamp(LightKind::Sun, {});
+    sun.angle_degrees = 1.0;
+    const Surroundings only_sun(Scene{}, {sun});
+    EXPECT_FALSE(only_sun.emitters().has_even_background());
+    EXPECT_EQ(only_sun.emitters().even_share({0, 0, 1}), 0.0f);
+
+    const Surroundings both(Scene{}, {sky, sun});
+    const float mean = luminance(sky.power);
+    EXPECT_EQ(both.emitters().even_share({1, 0, 0}), 1.0f);
+    const float there = luminance(both.emitters().background({0, 0, 1})), share = both.emitters().even_share({0, 0, 1});
+    EXPECT_GT(there, 100.0f * mean);
+    EXPECT_LT(share * there, 8.0f * mean);
+    EXPECT_GT(share * there, mean);
+}
+
 }  // namespace
 }  // namespace brisance

@@ -1,0 +1,47 @@
+#include "surface_lighting/light_of_emitters.h"
+
+#include <cmath>
+
+namespace brisance {
+
+namespace {
+
+constexpr Stream kChoices = stream_of("surface_lighting/emitters");
+
+}  // namespace
+
+// The samples of a pixel divide the emitters among themselves: a sequence of evenly spread choices runs through them
+// (golden ratio), shifted at random from pixel to pixel. A sample makes several choices where a pixel has fewer samples
+// than there are kinds of light to choose from.
+void LightOfEmitters::choose(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng, Seen& seen) const {
+    constexpr double kGolden = 0.6180339887498949;
+    const auto samples = static_cast<std::uint64_t>(samples_);
+    const std::uint64_t number = (sample.number >> 32) * samples + (sample.number & 0xffffffffu);
+    const std::uint64_t choices = (direct_.surroundings()->emitters().choices() + samples - 1) / samples;
+    const double start = Rng(kChoices, sample.pixel).next_double() + std::fmod(double(number) * kGolden, 1.0);
+    for (std::uint64_t k = 0; k < choices; ++k) {
+        const double at = start + double(k) / double(choices);
+        DirectLight::ChosenEmitter chosen;
+        const Rgb light = direct_.from_emitters(vertex, at - std::floor(at), rng, &chosen);
+        if (light != Rgb(0.0f))
+            seen.add(light / float(choices), chosen.in_background ? even_share(chosen.direction) : 0.0f);
+    }
+}
+
+LightOfEmitters::Seen LightOfEmitters::at(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng) const {
+    Seen seen;
+    if (!vertex.only_delta())
+        choose(sample, vertex, rng, seen);
+    const std::optional<PathVertex::Sample> turn = vertex.sample(rng);
+    if (!turn)
+        return seen;
+    const RaySegment segment = direct_.segment_along(vertex.leaving(turn->wi));
+    seen.distance = segment.end;
+    const Rgb light = direct_.at_end(segment, turn->pdf, turn->delta, &vertex);
+    if (light != Rgb(0.0f))
+        seen.add(turn->weight * light * float(direct_.lines().transmittance(segment.ray, segment.end, rng)),
+                 segment.hit ? 0.0f : even_share(turn->wi));
+    return seen;
+}
+
+}  // namespace brisance

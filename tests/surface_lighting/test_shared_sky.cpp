@@ -1,0 +1,94 @@
+// Light of the sky on matt surfaces, which pixels share: the same energy, less noise, and shadows of the sun as sharp.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fixtures/media.h"
+#include "fixtures/sets.h"
+#include "render/render_frame.h"
+
+namespace brisance {
+namespace {
+
+using namespace testing;
+
+// A floor and a wall that hides a part of the sky from it. `sun`: besides, from the side; its disc is 2 degrees wide.
+Surroundings yard(const Medium& medium, bool sky, bool sun) {
+    Scene scene;
+    scene.origin = medium.world_of_local(vec3(0.0f));
+    add_quad(scene, {-6, -6, -1}, {12, 0, 0}, {0, 12, 0}, lambert(0.6f));
+    add_quad(scene, {-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, lambert(0.6f));
+    std::vector<LightSettings> lights(2);
+    lights[0].kind = LightKind::Environment;
+    lights[0].power = Rgb(1.0f);
+    lights[1].kind = LightKind::Sun;
+    lights[1].direction = {0.3, 1.0, -1.0};
+    lights[1].angle_degrees = 2.0;
+    lights[1].power = Rgb(2.0f);
+    if (!sun)
+        lights.pop_back();
+    if (!sky)
+        lights.erase(lights.begin());
+    return Surroundings(std::move(scene), std::move(lights));
+}
+
+Image picture(const Surroundings& set, double radius, RenderMethod method = RenderMethod::LightingGrid) {
+    Shot shot;
+    shot.method = method;
+    shot.camera_given = true;
+    shot.camera.eye = {0.0, -9.0, 4.0};
+    shot.camera.target = {0.0, 0.5, -0.5};
+    shot.camera.vertical_fov_degrees = 40.0;
+    shot.camera.width = 48;
+    shot.camera.height = 36;
+    shot.tracing.samples = 400;
+    shot.certify.belief = 0.0;  // nobody looks at it
+    shot.virtual_lights.count = 500;
+    shot.virtual_lights.photons = 50000;
+    shot.virtual_lights.sharing_radius = radius;
+    Recipe thin = glowing_ball(8, 0.02f);
+    thin.settings.smoke.albedo = Rgb(0.8f);
+    Progress silent;
+    return render_medium(shot, make_medium(thin), silent, &set).image;
+}
+
+struct Compared {
+    double bias, rms;  // over the mean
+};
+
+Compared compare(const Image& ours, const Image& truth) {
+    const std::vector<float>&a = ours.layer("SA").pixels, &b = truth.layer("SA").pixels;
+    double bias = 0.0, squares = 0.0, sum = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        sum += b[i];
+        bias += double(a[i]) - b[i];
+        squares += (double(a[i]) - b[i]) * (double(a[i]) - b[i]);
+    }
+    return {bias / sum, std::sqrt(squares / double(a.size())) / (sum / double(a.size()))};
+}
+
+TEST(SharedSky, HasTheEnergyOfPathsAndLessNoiseThanPixelsAlone) {
+    const Medium medium = make_medium(glowing_ball(8, 0.02f));
+    const Surroundings set = yard(medium, true, false);
+    const Image truth = picture(set, 0.0, RenderMethod::Path);
+    const Compared alone = compare(picture(set, 0.0), truth), shared = compare(picture(set, 0.2), truth);
+    std::printf("alone %+.2f %%, %.2f %%; shared %+.2f %%, %.2f %%\n", 100.0 * alone.bias, 100.0 * alone.rms,
+                100.0 * shared.bias, 100.0 * shared.rms);
+    EXPECT_NEAR(shared.bias, 0.0, 0.01);
+    EXPECT_LT(shared.rms, 0.6 * alone.rms);
+}
+
+TEST(SharedSky, LeavesTheSunToEachPixel) {
+    const Medium medium = make_medium(glowing_ball(8, 0.02f));
+    const Surroundings sun = yard(medium, false, true);
+    EXPECT_EQ(picture(sun, 0.0).layer("SA").pixels, picture(sun, 0.2).layer("SA").pixels);
+    // With a sky about, what the sun adds to the picture is the same with and without sharing, but for noise.
+    const Surroundings both = yard(medium, true, true);
+    const Compared shared = compare(picture(both, 0.2), picture(both, 0.0, RenderMethod::Path));
+    std::printf("sun and sky: %+.2f %%, %.2f %%\n", 100.0 * shared.bias, 100.0 * shared.rms);
+    EXPECT_NEAR(shared.bias, 0.0, 0.01);
+    EXPECT_LT(shared.rms, 0.08);
+}
+
+}  // namespace
+}  // namespace brisance
