@@ -50,8 +50,8 @@ public:
     // The fire's lights, per node [W/sr]; their sum is that of the input medium's.
     std::vector<Rgb> fire_lights() const;
 
-    // How likely light of each node with an intensity is to leave the medium (gathering/escape_probability.h). Remembered
-    // for other lights at the same nodes; not for several threads.
+    // How likely light of each node with an intensity is to leave the medium (gathering/escape_probability.h).
+    // Remembered for other lights at the same nodes; not for several threads.
     NodeWeights escape_likelihood_of(const std::vector<Rgb>& intensity) const;
 
     // Albedo times the radiance that scatters toward the camera, per node of the input medium [W/(m^2 sr)].

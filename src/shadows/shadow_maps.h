@@ -48,9 +48,9 @@ struct ShadowMapLayout {
     std::size_t bytes_per_light() const { return stride() * 2; }
 };
 
-// The number of parallel rays for each texel of the maps of a level's lights. The variance of a sum of lights is least for
-// a given number of rays where that number is in proportion to what each light sends: most lights on the skin of dense
-// smoke send little. Without GridLevel::escaping, all have the same.
+// The number of parallel rays for each texel of the maps of a level's lights. The variance of a sum of lights is least
+// for a given number of rays where that number is in proportion to what each light sends: most lights on the skin of
+// dense smoke send little. Without GridLevel::escaping, all have the same.
 class ParallelRays {
 public:
     static constexpr int kLeast = 2, kTypical = 16, kSame = 8;
