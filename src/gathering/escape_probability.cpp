@@ -39,7 +39,12 @@ float mean_transmittance_outside(const Medium& medium, const PointDepths& depths
     return sum;
 }
 
-NodeWeights escape_likelihood(const Medium& medium, const PointDepths& depths, const std::vector<Rgb>& intensity) {
+NodeWeights escape_likelihood(const Medium& medium, const PointDepths& depths, const std::vector<Rgb>& intensity,
+                              NodeWeights* known) {
+    constexpr float kUnknown = -1.0f;
+    NodeWeights own;
+    NodeWeights& all = known ? *known : own;
+    all.resize(intensity.size(), kUnknown);
     NodeWeights likelihood(intensity.size(), 0.0f);
     parallel_for(
         intensity.size() / BrickLattice::kNodes,
@@ -48,9 +53,11 @@ NodeWeights escape_likelihood(const Medium& medium, const PointDepths& depths, c
                 const std::size_t i = b * BrickLattice::kNodes + n;
                 if (!(luminance(intensity[i]) > 0.0f))
                     continue;
-                likelihood[i] = mean_transmittance_outside(
-                    medium, depths,
-                    medium.local_of_node(medium.lattice.first_node(b) + BrickLattice::node_in_brick(n)));
+                if (all[i] == kUnknown)
+                    all[i] = mean_transmittance_outside(
+                        medium, depths,
+                        medium.local_of_node(medium.lattice.first_node(b) + BrickLattice::node_in_brick(n)));
+                likelihood[i] = all[i];
             }
         },
         4);

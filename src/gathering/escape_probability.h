@@ -12,8 +12,10 @@ namespace brisance {
 float mean_transmittance_outside(const Medium& medium, const PointDepths& depths, const vec3& from);
 
 // Returns mean_transmittance_outside() for every node with an intensity above zero, and 0 for all others. It is an
-// importance, not an estimate.
-NodeWeights escape_likelihood(const Medium& medium, const PointDepths& depths, const std::vector<Rgb>& intensity);
+// importance, not an estimate. `known`, where given, remembers it from one call to the next for other intensities in
+// the same medium; it is empty at first.
+NodeWeights escape_likelihood(const Medium& medium, const PointDepths& depths, const std::vector<Rgb>& intensity,
+                              NodeWeights* known = nullptr);
 
 // Sampling density for escaping light: the luminance of the intensity times the likelihood over its mean. The share
 // FootprintPicker::kLeastShare does not follow the likelihood. The densities sum to the sum of the luminances.

@@ -22,12 +22,18 @@ namespace brisance {
 struct LevelRange {
     explicit LevelRange(const FarLights& l)
         : inner(l.bottom ? -1.0f : 0.25f * l.radius * l.radius), outer(l.top ? 1e38f : 4.0f * l.radius * l.radius) {}
+    // Whether the range includes the distance between two points, give or take rounding.
+    bool includes(const vec3& a, const vec3& b) const {
+        const float square = glm::dot(a - b, a - b);
+        return square * (1.0f - kRounding) < outer && square * (1.0f + kRounding) > inner;
+    }
     // Whether the range includes the distance from `p` to some point of the box.
     bool meets(const Box& box, const vec3& p) const {
         const vec3 nearest = glm::max(glm::max(box.low - p, p - box.high), vec3(0.0f));
         const vec3 farthest = glm::max(glm::abs(box.low - p), glm::abs(box.high - p));
         return glm::dot(nearest, nearest) < outer && glm::dot(farthest, farthest) > inner;
     }
+    static constexpr float kRounding = 1e-4f;
     float inner, outer;
 };
 
@@ -300,9 +306,14 @@ std::uint64_t gather_far(const FarLights& lights, const Receivers& receivers, co
 
 bool may_reach(const FarLights& lights, std::uint32_t light, const Receivers& receivers, const ReceiverBlock& block) {
     const LevelRange range(lights);
-    for (std::size_t g = block.first_group; g < block.first_group + block.group_count; ++g)
-        if (range.meets(receivers.group_bounds[g], lights.position[light]))
-            return true;
+    const vec3& p = lights.position[light];
+    for (std::size_t g = block.first_group; g < block.first_group + block.group_count; ++g) {
+        if (!range.meets(receivers.group_bounds[g], p))
+            continue;
+        for (std::size_t i = g * Receivers::kGroup; i < (g + 1) * Receivers::kGroup; ++i)
+            if (range.includes({receivers.x[i], receivers.y[i], receivers.z[i]}, p))
+                return true;
+    }
     return false;
 }
 

@@ -50,8 +50,8 @@ struct FarOutput {
 std::uint64_t gather_far(const FarLights& lights, const Receivers& receivers, const ReceiverBlock& block,
                          const FarOutput& output);
 
-// Whether the distance from the light to some receiver of the block may lie in the range in which the light's level is
-// evaluated.
+// Whether the distance from the light to some receiver of the block lies in the range in which the light's level is
+// evaluated. Tests receivers one by one: boxes around far ones are wide.
 bool may_reach(const FarLights& lights, std::uint32_t light, const Receivers& receivers, const ReceiverBlock& block);
 
 // Name of the instruction set in use, for reports.

@@ -11,6 +11,19 @@
 
 #include "medium/lattice/extinction_sampler-inl.h"
 
+#ifndef BRISANCE_GATHERING_POINT_RAYS_
+#define BRISANCE_GATHERING_POINT_RAYS_
+namespace brisance {
+
+// Rays in planar arrays: origin + t * (x, y, z) over t in [begin, end], in nodes; `metres` long from t = 0 to 1.
+struct PointRays {
+    alignas(64) float x[PointDepths::kRays], y[PointDepths::kRays], z[PointDepths::kRays];
+    alignas(64) float begin[PointDepths::kRays], end[PointDepths::kRays], metres[PointDepths::kRays];
+};
+
+}  // namespace brisance
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace brisance {
 namespace HWY_NAMESPACE {
@@ -18,23 +31,25 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using D = hn::CappedTag<float, PointDepths::kRays>;
 
-// Integrates rays in planar arrays: origin + t * segment over t in [begin, 1], all in nodes. Sums the extinction at the
-// middles of `steps` equal steps, times the fraction of the segment that a step covers.
-void sum_extinction(const PackedExtinction& level, const vec3& origin, const float* segment_x, const float* segment_y,
-                    const float* segment_z, const float* begin, int steps, float* sum) {
+// Integrates the extinction along rays at the middles of `steps` equal steps, to optical depths. Ends early where all
+// rays of a vector are opaque.
+void sum_extinction(const PackedExtinction& level, const vec3& origin, const PointRays& rays, int steps, float* depth) {
     const D d;
     for (int k = 0; k < PointDepths::kRays; k += static_cast<int>(hn::Lanes(d))) {
-        const auto x = hn::LoadU(d, segment_x + k), y = hn::LoadU(d, segment_y + k), z = hn::LoadU(d, segment_z + k);
-        const auto first = hn::LoadU(d, begin + k);
-        const auto step = hn::Mul(hn::Sub(hn::Set(d, 1.0f), first), hn::Set(d, 1.0f / float(steps)));
+        const auto x = hn::LoadU(d, rays.x + k), y = hn::LoadU(d, rays.y + k), z = hn::LoadU(d, rays.z + k);
+        const auto first = hn::LoadU(d, rays.begin + k);
+        const auto step = hn::Mul(hn::Sub(hn::LoadU(d, rays.end + k), first), hn::Set(d, 1.0f / float(steps)));
+        const auto metres = hn::Mul(step, hn::LoadU(d, rays.metres + k));
         auto total = hn::Zero(d);
         for (int s = 0; s < steps; ++s) {
             const auto t = hn::MulAdd(step, hn::Set(d, float(s) + 0.5f), first);
             total = hn::Add(total, sample_extinction(d, level, hn::MulAdd(t, x, hn::Set(d, origin.x)),
                                                      hn::MulAdd(t, y, hn::Set(d, origin.y)),
                                                      hn::MulAdd(t, z, hn::Set(d, origin.z))));
+            if (s % 4 == 3 && hn::AllTrue(d, hn::Gt(hn::Mul(total, metres), hn::Set(d, PointDepths::kOpaque))))
+                break;
         }
-        hn::StoreU(hn::Mul(total, step), d, sum + k);
+        hn::StoreU(hn::Mul(total, metres), d, depth + k);
     }
 }
 
@@ -62,23 +77,27 @@ PointDepths::PointDepths(const ExtinctionPyramid& pyramid, int level) {
 
 void PointDepths::between(const vec3& from, const vec3* to, float* depth) const {
     const vec3 origin = nodes_from_local_ * from;
-    alignas(64) float x[kRays], y[kRays], z[kRays], begin[kRays];
+    PointRays rays;
     float longest = 0.0f;
     for (int k = 0; k < kRays; ++k) {
         const vec3 segment = nodes_from_local_ * to[k] - origin;
-        float enter = 0.0f;
+        float enter = 0.0f, leave = 1.0f;
         for (int a = 0; a < 3; ++a)
-            if (segment[a] != 0.0f)
-                enter = std::max(enter, ((segment[a] > 0.0f ? low_[a] : high_[a]) - origin[a]) / segment[a]);
-        enter = std::min(enter, 1.0f);
-        x[k] = segment.x, y[k] = segment.y, z[k] = segment.z, begin[k] = enter;
-        longest = std::max(longest, (1.0f - enter) * glm::length(segment));
+            if (segment[a] != 0.0f) {
+                const float low = (low_[a] - origin[a]) / segment[a], high = (high_[a] - origin[a]) / segment[a];
+                enter = std::max(enter, std::min(low, high));
+                leave = std::min(leave, std::max(low, high));
+            }
+        leave = std::max(leave, 0.0f);
+        enter = std::min(enter, leave);
+        rays.x[k] = segment.x, rays.y[k] = segment.y, rays.z[k] = segment.z;
+        rays.begin[k] = enter, rays.end[k] = leave;
+        rays.metres[k] = glm::distance(from, to[k]);
+        longest = std::max(longest, (leave - enter) * glm::length(segment));
     }
     // No ray that matters crosses more nodes than this, but a point far away could demand more steps.
     const int steps = 1 + static_cast<int>(std::min(longest, 4096.0f));
-    HWY_DYNAMIC_DISPATCH(sum_extinction)(extinction_, origin, x, y, z, begin, steps, depth);
-    for (int k = 0; k < kRays; ++k)
-        depth[k] *= glm::distance(from, to[k]);
+    HWY_DYNAMIC_DISPATCH(sum_extinction)(extinction_, origin, rays, steps, depth);
 }
 
 }  // namespace brisance

@@ -13,7 +13,9 @@ public:
     // a reference.
     PointDepths(const ExtinctionPyramid& pyramid, int level);
 
-    // Computes the depths from `from` to to[0 ... 15], local [m]. Segments outside of the medium cost nothing.
+    // Computes the depths from `from` to to[0 ... 15], local [m]. Segments outside of the medium cost nothing. Where
+    // neighbouring ones are all opaque, depths are at least kOpaque, but may be too small.
+    static constexpr float kOpaque = 30.0f;
     void between(const vec3& from, const vec3* to, float* depth) const;
 
 private:

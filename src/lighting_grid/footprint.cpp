@@ -24,16 +24,18 @@ double FootprintPicker::search_brick(int brick, const ivec3& centre, double pass
     const int h = 1 << level_;
     const ivec3 first = medium_.lattice.first_node(brick);
     const float* weights = &weights_[std::size_t(brick) * BrickLattice::kNodes];
-    for (int n = 0; n < BrickLattice::kNodes; ++n) {
-        if (!(weights[n] > 0.0f))
-            continue;
-        const ivec3 node = first + BrickLattice::node_in_brick(n);
-        const ivec3 rest = h - glm::abs(node - centre);
-        if (std::min({rest.x, rest.y, rest.z}) <= 0)
-            continue;
-        passed += double(weights[n]) * (double(rest.x) / h) * (double(rest.y) / h) * (double(rest.z) / h);
-        found_.push_back({node, std::size_t(brick) * BrickLattice::kNodes + n, passed});
-    }
+    const ivec3 low = glm::max(centre - h + 1 - first, ivec3(0));
+    const ivec3 high = glm::min(centre + h - 1 - first, ivec3(BrickLattice::kSize - 1));
+    for (int x = low.x; x <= high.x; ++x)
+        for (int y = low.y; y <= high.y; ++y)
+            for (int z = low.z; z <= high.z; ++z) {
+                const int n = (x * BrickLattice::kSize + y) * BrickLattice::kSize + z;
+                if (!(weights[n] > 0.0f))
+                    continue;
+                const ivec3 node = first + ivec3(x, y, z), rest = h - glm::abs(node - centre);
+                passed += double(weights[n]) * (double(rest.x) / h) * (double(rest.y) / h) * (double(rest.z) / h);
+                found_.push_back({node, std::size_t(brick) * BrickLattice::kNodes + n, passed});
+            }
     return passed;
 }
 

@@ -123,7 +123,8 @@ void GridLevel::index_rows() {
 
 std::uint64_t GridLevel::bytes() const {
     return size() * (sizeof(ivec3) + sizeof(vec3) + sizeof(Rgb) + 4) + row_begin.size() * 4 + lattice.bytes() +
-           part.size() * sizeof(vec3) + first_part.size() * 4 + ball.size() * sizeof(LightBall);
+           part.size() * sizeof(vec3) + first_part.size() * 4 + ball.size() * sizeof(LightBall) +
+           escaping.size() * sizeof(float);
 }
 
 void GridLevel::find_in_box(const ivec3& low, const ivec3& high, std::vector<std::uint32_t>& found) const {

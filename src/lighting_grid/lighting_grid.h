@@ -34,6 +34,10 @@ struct GridLevel {
     // Degrees 1 and 2 of a directional intensity, 24 per light ([3 * m + colour], sh.h); empty: isotropic.
     std::vector<float> directional;
 
+    // Luminance of what each light sends to receivers outside of dense smoke (thin_media/exterior_hierarchy.h); or
+    // empty.
+    std::vector<float> escaping;
+
     std::vector<LightBall> ball;  // of each light; empty: that of a voxel of the level
 
     // For lights outside of the medium: light i represents the positions part[first_part[i] ... first_part[i + 1]),

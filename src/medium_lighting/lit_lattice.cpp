@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/parallel.h"
+#include "gathering/escape_probability.h"
 #include "lighting_grid/voxel_lights.h"
 #include "medium/phase.h"
 #include "medium_lighting/levels/coarse_lighting.h"
@@ -86,6 +87,10 @@ std::vector<Rgb> LitLattice::fire_lights() const {
     ScatteredLight coarse = restricted({std::move(lights), {}}, input_.medium.lattice, level_);
     coarse.sharpen(medium().lattice);
     return std::move(coarse.intensity);
+}
+
+NodeWeights LitLattice::escape_likelihood_of(const std::vector<Rgb>& intensity) const {
+    return escape_likelihood(medium(), depths_, intensity, &likelihood_);
 }
 
 std::vector<Rgb> LitLattice::source_function(const Gathered& g) const {

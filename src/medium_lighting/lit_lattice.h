@@ -7,6 +7,7 @@
 
 #include "gathering/gather.h"
 #include "gathering/point_depths.h"
+#include "lighting_grid/footprint.h"
 #include "medium_lighting/input.h"
 #include "medium_lighting/levels/lit_levels.h"
 #include "thin_media/thin_medium.h"
@@ -49,6 +50,10 @@ public:
     // The fire's lights, per node [W/sr]; their sum is that of the input medium's.
     std::vector<Rgb> fire_lights() const;
 
+    // How likely light of each node with an intensity is to leave the medium (gathering/escape_probability.h).
+    // Remembered for other lights at the same nodes; not for several threads.
+    NodeWeights escape_likelihood_of(const std::vector<Rgb>& intensity) const;
+
     // Albedo times the radiance that scatters toward the camera, per node of the input medium [W/(m^2 sr)].
     std::vector<Rgb> source_function(const Gathered& gathered) const;
 
@@ -60,6 +65,7 @@ private:
     ExtinctionPyramid pyramid_;
     std::vector<std::uint8_t> needed_;
     PointDepths depths_;
+    mutable NodeWeights likelihood_;  // of nodes that were asked for
     ThinMedium thin_medium_;
     float interpolation_error_ = 0.0f;
     std::vector<LitLevel> levels_;

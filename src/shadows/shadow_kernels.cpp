@@ -123,19 +123,21 @@ void march(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
 
 // Rays of one group of texels from different points of the light's extent.
 struct Bundle {
-    V offset[kParallelRays][3];
-    V weight[kParallelRays];
-    V depth[kParallelRays];
-    bool opaque[kParallelRays];
+    V offset[kMostParallelRays][3];
+    V weight[kMostParallelRays];
+    V depth[kMostParallelRays];
+    bool opaque[kMostParallelRays];
     V widest[3];  // of the offsets, without their signs
     bool changed = true;
+    int rays;
 };
 
 HWY_INLINE void open_bundle(D d, const ShadowRays& rays, std::size_t ray, Bundle& b) {
+    b.rays = rays.parallel;
     for (V& widest : b.widest)
         widest = hn::Zero(d);
-    for (int k = 0; k < kParallelRays; ++k) {
-        const std::size_t at = (ray * 5 + k * (kStarts / kParallelRays)) % kStarts;
+    for (int k = 0; k < b.rays; ++k) {
+        const std::size_t at = (ray * 5 + k * (kStarts / b.rays)) % kStarts;
         for (int a = 0; a < 3; ++a)
             b.offset[k][a] = hn::LoadU(d, rays.starts[a] + at);
         for (int a = 0; a < 3; ++a)
@@ -148,11 +150,11 @@ HWY_INLINE void open_bundle(D d, const ShadowRays& rays, std::size_t ray, Bundle
 
 HWY_INLINE V mean_transmittance(D d, Bundle& b) {
     V sum = hn::Zero(d);
-    for (int k = 0; k < kParallelRays; ++k) {
+    for (int k = 0; k < b.rays; ++k) {
         sum = hn::MulAdd(b.weight[k], hn::Exp(d, hn::Neg(b.depth[k])), sum);
         b.opaque[k] = hn::AllTrue(d, hn::Gt(b.depth[k], hn::Set(d, 12.0f)));
     }
-    return hn::Mul(sum, hn::Set(d, 1.0f / kParallelRays));
+    return hn::Mul(sum, hn::Set(d, 1.0f / float(b.rays)));
 }
 
 constexpr std::size_t kMostStepsAtOnce = 4;  // one voxel long each
@@ -185,8 +187,8 @@ HWY_INLINE bool stride(D d, const PackedExtinction* mips, std::span<const Shadow
     if (!all_even(d, strides.parts, s, start, direction))
         return false;
     const V depth = step_depth(d, mips, s, start, direction, start, 0.0f);
-    for (V& sum : bundle.depth)
-        sum = hn::Add(sum, depth);
+    for (int k = 0; k < bundle.rays; ++k)
+        bundle.depth[k] = hn::Add(bundle.depth[k], depth);
     bundle.changed = true;
     return true;
 }
@@ -197,7 +199,7 @@ HWY_INLINE void march_bundle(D d, const PackedExtinction* mips, std::span<const 
         if (exits.passed(d, s))
             continue;
         bundle.changed = true;
-        for (int k = 0; k < kParallelRays; ++k)
+        for (int k = 0; k < bundle.rays; ++k)
             if (!bundle.opaque[k])
                 bundle.depth[k] =
                     hn::Add(bundle.depth[k], step_depth(d, mips, s, start, direction, bundle.offset[k], 1.0f));

@@ -23,6 +23,7 @@ struct ShadowRays {
     const float* starts[3];     // kStarts + 16 starting offsets [nodes], the last 16 repeating the first
     const float* weights;       // of the starts, laid out the same
     std::size_t count;          // padded
+    int parallel = 8;           // of march_parallel_rays: rays per texel, at most kMostParallelRays
 };
 
 // Marches all rays from `origin` [nodes, relative to the reference]; transmittance of ray r at stored distance k goes
@@ -41,9 +42,9 @@ struct HomogeneousStrides {
     int mip;
 };
 
-// The same with the weighted mean over kParallelRays parallel rays along the full length, times `scale` instead of
+// The same with the weighted mean over rays.parallel parallel rays along the full length, times `scale` instead of
 // 65535. `strides` may be null.
-constexpr int kParallelRays = 8;
+constexpr int kMostParallelRays = 16;
 void march_parallel_rays(const PackedExtinction* mips, std::span<const ShadowStep> near_steps,
                          std::span<const ShadowStep> steps, const vec3& origin, const ShadowRays& rays, int distances,
                          float scale, std::uint16_t* out, const HomogeneousStrides* strides = nullptr);

@@ -176,6 +176,23 @@ void copy_with_border(const std::uint16_t* interior, const ShadowMapLayout& layo
 
 }  // namespace
 
+ParallelRays::ParallelRays(const GridLevel& level) : escaping_(level.escaping) {
+    double sum = 0.0, squares = 0.0;
+    for (const float power : escaping_) {
+        sum += power;
+        squares += double(power) * power;
+    }
+    if (sum > 0.0)
+        typical_ = squares / sum;
+}
+
+int ParallelRays::of(std::size_t light) const {
+    if (!(typical_ > 0.0))
+        return kSame;
+    const double wish = kTypical * std::min(1.0, escaping_[light] / typical_);
+    return std::clamp(static_cast<int>(std::lround(wish)), kLeast, kMostParallelRays);
+}
+
 void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const NodeWeights& weights,
                        const NodeWeights* escape, const ShadowMapLayout& layout, std::size_t first, std::size_t count,
                        std::vector<std::uint16_t>& maps, const Occluders* occluders) {
@@ -198,6 +215,7 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
     const HomogeneousBricks* even = pyramid.homogeneous_bricks();
     const HomogeneousStrides strides{even ? even->view() : HomogeneousBricks::View{},
                                      std::min(kStrideLevel, pyramid.level_count() - 1)};
+    const ParallelRays parallel(level);
     const bool by_bricks = !layout.for_outside && level.level >= FootprintPicker::kLevelOfWholeBricks;
     const BrickWeights bricks = by_bricks ? sum_over_bricks(medium, weights) : BrickWeights{};
     parallel_blocks(list.size(), 8, [&](std::size_t begin, std::size_t end) {
@@ -211,7 +229,8 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
             const ShadowRays rays{{texels.direction[0].data(), texels.direction[1].data(), texels.direction[2].data()},
                                   {starts.offset[0].data(), starts.offset[1].data(), starts.offset[2].data()},
                                   starts.weight.data(),
-                                  texels.rays};
+                                  texels.rays,
+                                  parallel.of(light)};
             const vec3 centre = medium.index_from_local * level.position[light];
             const float surface = level.ball.empty() ? 0.0f : level.ball[light].radius;
             const Steps own = surface > 0.0f ? Steps(pyramid, level, layout, surface) : Steps();

@@ -13,9 +13,10 @@
 //    because exp is convex and fire burns where the smoke is dense. Up to the first stored distance, each texel
 //    therefore averages several rays. They start at voxels of the region, picked systematically in proportion to their
 //    contribution to the light, and converge at that distance.
-//  - For receivers outside of the medium, where a ray ends matters less than where it begins: rays from kParallelRays
-//    such voxels stay parallel along their full length. Voxels from which light escapes are picked more often and weigh
-//    less; in dense smoke few of them would be picked otherwise.
+//  - For receivers outside of the medium, where a ray ends matters less than where it begins: rays from several such
+//    voxels stay parallel along their full length. Voxels from which light escapes are picked more often and weigh
+//    less; in dense smoke few of them would be picked otherwise. The number of rays follows what the light sends
+//    outside (parallel_rays() below).
 //  - Such rays take four steps in one inside homogeneous bricks (homogeneous_bricks.h), where these are given: rays
 //    through a room full of thin smoke are long.
 //  - Rays see density averaged over a sixteenth of the light's spacing near the light, shrinking to single voxels at
@@ -45,6 +46,21 @@ struct ShadowMapLayout {
     // 16-bit values per light; one is spare, since samples are read in pairs.
     std::size_t stride() const { return std::size_t(side()) * side() * distances + 2; }
     std::size_t bytes_per_light() const { return stride() * 2; }
+};
+
+// The number of parallel rays for each texel of the maps of a level's lights. The variance of a sum of lights is least
+// for a given number of rays where that number is in proportion to what each light sends: most lights on the skin of
+// dense smoke send little. Without GridLevel::escaping, all have the same.
+class ParallelRays {
+public:
+    static constexpr int kLeast = 2, kTypical = 16, kSame = 8;
+
+    explicit ParallelRays(const GridLevel& level);
+    int of(std::size_t light) const;
+
+private:
+    const std::vector<float>& escaping_;
+    double typical_ = 0.0;  // of the light that brings the mean unit of power
 };
 
 // Builds the maps of the lights [first, first + count) of `level`, one after another in `maps` (transmittance over

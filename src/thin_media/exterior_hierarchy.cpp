@@ -51,6 +51,7 @@ void keep_lights(GridLevel& level, const std::vector<std::uint32_t>& kept) {
     take(level.position, out.position, 1);
     take(level.intensity, out.intensity, 1);
     take(level.node, out.node, 1);
+    take(level.escaping, out.escaping, 1);
     if (!level.directional.empty())
         take(level.directional, out.directional, 24);
     out.index_rows();
@@ -76,6 +77,7 @@ void drop_hidden_lights(HierarchyLights& lights, const Medium& medium, const Nod
             ++lost;
         order.erase(order.begin(), order.begin() + lost);
         std::sort(order.begin(), order.end());
+        level.escaping = sums;  // of which shadow maps make a number of rays
         keep_lights(level, order);
     }
 }

@@ -123,6 +123,25 @@ TEST(Agreement, MapsMadeOnDemandGiveTheSameLight) {
     EXPECT_GT(before, 0u);
 }
 
+// A block of receivers all around the medium: only the top level's lights reach as far.
+TEST(Agreement, NoMapIsMadeForABoxAroundFarReceivers) {
+    const Lit lit(make_medium(fireball(2.0f)));
+    LightField field = field_of(lit, lighting(ShadowMethod::Maps, 1.0f));
+    ShadowMapCache cache;
+    cache.on_demand = true;
+    field.cache = &cache;
+    std::vector<vec3> far;
+    for (int k = 0; k < 8; ++k)
+        far.push_back(20.0f * vec3(k & 1 ? 1.0f : -1.0f, k & 2 ? 1.0f : -1.0f, k & 4 ? 1.0f : -1.0f));
+    Receivers receivers;
+    receivers.add_block(far, {});
+    std::vector<LevelCost> costs;
+    Progress silent;
+    gather_at_points(field, bottom_level(field), receivers, 0.0f, costs, silent);
+    for (const LevelCost& cost : costs)
+        EXPECT_EQ(cost.map_bytes > 0, &cost == &costs.back()) << cost.level;
+}
+
 TEST(Agreement, TheNumberOfThreadsDoesNotShow) {
     const Medium medium = make_medium(fireball(2.0f));
     std::vector<std::vector<float>> nodes, points;

@@ -247,5 +247,64 @@ TEST(ShadowMaps, StridesThroughEvenSmokeLoseNothing) {
         EXPECT_NEAR(nowhere[i], steps[i], 1);
 }
 
+// Lights of very different power.
+GridLevel with_powers(GridLevel level) {
+    for (std::size_t i = 0; i < level.size(); ++i)
+        level.escaping.push_back(std::exp(8.0f * noise(ivec3(int(i), 0, 0), 5)));
+    return level;
+}
+
+TEST(ParallelRays, AreInProportionToWhatLightsSend) {
+    GridLevel level;
+    EXPECT_EQ(ParallelRays(level).of(0), ParallelRays::kSame);
+    level.escaping = {1.0f, 1.0f, 1.0f};
+    EXPECT_EQ(ParallelRays(level).of(2), ParallelRays::kTypical);
+    // The light that brings the mean unit of power has (64 + 16 + 1 + 0) / 13 of it.
+    level.escaping = {8.0f, 4.0f, 1.0f, 0.0f};
+    const ParallelRays rays(level);
+    EXPECT_EQ(rays.of(0), 16);
+    EXPECT_EQ(rays.of(1), 10);
+    EXPECT_EQ(rays.of(2), 3);
+    EXPECT_EQ(rays.of(3), ParallelRays::kLeast);
+}
+
+// Where rays follow power, fewer of them give a better sum than the same number for every light.
+TEST(ParallelRays, ThatFollowPowerGiveABetterSumOfFewerRays) {
+    Recipe recipe = block(4.0f);
+    recipe.density = [](const ivec3& n) { return noise(n, 1); };
+    Medium medium = make_medium(recipe);
+    const std::size_t nodes = medium.lattice.node_count();
+    const Lit lit(std::move(medium), std::vector<Rgb>(nodes, Rgb(1.0f)));
+    const GridLevel& same = lit.grid.levels[2];
+    const GridLevel by_power = with_powers(same);
+    GridLevel most = same;  // rays
+    most.escaping.assign(same.size(), 1.0f);
+    ShadowMapLayout layout = layout_of(same);
+    layout.for_outside = true;
+    layout.range = 1.0f / FootprintPicker::kLeastShare;
+    const NodeWeights escape(nodes, 1.0f);
+    const auto sums = [&](const GridLevel& level) {
+        std::vector<std::uint16_t> maps;
+        build_shadow_maps(lit.pyramid, level, lit.weight, &escape, layout, 0, level.size(), maps);
+        std::vector<double> sum(layout.stride() - 2, 0.0);
+        for (std::size_t i = 0; i < level.size(); ++i)
+            for (std::size_t k = 0; k < sum.size(); ++k)
+                sum[k] += double(by_power.escaping[i]) * maps[i * layout.stride() + k];
+        return sum;
+    };
+    const std::vector<double> truth = sums(most), even = sums(same), powers = sums(by_power);
+    double error_of_even = 0.0, error = 0.0;
+    for (std::size_t k = 0; k < truth.size(); ++k) {
+        error_of_even += (even[k] - truth[k]) * (even[k] - truth[k]);
+        error += (powers[k] - truth[k]) * (powers[k] - truth[k]);
+    }
+    EXPECT_LT(error, 0.8 * error_of_even);
+    const ParallelRays rays(by_power);
+    double count = 0.0;
+    for (std::size_t i = 0; i < by_power.size(); ++i)
+        count += rays.of(i);
+    EXPECT_LT(count, 0.8 * ParallelRays::kSame * double(by_power.size()));
+}
+
 }  // namespace
 }  // namespace brisance

@@ -133,6 +133,14 @@ TEST_F(OutsideLights, LittleEscapes) {
     EXPECT_LT(share, 0.1);
 }
 
+// What is remembered of one light serves another: fire first, then all nodes.
+TEST_F(OutsideLights, EscapeIsRememberedFromLightToLight) {
+    const std::vector<Rgb> everywhere(intensity.size(), Rgb(1.0f));
+    NodeWeights known;
+    EXPECT_EQ(escape_likelihood(medium, depths, intensity, &known), escape_likelihood(medium, depths, intensity));
+    EXPECT_EQ(escape_likelihood(medium, depths, everywhere, &known), escape_likelihood(medium, depths, everywhere));
+}
+
 // Smoke that differs from voxel to voxel is the hardest there is.
 TEST_F(OutsideLights, SumUpToWhatAllVoxelsSend) {
     for (const float radius : {1.6f, 3.0f, 50.0f}) {

@@ -44,7 +44,10 @@ HWY_INLINE V sample_extinction(D d, const PackedExtinction& level, V x, V y, V z
     const auto lx = hn::And(ix, seven), ly = hn::And(iy, seven), lz = hn::And(iz, seven);
     // word = first + (lx * 9 + ly) * 8 + lz
     auto word = hn::Add(hn::Add(hn::ShiftLeft<3>(lx), lx), ly);
-    word = hn::Add(hn::GatherIndex(di, level.directory, entry), hn::Add(hn::ShiftLeft<3>(word), lz));
+    const auto first = hn::GatherIndex(di, level.directory, entry);
+    if (hn::AllTrue(di, hn::Eq(first, hn::Zero(di))))  // empty bricks
+        return hn::Zero(d);
+    word = hn::Add(first, hn::Add(hn::ShiftLeft<3>(word), lz));
 
     const auto* words = reinterpret_cast<const std::int32_t*>(level.words);
     const auto along_z = [&](int offset) {

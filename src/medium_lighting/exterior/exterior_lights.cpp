@@ -1,13 +1,13 @@
 #include "medium_lighting/exterior/exterior_lights.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/stopwatch.h"
-#include "gathering/escape_probability.h"
 #include "lighting_grid/voxel_lights.h"
 #include "medium/lattice/local_bounds.h"
 #include "medium/phase.h"
-#include "medium_lighting/exterior/point_receivers.h"
 #include "medium_lighting/level_costs.h"
 #include "scattering/balance.h"
 #include "thin_media/exterior_hierarchy.h"
@@ -16,22 +16,35 @@ namespace brisance {
 
 namespace {
 
-// Of the balance of what escapes.
-constexpr int kSpherePoints = 1024;
+// Of the balance of what escapes: points on a sphere, in bands of blocks of one group each.
+constexpr int kBands = 8, kBlocksOfBand = 8, kSpherePoints = kBands * kBlocksOfBand * Receivers::kGroup;
 constexpr std::size_t kEscapeRays = std::size_t{1} << 18;
 
 constexpr float kGoldenAngle = 2.3999632297f;
 
-// Points spread evenly over the sphere around the medium, facing inward.
-std::vector<ReceiverPoint> points_on_sphere(const vec3& middle, float radius) {
-    std::vector<ReceiverPoint> points;
-    for (int i = 0; i < kSpherePoints; ++i) {
-        const float z = 1.0f - (2.0f * float(i) + 1.0f) / kSpherePoints, r = std::sqrt(1.0f - z * z);
-        const float azimuth = kGoldenAngle * float(i);
-        const vec3 d(r * std::cos(azimuth), r * std::sin(azimuth), z);
-        points.push_back({middle + radius * d, -d});
+// Points spread evenly over the sphere around the medium, facing inward. They fill their blocks without padding.
+Receivers points_on_sphere(const vec3& middle, float radius) {
+    constexpr int kPointsOfBand = kSpherePoints / kBands;
+    Receivers receivers;
+    for (int band = 0; band < kBands; ++band) {
+        std::vector<vec3> directions;
+        for (int i = band * kPointsOfBand; i < (band + 1) * kPointsOfBand; ++i) {
+            const float z = 1.0f - (2.0f * float(i) + 1.0f) / kSpherePoints, r = std::sqrt(1.0f - z * z);
+            const float azimuth = kGoldenAngle * float(i);
+            directions.push_back({r * std::cos(azimuth), r * std::sin(azimuth), z});
+        }
+        std::sort(directions.begin(), directions.end(),
+                  [](const vec3& a, const vec3& b) { return std::atan2(a.y, a.x) < std::atan2(b.y, b.x); });
+        for (auto d = directions.begin(); d != directions.end(); d += Receivers::kGroup) {
+            std::vector<vec3> points, inward;
+            for (auto one = d; one != d + Receivers::kGroup; ++one) {
+                points.push_back(middle + radius * *one);
+                inward.push_back(-*one);
+            }
+            receivers.add_block(points, inward);
+        }
     }
-    return points;
+    return receivers;
 }
 
 }  // namespace
@@ -64,13 +77,13 @@ NodeWeights ExteriorLights::escape_probabilities() const {
     const std::vector<Rgb>& intensity = lights_.light.intensity;
     const ThinMedium& thin = lattice_.thin_medium();
     if (thin.empty())
-        return escape_likelihood(lattice_.medium(), lattice_.depths(), intensity);
+        return lattice_.escape_likelihood_of(intensity);
     const std::vector<float>& open = thin.open();
     std::vector<Rgb> rest = intensity;
     for (std::size_t i = 0; i < rest.size(); ++i)
         if (open[i] >= 0.0f)
             rest[i] = Rgb(0.0f);
-    NodeWeights escape = escape_likelihood(lattice_.medium(), lattice_.depths(), rest);
+    NodeWeights escape = lattice_.escape_likelihood_of(rest);
     for (std::size_t i = 0; i < rest.size(); ++i)
         if (open[i] >= 0.0f)
             escape[i] = open[i];
@@ -154,20 +167,11 @@ std::array<Gathered, 2> ExteriorLights::at_surfaces(const Receivers& receivers) 
 void ExteriorLights::balance_escape(const dvec3& power, const EscapeEstimate& escape, Statistics& statistics) {
     const LocalBounds bounds = local_bounds(lattice_.medium());
     const float radius = 0.5f * bounds.diagonal();
-    const std::vector<ReceiverPoint> sphere = points_on_sphere(bounds.middle(), radius);
-    std::vector<std::uint32_t> order;
-    const Receivers receivers = point_receivers(lattice_.medium(), sphere, order);
-    const std::array<Gathered, 2> arriving = at_surfaces(receivers);
     dvec3 through(0.0);
-    std::vector<bool> counted(sphere.size(), false);
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        if (counted[order[i]])
-            continue;  // padding
-        counted[order[i]] = true;
-        for (const Gathered& g : arriving)
-            for (int c = 0; c < 3 && !g.scattered.empty(); ++c)
-                through[c] += g.scattered[c * order.size() + i];
-    }
+    for (const Gathered& g : at_surfaces(points_on_sphere(bounds.middle(), radius)))
+        for (int c = 0; c < 3 && !g.scattered.empty(); ++c)
+            through[c] += std::accumulate(g.scattered.begin() + c * kSpherePoints,
+                                          g.scattered.begin() + (c + 1) * kSpherePoints, 0.0);
     through *= double(kPi) * radius * radius / kSpherePoints;  // over 4 pi, as the intensities are
     for (int c = 0; c < 3; ++c)
         if (through[c] > 0.0)
