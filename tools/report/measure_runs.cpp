@@ -223,9 +223,8 @@ void measure_runs(const std::vector<PlannedMethod>& methods, const FrameInput& i
                 } catch (const std::exception& error) {
                     if (!options.keep_going)
                         throw;
-                    report.failures.push_back({methods[m].method.label, fmt::format("{}: {}",
-                                                                                    methods[m].runs[s].step.label,
-                                                                                    reason_of(error))});
+                    report.failures.push_back({methods[m].method.label,
+                                               fmt::format("{}: {}", methods[m].runs[s].step.label, reason_of(error))});
                     records[m].resize(s);
                 }
             }

@@ -212,7 +212,8 @@ std::string suite_markdown(const SuiteReport& suite) {
         "# Comparison of the methods\n\nMade by `brisance report --suite` ([Compare and "
         "report](compare_and_report.md#suites)); not written by hand.\n\n";
     text += how_it_was_made(suite) + "\n" + kHowToRead + how_to_read_bars(suite) +
-            (has_strips(suite) ? kHowToReadFlicker : "") + "\n" + winners(suite) + "\n" + failures(suite) + "\n## Figures\n";
+            (has_strips(suite) ? kHowToReadFlicker : "") + "\n" + winners(suite) + "\n" + failures(suite) +
+            "\n## Figures\n";
     for (const MeasuredScene& scene : suite.scenes)
         text.append("\n").append(figures_of(scene));
     return text;
