@@ -100,7 +100,7 @@ public:
     // `at`: of the receiver that asks; the first one to do so decides.
     const WeightedTargets& targets(int light, const BasePoint& at) {
         if (!targets_[light]) {
-            Rng rng(kTargets, at.pixel, at.number * kLights + std::uint64_t(light));
+            Rng rng(kTargets, at.pixel | lighting_.seed_, at.number * kLights + std::uint64_t(light));
             targets_[light] = draw_targets(*lighting_.ratios_[light], of(light), first_, rng);
         }
         return *targets_[light];
@@ -115,8 +115,12 @@ private:
 };
 
 BaseLighting::BaseLighting(const Medium& medium, const MediumLighting& lighting, const Panes& panes, bool through_panes,
-                           int width)
-    : medium_(medium), panes_(panes), through_panes_(through_panes), width_(static_cast<std::uint32_t>(width)) {
+                           int width, std::uint32_t seed)
+    : medium_(medium),
+      panes_(panes),
+      through_panes_(through_panes),
+      width_(static_cast<std::uint32_t>(width)),
+      seed_(std::uint64_t(seed) << 32) {
     const VisibilityRatios fire = lighting.fire_visibility(), smoke = lighting.smoke_visibility();
     ratios_ = {fire[0], fire[1], smoke[0], smoke[1]};
 }
@@ -159,7 +163,7 @@ BaseLighting::Together BaseLighting::light_together(const SurfaceReceiver& recei
     Together found{{}, points[samples[0]].pixel, false};
     if (!may_look_together(samples, points))
         return found;
-    Rng rng(kTogether, found.pixel, points[samples[0]].number);
+    Rng rng(kTogether, found.pixel | seed_, points[samples[0]].number);
     for (int light = 0; light < kLights; ++light)
         if (ratios_[light] && arriving(receiver, light) != Rgb(0.0f))
             found.seen[light] =
@@ -226,7 +230,7 @@ void BaseLighting::light_alone(const SurfaceReceiver& receiver, Fronts& around, 
     }
     if (on_surface.empty())
         return;
-    Rng rng(kAlone, points[on_surface[0]].pixel, points[on_surface[0]].number);
+    Rng rng(kAlone, points[on_surface[0]].pixel | seed_, points[on_surface[0]].number);
     for (int light = 0; light < kLights; ++light)
         if (ratios_[light] && arriving(receiver, light) != Rgb(0.0f))
             measure(light, receiver, around.of(light), on_surface, points, rng, out);

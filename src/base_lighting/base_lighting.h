@@ -39,8 +39,9 @@ struct BaseLight {
 class BaseLighting {
 public:
     // Keeps references. `through_panes`: light that passes panes is wanted. `width`: of the picture, in pixels.
+    // Other seeds draw other points.
     BaseLighting(const Medium& medium, const MediumLighting& lighting, const Panes& panes, bool through_panes,
-                 int width);
+                 int width, std::uint32_t seed = 0);
 
     // One for each point, in the order in which they were added to the receivers, which are lit. Independent of other
     // rows of the picture.
@@ -73,6 +74,7 @@ private:
     const Panes& panes_;
     bool through_panes_;
     std::uint32_t width_;
+    std::uint64_t seed_;  // above the bits of a pixel's number
     std::array<const VisibilityRatio*, kLights> ratios_;
 };
 

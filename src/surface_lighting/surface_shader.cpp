@@ -15,6 +15,10 @@ namespace {
 
 constexpr std::size_t kSamplesAtOnce = 256;
 
+Rng rng_of(Stream stream, const SurfaceSample& sample, std::uint32_t seed) {
+    return Rng(stream, sample.pixel | std::uint64_t(seed) << 32, sample.number);
+}
+
 bool has_base(const SurfaceMaterial& m) {
     return m.metallic < 1.0f && m.transmission < 1.0f && m.base_colour != Rgb(0.0f);
 }
@@ -56,7 +60,7 @@ SurfaceShader::SurfaceShader(const SurfaceLightingInput& input)
       surroundings_(*input.paths.direct().surroundings()),
       medium_(input.field, input.paths.direct(), input.parts, input.in_scattering, input.emitters_by_rays),
       panes_(surroundings_),
-      mirrors_(input.paths.direct(), medium_, input.needed.contains(Cell::SS)),
+      mirrors_(input.paths.direct(), medium_, input.needed.contains(Cell::SS), input.seed),
       planar_(input.paths.direct().field().medium()),
       smoke_of_paths_({input.field, input.paths.direct(), kPartsForPaths, nullptr, input.emitters_by_rays}),
       walks_(share_of_walks(input)) {}
@@ -79,8 +83,8 @@ Rgb SurfaceShader::from_chosen_emitters(const SurfaceSample& sample, const PathV
     const auto samples = static_cast<std::uint64_t>(input_.samples);
     const std::uint64_t number = (sample.number >> 32) * samples + (sample.number & 0xffffffffu);
     const std::uint64_t choices = (surroundings_.emitters().choices() + samples - 1) / samples;
-    const double start = Rng(stream_of("surface_lighting/emitters"), sample.pixel).next_double() +
-                         std::fmod(double(number) * kGolden, 1.0);
+    Rng shift(stream_of("surface_lighting/emitters"), sample.pixel | std::uint64_t(input_.seed) << 32);
+    const double start = shift.next_double() + std::fmod(double(number) * kGolden, 1.0);
     Rgb sum(0.0f);
     for (std::uint64_t k = 0; k < choices; ++k) {
         const double at = start + double(k) / double(choices);
@@ -114,7 +118,7 @@ std::vector<SurfaceShader::ShadedPoint> SurfaceShader::shaded_points(const std::
             ShadedPoint& shaded = points[i];
             shaded.ray_rng = input_.in_scattering
                                  ? input_.in_scattering->rng(Stream::RayLightSurface, s.pixel, s.number)
-                                 : Rng(Stream::RayLightSurface, s.pixel, s.number);
+                                 : rng_of(Stream::RayLightSurface, s, input_.seed);
             const SurfacePoint point = surface_point(surroundings_.scene(), s.hit, -s.ray.direction);
             shaded.seen = mirrors_.follow(s, point, shaded.ray_rng, light[i]);
             shaded.vertices = shaded.seen.mirrors;
@@ -139,7 +143,7 @@ std::vector<BaseLight> SurfaceShader::light_bases(const std::vector<SurfaceSampl
     }
     planar_.light(receivers.receivers(),
                   [&](std::vector<SurfaceReceiver>& at) { input_.medium_lighting->at_surfaces(at); });
-    return BaseLighting(medium, *input_.medium_lighting, panes_, samples_through_panes(), input_.width)
+    return BaseLighting(medium, *input_.medium_lighting, panes_, samples_through_panes(), input_.width, input_.seed)
         .light(bases, receivers);
 }
 
@@ -300,7 +304,7 @@ void SurfaceShader::shade_point(const SurfaceSample& sample, const BaseLight& ba
                                 CellSum& out) const {
     const SurfacePoint& point = at.seen.point;
     const dvec3 toward_viewer = -at.seen.arriving;
-    Rng rng(Stream::Surface, sample.pixel, sample.number);
+    Rng rng = rng_of(Stream::Surface, sample, input_.seed);
     out.at(Cell::SV) += input_.fire ? base_from_fire(sample, at) : base.from_fire;
     out.at(Cell::SM) += base.from_smoke;
     out.at(Cell::SS) += base.through_panes;
