@@ -155,7 +155,7 @@ public:
     // `at`: of the receiver that asks; the first one to do so decides.
     const WeightedTargets& targets(int light, const BasePoint& at) {
         if (!targets_[light]) {
-            Rng rng(kTargets, at.pixel, at.number * kLights + std::uint64_t(light));
+            Rng rng(kTargets, at.pixel | lighting_.seed_, at.number * kLights + std::uint64_t(light));
             targets_[light] = draw_targets(*lighting_.ratios_[light], of(light), first_, rng);
         }
         return *targets_[light];
@@ -170,12 +170,13 @@ private:
 };
 
 BaseLighting::BaseLighting(const Medium& medium, const MediumLighting& lighting, const Panes& panes, bool through_panes,
-                           int width, float tolerance)
+                           int width, float tolerance, std::uint32_t seed)
     : medium_(medium),
       panes_(panes),
       through_panes_(through_panes),
       width_(static_cast<std::uint32_t>(width)),
-      tolerance_(tolerance) {
+      tolerance_(tolerance),
+      seed_(std::uint64_t(seed) << 32) {
     const VisibilityRatios fire = lighting.fire_visibility(), smoke = lighting.smoke_visibility();
     ratios_ = {fire[0], fire[1], smoke[0], smoke[1]};
 }
@@ -219,7 +220,7 @@ BaseLighting::Together BaseLighting::light_together(const SurfaceReceiver& recei
     Bases bases;
     for (const std::uint32_t i : samples)
         bases.emplace_back(points[i], i);
-    Rng rng(kTogether, found.pixel, points[samples[0]].number);
+    Rng rng(kTogether, found.pixel | seed_, points[samples[0]].number);
     for (int light = 0; light < kLights; ++light)
         if (ratios_[light] && arriving(receiver, light) != Rgb(0.0f))
             found.seen[light] =
@@ -298,7 +299,7 @@ void BaseLighting::light_alone(const SurfaceReceiver& receiver, Fronts& around, 
     if (bases.empty())
         return;
     const BasePoint& first = points[bases.front().sample()];
-    Rng rng(kAlone, first.pixel, first.number);
+    Rng rng(kAlone, first.pixel | seed_, first.number);
     for (int light = 0; light < kLights; ++light)
         if (ratios_[light] && arriving(receiver, light) != Rgb(0.0f))
             measure(light, receiver, around.of(light), bases, rng, out);

@@ -42,8 +42,9 @@ class BaseLighting {
 public:
     // Keeps references. `through_panes`: light that passes panes is wanted. `width`: of the picture, in pixels.
     // `tolerance`: standard error, over itself, of the light of a receiver in a penumbra, of which it tests no more.
+    // Other seeds draw other points.
     BaseLighting(const Medium& medium, const MediumLighting& lighting, const Panes& panes, bool through_panes,
-                 int width, float tolerance);
+                 int width, float tolerance, std::uint32_t seed = 0);
 
     // One for each point, in the order in which they were added to the receivers, which are lit. Independent of other
     // rows of the picture.
@@ -77,6 +78,7 @@ private:
     bool through_panes_;
     std::uint32_t width_;
     float tolerance_;
+    std::uint64_t seed_;  // above the bits of a pixel's number
     std::array<const VisibilityRatio*, kLights> ratios_;
 };
 

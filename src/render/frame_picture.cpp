@@ -151,7 +151,7 @@ std::optional<LightReuse> FramePicture::light_reuse(const Camera& camera, Shared
     if (!lights || s.resampling_neighbours == 0)
         return std::nullopt;
     return LightReuse(*lights, camera.settings().width, camera.settings().height,
-                      {s.resampling_neighbours, s.resampling_radius, s.resampling_visibility}, shared, bound);
+                      {s.resampling_neighbours, s.resampling_radius, s.resampling_visibility, s.seed}, shared, bound);
 }
 
 // None where no light is bounded, or nothing on the screen is to make up for it.
@@ -218,7 +218,8 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
                           reuse ? &*reuse : nullptr,
                           compensated ? &*compensated : nullptr,
                           lights.fire_on_surfaces(),
-                          bound ? &*bound : nullptr});
+                          bound ? &*bound : nullptr,
+                          input_.shot.virtual_lights.seed});
     Image image = render_picture(lights.field(), camera, settings_, progress_,
                                  [&](const auto& samples, auto& light) { shader.shade(samples, light); });
     if (reuse)

@@ -18,7 +18,8 @@ void LightOfEmitters::choose(const SurfaceSample& sample, const PathVertex& vert
     const auto samples = static_cast<std::uint64_t>(samples_);
     const std::uint64_t number = (sample.number >> 32) * samples + (sample.number & 0xffffffffu);
     const std::uint64_t choices = (direct_.surroundings()->emitters().choices() + samples - 1) / samples;
-    const double start = Rng(kChoices, sample.pixel).next_double() + std::fmod(double(number) * kGolden, 1.0);
+    Rng shift(kChoices, sample.pixel | std::uint64_t(seed_) << 32);
+    const double start = shift.next_double() + std::fmod(double(number) * kGolden, 1.0);
     for (std::uint64_t k = 0; k < choices; ++k) {
         const double at = start + double(k) / double(choices);
         DirectLight::ChosenEmitter chosen;

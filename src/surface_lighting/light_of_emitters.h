@@ -14,8 +14,9 @@ namespace brisance {
 
 class LightOfEmitters {
 public:
-    // Keeps a reference. `samples`: of a pixel.
-    LightOfEmitters(const DirectLight& direct, int samples) : direct_(direct), samples_(samples) {}
+    // Keeps a reference. `samples`: of a pixel. Other seeds draw other numbers.
+    LightOfEmitters(const DirectLight& direct, int samples, std::uint32_t seed = 0)
+        : direct_(direct), samples_(samples), seed_(seed) {}
 
     // Radiance [W/(m^2 sr)].
     struct Seen {
@@ -36,6 +37,7 @@ private:
 
     const DirectLight& direct_;
     int samples_;
+    std::uint32_t seed_;
 };
 
 }  // namespace brisance

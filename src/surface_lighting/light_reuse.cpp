@@ -164,7 +164,8 @@ void LightReuse::offer_visible(const std::vector<const Sample*>& set, Reservoir<
 }
 
 BoundedLight LightReuse::light(const Sample& sample) const {
-    Rng rng(kReuse, sample.pixel, 3 * sample.number + static_cast<std::uint64_t>(sample.lobes));
+    Rng rng(kReuse, sample.pixel | std::uint64_t(settings_.seed) << 32,
+            3 * sample.number + static_cast<std::uint64_t>(sample.lobes));
     const std::vector<const Sample*> set = set_of(sample, rng);
     Reservoir<LightReservoir> kept;
     if (settings_.visibility)

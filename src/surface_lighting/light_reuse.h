@@ -63,6 +63,7 @@ public:
         int neighbours;           // of each sample, at most
         double radius;            // in which they lie [pixels]; 0: in the same pixel
         bool visibility = false;  // what samples chose reaches them
+        std::uint32_t seed = 0;   // other seeds draw other random numbers
     };
 
     // Keeps references. `shared`: gets the light of samples that have something to share; null where none has.

@@ -20,7 +20,7 @@ void add_segment(const RaySum& seen, const Rgb& emitted, const Rgb& throughput, 
 BehindMirrors Mirrors::follow(const SurfaceSample& sample, const SurfacePoint& point, Rng& medium_rng,
                               CellSum& light) const {
     BehindMirrors at{point, sample.ray.direction};
-    Rng rng(Stream::Mirror, sample.pixel, sample.number);
+    Rng rng(Stream::Mirror, sample.pixel | std::uint64_t(seed_) << 32, sample.number);
     for (;; ++at.mirrors) {
         const PathVertex vertex(at.point, at.arriving);
         if (!vertex.only_delta())

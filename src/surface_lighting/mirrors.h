@@ -20,9 +20,9 @@ struct BehindMirrors {
 
 class Mirrors {
 public:
-    // Keeps references. `beyond`: light of surfaces behind mirrors (cell SS) is needed.
-    Mirrors(const DirectLight& scene, const MediumAlongRay& medium, bool beyond)
-        : scene_(scene), medium_(medium), beyond_(beyond) {}
+    // Keeps references. `beyond`: light of surfaces behind mirrors (cell SS) is needed. Other seeds draw other numbers.
+    Mirrors(const DirectLight& scene, const MediumAlongRay& medium, bool beyond, std::uint32_t seed = 0)
+        : scene_(scene), medium_(medium), beyond_(beyond), seed_(seed) {}
 
     // Starts at a surface that `sample` hit. Adds to `light` the medium (SV, SM) and the emitters (SA) seen in the
     // first mirror; those seen in later mirrors count as SS, as does the light that the last surface scatters. One
@@ -33,6 +33,7 @@ private:
     const DirectLight& scene_;
     const MediumAlongRay& medium_;
     bool beyond_;
+    std::uint32_t seed_;
 };
 
 }  // namespace brisance

@@ -16,6 +16,10 @@ namespace {
 
 constexpr std::size_t kSamplesAtOnce = 256;
 
+Rng rng_of(Stream stream, const SurfaceSample& sample, std::uint32_t seed) {
+    return Rng(stream, sample.pixel | std::uint64_t(seed) << 32, sample.number);
+}
+
 bool has_base(const SurfaceMaterial& m) {
     return m.metallic < 1.0f && m.transmission < 1.0f && m.base_colour != Rgb(0.0f);
 }
@@ -46,9 +50,9 @@ SurfaceShader::SurfaceShader(const SurfaceLightingInput& input)
     : input_(input),
       surroundings_(*input.paths.direct().surroundings()),
       medium_(input.field, input.paths.direct(), input.parts, input.in_scattering, input.emitters_by_rays),
-      emitters_(input.paths.direct(), input.samples),
+      emitters_(input.paths.direct(), input.samples, input.seed),
       panes_(surroundings_),
-      mirrors_(input.paths.direct(), medium_, input.needed.contains(Cell::SS)),
+      mirrors_(input.paths.direct(), medium_, input.needed.contains(Cell::SS), input.seed),
       planar_(input.paths.direct().field().medium()),
       smoke_of_paths_({input.field, input.paths.direct(), kPartsForPaths, nullptr, input.emitters_by_rays}),
       walks_(share_of_walks(input)) {}
@@ -75,7 +79,7 @@ std::vector<SurfaceShader::ShadedPoint> SurfaceShader::shaded_points(const std::
             ShadedPoint& shaded = points[i];
             shaded.ray_rng = input_.in_scattering
                                  ? input_.in_scattering->rng(Stream::RayLightSurface, s.pixel, s.number)
-                                 : Rng(Stream::RayLightSurface, s.pixel, s.number);
+                                 : rng_of(Stream::RayLightSurface, s, input_.seed);
             const SurfacePoint point = surface_point(surroundings_.scene(), s.hit, -s.ray.direction);
             shaded.seen = mirrors_.follow(s, point, shaded.ray_rng, light[i]);
             shaded.vertices = shaded.seen.mirrors;
@@ -101,7 +105,7 @@ std::vector<BaseLight> SurfaceShader::light_bases(const std::vector<SurfaceSampl
     planar_.light(receivers.receivers(),
                   [&](std::vector<SurfaceReceiver>& at) { input_.medium_lighting->at_surfaces(at); });
     return BaseLighting(medium, *input_.medium_lighting, panes_, samples_through_panes(), input_.width,
-                        input_.tolerance)
+                        input_.base_tolerance, input_.seed)
         .light(bases, receivers);
 }
 
@@ -269,7 +273,7 @@ void SurfaceShader::add_base(const BaseLight& base, const ShadedPoint& at, CellS
 void SurfaceShader::shade_point(const SurfaceSample& sample, ShadedPoint& at, CellSum& out) const {
     const SurfacePoint& point = at.seen.point;
     const dvec3 toward_viewer = -at.seen.arriving;
-    Rng rng(Stream::Surface, sample.pixel, sample.number);
+    Rng rng = rng_of(Stream::Surface, sample, input_.seed);
     if (input_.fire)
         out.at(Cell::SV) += base_from_fire(sample, at);
     reflect_scattered(point, toward_viewer, rng, at.ray_rng, out);

@@ -60,6 +60,7 @@ struct SurfaceLightingInput {
     ScreenSpaceCompensation* compensation = nullptr;
     const SampledFire* fire = nullptr;  // owns SV of the base; null: the lighting grid does
     BoundAccount* bound = nullptr;      // gets what the bound of point lights does to SS; null: nobody asks
+    std::uint32_t seed = 0;             // pictures of different seeds share no random numbers
 };
 
 class SurfaceShader {

@@ -7,38 +7,15 @@
 #include "expect.h"
 #include "film/write_image.h"
 #include "measure_runs.h"
-#include "media/node_media.h"
 #include "metrics/layers.h"
 #include "reference.h"
 #include "render/render_frame.h"
 #include "shot/write_shot.h"
+#include "small_ball.h"
 #include "volume/temp_folder.h"
 
 namespace brisance {
 namespace {
-
-const FrameInput& input() {
-    static const FrameInput ball = [] {
-        media::Recipe recipe = media::glowing_ball(5, 2.0f);
-        recipe.settings.smoke.albedo = Rgb(0.7f);
-        FrameInput made;
-        made.medium = media::make_medium(recipe);
-        return made;
-    }();
-    return ball;
-}
-
-Shot shot() {
-    Shot shot;
-    shot.volume.file = "ball.vdb";
-    shot.method = RenderMethod::Path;
-    shot.camera.eye = dvec3(0.0, -6.0, 0.0);
-    shot.camera.width = 24;
-    shot.camera.height = 18;
-    shot.camera_given = true;
-    shot.tracing.samples = 16;
-    return shot;
-}
 
 Picture beauty(const Image& image) {
     return picture_of(image, {""}).picture;

@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <map>
+#include <sstream>
 
 #include "expect.h"
 #include "machine.h"
@@ -193,6 +195,39 @@ Report small_report() {
 
 TEST(Tables, QuoteWhatHoldsCommas) {
     EXPECT_HAS(measurements_csv(small_report()), "\r\n\"\"\"a\"\", b\",0,grid,");
+}
+
+// The row of a method in the CSV, by column.
+std::map<std::string, std::string> first_row(const std::string& csv) {
+    const std::size_t end = csv.find("\r\n");
+    std::stringstream head(csv.substr(0, end)), row(csv.substr(end + 2, csv.find("\r\n", end + 2) - end - 2));
+    std::map<std::string, std::string> fields;
+    for (std::string name, field; std::getline(head, name, ',');) {
+        std::getline(row, field, ',');
+        fields[name] = field;
+    }
+    return fields;
+}
+
+TEST(Tables, HaveTheSpreadOfRepeatsAndNothingWithout) {
+    Report report = small_report();
+    report.shot.name = "plain";
+    for (const char* const column : {"rrmse_noise_free_sd", "rrmse_sd", "bias_sd", "hdr_flip_sd"})
+        EXPECT_EQ(first_row(measurements_csv(report)).at(column), "") << column;
+    report.repeats = 4;
+    ErrorSpread spread;
+    spread.noise_free = 0.25;
+    spread.rrmse = 0.5;
+    spread.mean = 0.125;
+    report.methods[0].runs[0].errors[""].spread = spread;
+    const auto fields = first_row(measurements_csv(report));
+    EXPECT_EQ(fields.at("repeats"), "4");
+    EXPECT_EQ(fields.at("rrmse_noise_free_sd"), "0.25");
+    EXPECT_EQ(fields.at("rrmse_sd"), "0.5");
+    EXPECT_EQ(fields.at("bias_sd"), "0.125");
+    const auto runs = report_json(report)["methods"][0]["runs"];
+    EXPECT_EQ(runs[0]["errors"][""]["spread"]["noise_free"], 0.25);
+    EXPECT_TRUE(runs[1]["errors"][""]["spread"].is_null());
 }
 
 TEST(Tables, CompareTheTimesOfMethods) {

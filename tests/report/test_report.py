@@ -126,7 +126,7 @@ class Page(unittest.TestCase):
         environment = {**os.environ, "SOURCE_DATE_EPOCH": "1000000000"}
         methods = ["lighting_grid", "path", "exact=path,tracing.free_flight=exact"]
         cls.done = run_program(cls.folder, "report", SHOT, *QUICK, "--set", f"name={NAME}", "--methods", *methods,
-                               "-o", "report.html", env=environment)
+                               "--repeats", "2", "-o", "report.html", env=environment)
         if cls.done.returncode != 0:
             raise AssertionError(cls.done.stderr)
         cls.data = json.loads((cls.folder / "report.json").read_text(encoding="utf-8"))
@@ -195,6 +195,26 @@ class Page(unittest.TestCase):
         with open(self.folder / "report.times.csv", newline="", encoding="utf-8") as file:
             self.assertEqual(len(list(csv.DictReader(file))), 3 * 4 * 2 * 4)
 
+    def test_repeats_have_bars_where_the_method_is_random(self):
+        self.assertEqual(self.data["time"]["repeats"], 2)
+        with open(self.folder / "report.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        for method in self.data["methods"]:
+            for run in method["runs"]:
+                for layer, errors in run["errors"].items():
+                    spread = errors["spread"]
+                    where = (method["label"], run["label"], layer)
+                    (row,) = (r for r in rows if (r["method"], r["step"], r["layer"]) == (*where[:2], layer or "beauty"))
+                    self.assertEqual(row["repeats"], "2")
+                    if method["label"] == "lighting_grid":
+                        self.assertIsNone(spread, where)
+                        self.assertEqual(row["rrmse_sd"], "")
+                    else:
+                        self.assertGreater(spread["rrmse"], 0, where)
+                        self.assertLess(spread["rrmse"], errors["rrmse"], where)
+                        self.assertEqual(float(row["rrmse_sd"]), spread["rrmse"])
+                        self.assertEqual(float(row["bias_sd"]), spread["mean"])
+
     def test_commands_repeat_a_run(self):
         run = self.data["methods"][1]["runs"][0]
         command = run["command"]
@@ -252,6 +272,20 @@ class Page(unittest.TestCase):
                 if (data[i] == r && data[i + 1] == g && data[i + 2] == b && data[i + 3] == 255) return true;
             return false;
         })()"""))
+
+    def test_browser_shows_bars(self):
+        self.press("convergence", "Measure", "rRMSE")
+        self.assertEqual(self.evaluate("Number(document.querySelector('.plot').dataset.bars)"), 4)
+        bars = self.evaluate("brisanceReport.plot.series.map(s => s.points.map(p => [p.low, p.y, p.high]))")
+        self.assertEqual(bars[0], [[None, y, None] for _, y, _ in bars[0]], "the grid has none")
+        for points, method in zip(bars[1:], self.data["methods"][1:]):
+            by_error = sorted((run["errors"][""] for run in method["runs"]), key=lambda errors: errors["rrmse"])
+            for (low, y, high), errors in zip(sorted(points, key=lambda point: point[1]), by_error):
+                self.assertAlmostEqual(high - y, 100 * errors["spread"]["rrmse"])
+                self.assertAlmostEqual(y - low, 100 * errors["spread"]["rrmse"])
+        rows = self.evaluate("[...document.querySelectorAll('#measurements-table tbody tr')].map(r => r.textContent)")
+        self.assertEqual(["\u00b1" in row for row in rows], [False, False, True, True, True, True])
+        self.assertIn("means of 2 renders", self.evaluate("document.querySelector('#about-bars').textContent"))
 
     def test_browser_hides_a_method(self):
         self.page.click(".legend button:nth-child(2)")

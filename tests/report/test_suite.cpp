@@ -216,6 +216,26 @@ TEST(SuiteMarkdown, HasEverySceneCellMethodAndFailure) {
         EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
 }
 
+// Of repeats the smallest error has its bar, and the text says what that is.
+TEST(SuiteMarkdown, HasBarsWhereRepeatsDiffered) {
+    SuiteReport suite = two_scenes();
+    EXPECT_EQ(suite_markdown(suite).find("±"), std::string::npos);
+    Report& report = *suite.scenes[0].report;
+    report.repeats = 5;
+    for (MeasuredRun& run : report.methods[1].runs) {
+        ErrorSpread spread;
+        spread.rrmse = 0.1 * run.errors["MM"].differences.rrmse;
+        run.errors["MM"].spread = spread;
+    }
+    const std::string text = suite_markdown(suite);
+    for (const char* const part :
+         {"means of 5 renders", "± the standard deviation of one", " | 4 ± 0.4 % |", "| MM | **grid** | 6 % |"})
+        EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+    const auto contenders = suite_json(suite)["scenes"][0]["cells"][0]["contenders"];
+    EXPECT_TRUE(contenders[0]["floor_spread"].is_null()) << "the grid is the same picture every time";
+    EXPECT_NEAR(contenders[1]["floor_spread"].get<double>(), 0.004, 1e-12);
+}
+
 TEST(SuiteJson, NumbersTheScenesThatWereMeasured) {
     const auto json = suite_json(two_scenes());
     EXPECT_EQ(json["scenes"][0]["report"], 0);

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <exception>
+#include <map>
 
+#include "core/content_hash.h"
 #include "core/error.h"
 #include "film_strip.h"
 #include "methods.h"
@@ -12,6 +14,7 @@
 #include "named_progress.h"
 #include "render/render_frame.h"
 #include "render_cost.h"
+#include "repeats.h"
 #include "shot/read_shot.h"
 #include "shot/scene_differences.h"
 #include "shot/write_shot.h"
@@ -57,28 +60,6 @@ PlannedRun plan_run(const Shot& shot, const Method& method, const MethodStep& st
     return run;
 }
 
-struct Rendered {
-    RenderedFrame frame;
-    Cost cost;
-};
-
-Rendered render_repeatedly(const Shot& given, const FrameInput& input, int repeats, Progress& progress) {
-    Rendered result;
-    Shot shot = given;
-    shot.certify.belief = 0.0;  // its samples would count as the method's time
-    std::vector<Cost> costs;
-    for (int i = 0; i < repeats; ++i) {
-        const CostMeter meter;
-        result.frame = render_medium(shot, input.medium, progress, input.surroundings.get());
-        costs.push_back(meter.cost());
-    }
-    const auto middle = costs.begin() + static_cast<std::ptrdiff_t>((costs.size() - 1) / 2);
-    std::nth_element(costs.begin(), middle, costs.end(),
-                     [](const Cost& a, const Cost& b) { return a.wall_seconds < b.wall_seconds; });
-    result.cost = *middle;
-    return result;
-}
-
 LayerErrors errors_of(const Comparison& comparison, const std::optional<double>& noise) {
     LayerErrors errors;
     errors.differences = comparison.differences;
@@ -90,9 +71,21 @@ LayerErrors errors_of(const Comparison& comparison, const std::optional<double>&
     return errors;
 }
 
+// What the repeats of one step gave so far.
+struct StepRecord {
+    MeasuredRun run;  // of the first repeat
+    std::vector<Cost> costs;
+    std::map<std::string, std::vector<LayerErrors>> errors;  // by layer
+    std::map<std::string, std::set<std::string>> pictures;   // hashes of their pixels
+};
+
+std::string hash_of(const Picture& picture) {
+    return content_hash({reinterpret_cast<const char*>(picture.pixels.data()), picture.pixels.size() * sizeof(Rgb)});
+}
+
 // Errors of all layers; of those that `shows` accepts also pictures.
 template <class Shows>
-void compare_layers(const Image& image, const ReportReference& reference, const Shows& shows, MeasuredRun& run,
+void compare_layers(const Image& image, const ReportReference& reference, const Shows& shows, StepRecord& record,
                     PagePictures& pictures) {
     const std::vector<std::string> there = picture_layers(image);
     for (const auto& [layer, target] : reference.layers) {
@@ -101,42 +94,70 @@ void compare_layers(const Image& image, const ReportReference& reference, const 
         const Picture picture = picture_of(image, {layer}).picture;
         const Comparison comparison = compare(picture, target);
         const auto noise = reference.summary.noise.find(layer);
-        run.errors[layer] =
-            errors_of(comparison, noise == reference.summary.noise.end() ? std::nullopt : std::optional(noise->second));
+        record.errors[layer].push_back(errors_of(
+            comparison, noise == reference.summary.noise.end() ? std::nullopt : std::optional(noise->second)));
+        record.pictures[layer].insert(hash_of(picture));
         if (!shows(layer))
             continue;
-        pictures.add_picture(run.id, layer, picture);
-        pictures.add_errors(run.id, layer, picture, mean_picture(target), comparison.differences.epsilon,
+        pictures.add_picture(record.run.id, layer, picture);
+        pictures.add_errors(record.run.id, layer, picture, mean_picture(target), comparison.differences.epsilon,
                             comparison.flip.errors);
     }
 }
 
 struct RunNumber {
     std::size_t method, step;  // from 0
+    int repeat;                // from 0
 };
 
-MeasuredRun measure_run(const PlannedMethod& planned, RunNumber number, const FrameInput& input,
-                        const ReportReference& reference, const MeasureOptions& options, PagePictures& pictures,
-                        Progress& progress) {
-    const PlannedRun& step = planned.runs[number.step];
-    NamedProgress named(progress, fmt::format("{}, {}", planned.method.label, step.step.label));
-    Rendered rendered = render_repeatedly(step.shot, input, options.repeats, named);
+// What all repeats share, but for errors and costs.
+MeasuredRun describe_run(const PlannedRun& planned, RunNumber number, RenderedFrame& frame) {
     MeasuredRun run;
     run.id = fmt::format("method{}step{}", number.method + 1, number.step + 1);
-    run.step = step.step;
-    run.settings = step.settings;
-    run.cost = rendered.cost;
-    run.samples_per_pixel = rendered.frame.metadata.samples_per_pixel;
-    run.statistics = std::move(rendered.frame.statistics);
+    run.step = planned.step;
+    run.settings = planned.settings;
+    run.samples_per_pixel = frame.metadata.samples_per_pixel;
+    run.statistics = std::move(frame.statistics);
+    return run;
+}
+
+std::string name_of_run(const PlannedMethod& planned, RunNumber number, int repeats) {
+    std::string name = fmt::format("{}, {}", planned.method.label, planned.runs[number.step].step.label);
+    return repeats > 1 ? fmt::format("{}, {} of {}", name, number.repeat + 1, repeats) : name;
+}
+
+// One render of one step.
+void measure_repeat(const PlannedMethod& planned, RunNumber number, const FrameInput& input,
+                    const ReportReference& reference, const MeasureOptions& options, StepRecord& record,
+                    PagePictures& pictures, Progress& progress) {
+    NamedProgress named(progress, name_of_run(planned, number, options.repeats));
+    Shot shot = shot_of_repeat(planned.runs[number.step].shot, number.repeat, reference.seeds);
+    shot.certify.belief = 0.0;  // its samples would count as the method's time
+    const CostMeter meter;
+    RenderedFrame frame = render_medium(shot, input.medium, named, input.surroundings.get());
+    record.costs.push_back(meter.cost());
     named.stage("measuring");
+    const bool first = number.repeat == 0;
+    if (first)
+        record.run = describe_run(planned.runs[number.step], number, frame);
     const bool last = number.step + 1 == planned.runs.size();
     const auto shows = [&](const std::string& layer) {
-        return !options.few_pictures || (last && (layer.empty() || owns(planned.method, layer)));
+        return first && (!options.few_pictures || (last && (layer.empty() || owns(planned.method, layer))));
     };
-    compare_layers(rendered.frame.image, reference, shows, run, pictures);
-    if (options.strips != nullptr && number.step == 0)
-        options.strips->add_frame(planned.method, rendered.frame.image, reference);
-    return run;
+    compare_layers(frame.image, reference, shows, record, pictures);
+    if (options.strips != nullptr && first && number.step == 0)
+        options.strips->add_frame(planned.method, frame.image, reference);
+}
+
+MethodResult result_of(const Method& method, std::vector<StepRecord> records) {
+    MethodResult result{method, {}};
+    for (StepRecord& record : records) {
+        record.run.cost = median_cost(record.costs);
+        for (const auto& [layer, errors] : record.errors)
+            record.run.errors[layer] = mean_errors(errors, record.pictures.at(layer).size() > 1);
+        result.runs.push_back(std::move(record.run));
+    }
+    return result;
 }
 
 }  // namespace
@@ -189,22 +210,27 @@ std::vector<PlannedMethod> plan_what_can_run(const Shot& shot, const std::vector
 
 void measure_runs(const std::vector<PlannedMethod>& methods, const FrameInput& input, const ReportReference& reference,
                   const MeasureOptions& options, Report& report, PagePictures& pictures, Progress& progress) {
-    for (std::size_t m = 0; m < methods.size(); ++m) {
-        MethodResult result{methods[m].method, {}};
-        for (std::size_t s = 0; s < methods[m].runs.size(); ++s) {
-            try {
-                result.runs.push_back(measure_run(methods[m], {m, s}, input, reference, options, pictures, progress));
-            } catch (const std::exception& error) {
-                if (!options.keep_going)
-                    throw;
-                report.failures.push_back(
-                    {result.method.label, fmt::format("{}: {}", methods[m].runs[s].step.label, reason_of(error))});
-                break;
+    std::vector<std::vector<StepRecord>> records;
+    for (const PlannedMethod& method : methods)
+        records.emplace_back(method.runs.size());
+    // All steps once before any is rendered again: what else the machine does disturbs all of them alike.
+    for (int repeat = 0; repeat < options.repeats; ++repeat)
+        for (std::size_t m = 0; m < methods.size(); ++m)
+            for (std::size_t s = 0; s < records[m].size(); ++s) {
+                try {
+                    measure_repeat(methods[m], {m, s, repeat}, input, reference, options, records[m][s], pictures,
+                                   progress);
+                } catch (const std::exception& error) {
+                    if (!options.keep_going)
+                        throw;
+                    report.failures.push_back({methods[m].method.label,
+                                               fmt::format("{}: {}", methods[m].runs[s].step.label, reason_of(error))});
+                    records[m].resize(s);
+                }
             }
-        }
-        if (!result.runs.empty())
-            report.methods.push_back(std::move(result));
-    }
+    for (std::size_t m = 0; m < methods.size(); ++m)
+        if (!records[m].empty())
+            report.methods.push_back(result_of(methods[m].method, std::move(records[m])));
 }
 
 }  // namespace brisance

@@ -45,7 +45,7 @@ std::string reason_of(const std::exception& error);
 class FilmStrips;
 
 struct MeasureOptions {
-    int repeats = 1;          // of each render; its time is their median
+    int repeats = 1;          // renders of each step, with other seeds (repeats.h); its time is their median
     bool keep_going = false;  // a render that fails ends its method, as one of the report's failures, and nothing else
     bool few_pictures = false;     // of the last step of a method alone: its picture, and the cells that it owns
     FilmStrips* strips = nullptr;  // receives the first step of every method as the first frame

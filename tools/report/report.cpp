@@ -45,6 +45,14 @@ std::optional<double> headline_error(const Report& report, const MeasuredRun& ru
     return report.reference.halves ? found->second.noise_free : found->second.differences.rrmse;
 }
 
+std::optional<double> headline_spread(const Report& report, const MeasuredRun& run, const std::string& layer) {
+    const auto found = run.errors.find(layer);
+    if (found == run.errors.end() || !found->second.spread)
+        return std::nullopt;
+    const ErrorSpread& spread = *found->second.spread;
+    return report.reference.halves ? spread.noise_free : spread.rrmse;
+}
+
 std::optional<double> flicker_in(const MethodResult& result, const std::string& cell) {
     const auto found = result.flicker.find(cell);
     return found == result.flicker.end() || !std::isfinite(found->second) ? std::nullopt : std::optional(found->second);

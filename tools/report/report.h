@@ -20,13 +20,25 @@ struct Cost {
     double cpu_seconds = 0.0;  // of all threads, user and system
 };
 
-// Errors of one layer. Relative to the reference, but for flip in [0, 1].
+// Standard deviation of each measure of one render, over renders with other random numbers (n - 1 in the denominator).
+// That of the mean over n of them is smaller by sqrt(n).
+struct ErrorSpread {
+    std::optional<double> noise_free;  // with two halves
+    double rrmse = 0.0;
+    double relmse = 0.0;
+    double mape = 0.0;
+    double mean = 0.0;
+    double flip = 0.0;
+};
+
+// Errors of one layer, the mean over the repeats. Relative to the reference, but for flip in [0, 1].
 struct LayerErrors {
     std::optional<double> noise_free;  // with two halves
     Differences differences;
     double flip = 0.0;
     NotFinite not_finite;
     bool below_noise = false;  // differences.rrmse measures the noise of the reference rather than the image
+    std::optional<ErrorSpread> spread = {};  // absent: one render, or all repeats gave the same picture
 };
 
 struct MeasuredRun {
@@ -97,6 +109,9 @@ enum class Clock { Wall, Cpu };
 
 // The measure that counts: free of the reference's noise where that can be had. Absent when the run lacks the layer.
 std::optional<double> headline_error(const Report& report, const MeasuredRun& run, const std::string& layer);
+
+// Its standard deviation from repeat to repeat. Absent where it has none.
+std::optional<double> headline_spread(const Report& report, const MeasuredRun& run, const std::string& layer);
 
 // Of the method's first run in a cell. Absent where it was not measured, and where there is no light.
 std::optional<double> flicker_in(const MethodResult& result, const std::string& cell);

@@ -11,6 +11,17 @@ Json optional_number(const std::optional<double>& value) {
     return value ? json_number(*value) : Json();
 }
 
+Json spread_json(const std::optional<ErrorSpread>& spread) {
+    if (!spread)
+        return nullptr;
+    return {{"noise_free", optional_number(spread->noise_free)},
+            {"rrmse", json_number(spread->rrmse)},
+            {"relmse", json_number(spread->relmse)},
+            {"mape", json_number(spread->mape)},
+            {"mean", json_number(spread->mean)},
+            {"flip", json_number(spread->flip)}};
+}
+
 Json errors_json(const LayerErrors& errors) {
     return {{"noise_free", optional_number(errors.noise_free)},
             {"rrmse", json_number(errors.differences.rrmse)},
@@ -18,6 +29,7 @@ Json errors_json(const LayerErrors& errors) {
             {"mape", json_number(errors.differences.mape)},
             {"mean", json_number(errors.differences.mean)},
             {"flip", json_number(errors.flip)},
+            {"spread", spread_json(errors.spread)},
             {"below_noise", errors.below_noise},
             {"not_finite", {{"image", errors.not_finite.image}, {"reference", errors.not_finite.reference}}}};
 }
@@ -150,7 +162,7 @@ Json time_json(const Report& report) {
         "hierarchy, shadow maps, gathering, scattering and camera; for path its acceleration structures, all paths, "
         "and depth and coverage.";
     if (report.repeats > 1)
-        included += " It is the median of " + std::to_string(report.repeats) + " renders.";
+        included += " It is the median of " + std::to_string(report.repeats) + " renders, errors are their means.";
     return {{"included", included},
             {"excluded",
              "Not part of it: reading the volume and building the medium, which all runs share, comparing, "

@@ -48,6 +48,7 @@ std::string measurement_row(const Report& report, const MethodResult& result, co
                             const std::string& layer, const LayerErrors& errors) {
     std::vector<std::string> settings = result.method.settings;
     settings.insert(settings.end(), run.step.settings.begin(), run.step.settings.end());
+    const auto spread = [&](const auto& measure) { return errors.spread ? csv_number(measure(*errors.spread)) : ""; };
     return csv_row({report.shot.name,
                     std::to_string(report.shot.frame),
                     result.method.label,
@@ -67,7 +68,14 @@ std::string measurement_row(const Report& report, const MethodResult& result, co
                     errors.below_noise ? "yes" : "no",
                     std::to_string(errors.not_finite.image),
                     std::to_string(errors.not_finite.reference),
-                    &run == &result.runs.front() ? csv_number(flicker_in(result, layer)) : ""});
+                    &run == &result.runs.front() ? csv_number(flicker_in(result, layer)) : "",
+                    std::to_string(report.repeats),
+                    spread([](const ErrorSpread& s) { return s.noise_free; }),
+                    spread([](const ErrorSpread& s) { return s.rrmse; }),
+                    spread([](const ErrorSpread& s) { return s.relmse; }),
+                    spread([](const ErrorSpread& s) { return s.mape; }),
+                    spread([](const ErrorSpread& s) { return s.mean; }),
+                    spread([](const ErrorSpread& s) { return s.flip; })});
 }
 
 void add_times(const Report& report, const std::string& layer, Clock clock, std::string& csv) {
@@ -139,7 +147,9 @@ double seconds_in(const MeasuredRun& run, const std::string& stage) {
 std::vector<std::string> surface_row(const Report& report, const MethodResult& result, const MeasuredRun& run) {
     const auto percent = [&](const std::string& layer) {
         const std::optional<double> error = headline_error(report, run, layer);
-        return error ? fmt::format("{:.3g} %", 100.0 * *error) : "-";
+        const std::optional<double> spread = headline_spread(report, run, layer);
+        const std::string bar = spread ? fmt::format(" +- {:.2g}", 100.0 * *spread) : "";
+        return error ? fmt::format("{:.3g}{} %", 100.0 * *error, bar) : "-";
     };
     const auto mean = run.errors.find("SS");
     return {result.method.label,
@@ -190,7 +200,14 @@ std::string measurements_csv(const Report& report) {
                                "below_reference_noise",
                                "image_pixels_not_finite",
                                "reference_pixels_not_finite",
-                               "flicker"});
+                               "flicker",
+                               "repeats",
+                               "rrmse_noise_free_sd",
+                               "rrmse_sd",
+                               "relmse_sd",
+                               "mape_sd",
+                               "bias_sd",
+                               "hdr_flip_sd"});
     for (const MethodResult& result : report.methods)
         for (const MeasuredRun& run : result.runs)
             for (const auto& [layer, errors] : run.errors)
@@ -217,8 +234,10 @@ std::string surface_table(const Report& report) {
             rows.push_back(surface_row(report, result, run));
     return "light from surfaces on surfaces (SS): rRMSE, and relative error of the mean; prepare: virtual lights; "
            "shade: "
-           "camera and all cells\n" +
-           aligned(rows);
+           "camera and all cells" +
+           (report.repeats > 1 ? fmt::format("; means of {} renders, +- the standard deviation of one", report.repeats)
+                               : std::string()) +
+           "\n" + aligned(rows);
 }
 
 std::string times_table(const Report& report) {

@@ -90,7 +90,11 @@ void add_report_options(CLI::App& command, ReportOptions& options) {
         ->check(CLI::PositiveNumber)
         ->excludes(reference)
         ->excludes(suite);
-    command.add_option("--repeats", options.repeats, "Renders each step this many times; its time is the median")
+    command
+        .add_option(
+            "--repeats", options.repeats,
+            "Renders each step this many times, with other seeds each time: its errors are means with their standard "
+            "deviation, its time is the median")
         ->check(CLI::Range(1, 1000));
     command.add_option("--exposures", options.exposures, "Of the page's pictures, beside the shot's [stops]: -3,0,3")
         ->delimiter(',')

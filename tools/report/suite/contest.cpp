@@ -44,6 +44,15 @@ double equal_time(const std::vector<ErrorCurve>& curves, std::optional<std::size
     return median(std::move(longest));
 }
 
+// Of the run with the smallest error.
+std::optional<double> spread_at_floor(const Report& report, const MethodResult& result, const std::string& cell,
+                                      double floor) {
+    for (const MeasuredRun& run : result.runs)
+        if (headline_error(report, run, cell) == floor)
+            return headline_spread(report, run, cell);
+    return std::nullopt;
+}
+
 Contest contest_of(const Report& report, const std::string& cell, Clock clock) {
     Contest contest;
     contest.cell = cell;
@@ -59,7 +68,12 @@ Contest contest_of(const Report& report, const std::string& cell, Clock clock) {
             continue;
         if (result.method.by_default)
             by_default = curves.size();
-        contest.contenders.push_back({result.method.label, {}, {}, curve.floor(), flicker_in(result, cell)});
+        contest.contenders.push_back({result.method.label,
+                                      {},
+                                      {},
+                                      curve.floor(),
+                                      flicker_in(result, cell),
+                                      spread_at_floor(report, result, cell, curve.floor())});
         curves.push_back(std::move(curve));
     }
     if (curves.empty())

@@ -20,6 +20,7 @@ struct Contender {
     std::array<Reading, kSuiteTargets.size()> times;  // [s] to each of kSuiteTargets
     double floor = 0.0;                               // the smallest error that it was measured with
     std::optional<double> flicker;                    // of its first run
+    std::optional<double> floor_spread = {};          // standard deviation of `floor` from repeat to repeat
 };
 
 struct Contest {

@@ -27,6 +27,7 @@ Json contest_json(const Contest& contest) {
                               {"error", reading_json(contender.error)},
                               {"times", std::move(times)},
                               {"floor", json_number(contender.floor)},
+                              {"floor_spread", contender.floor_spread ? json_number(*contender.floor_spread) : Json()},
                               {"flicker", contender.flicker ? json_number(*contender.flicker) : Json()}});
     }
     return {{"cell", contest.cell},

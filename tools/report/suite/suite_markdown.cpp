@@ -21,6 +21,12 @@ std::string percent(double error) {
     return fmt::format("{:.3g} %", 100.0 * error);
 }
 
+std::string floor_text(const Contender& contender) {
+    return contender.floor_spread
+               ? fmt::format("{:.3g} ± {:.2g} %", 100.0 * contender.floor, 100.0 * *contender.floor_spread)
+               : percent(contender.floor);
+}
+
 std::string seconds(double value) {
     return fmt::format("{:.3g} s", value);
 }
@@ -104,7 +110,7 @@ std::string contender_row(const Contest& contest, std::size_t i, bool flicker) {
                                        error_text(contest, contender)};
     for (const Reading& time : contender.times)
         fields.push_back(time_text(time));
-    fields.push_back(percent(contender.floor));
+    fields.push_back(floor_text(contender));
     if (flicker)
         fields.push_back(contender.flicker ? percent(*contender.flicker) : "-");
     return markdown_row(fields);
@@ -175,6 +181,14 @@ constexpr const char* kHowToReadFlicker =
   frame has as much as its error; bias that stands still has none.
 )";
 
+std::string how_to_read_bars(const SuiteReport& suite) {
+    for (const MeasuredScene& scene : suite.scenes)
+        if (scene.report && scene.report->repeats > 1)
+            return fmt::format("- Errors are means of {} renders with other seeds, ± the standard deviation of one.\n",
+                               scene.report->repeats);
+    return "";
+}
+
 constexpr const char* kHowToRead =
     R"(Every method competes in the cells ([Layers](layers.md)) that it computes by its own technique: `lighting_grid` in all
 but `MS` and `SS`, scattering methods in `MM` and `SM`, virtual lights in `MS` and `SS`, path tracers everywhere.
@@ -197,8 +211,9 @@ std::string suite_markdown(const SuiteReport& suite) {
     std::string text =
         "# Comparison of the methods\n\nMade by `brisance report --suite` ([Compare and "
         "report](compare_and_report.md#suites)); not written by hand.\n\n";
-    text += how_it_was_made(suite) + "\n" + kHowToRead + (has_strips(suite) ? kHowToReadFlicker : "") + "\n" +
-            winners(suite) + "\n" + failures(suite) + "\n## Figures\n";
+    text += how_it_was_made(suite) + "\n" + kHowToRead + how_to_read_bars(suite) +
+            (has_strips(suite) ? kHowToReadFlicker : "") + "\n" + winners(suite) + "\n" + failures(suite) +
+            "\n## Figures\n";
     for (const MeasuredScene& scene : suite.scenes)
         text.append("\n").append(figures_of(scene));
     return text;

@@ -2,7 +2,7 @@
 import { choice, h, table } from "./dom.js";
 import { clocks, known, layerTitle, measures, number, percent, seconds, times } from "./format.js";
 import { ErrorPlot } from "./plot.js";
-import { lawOf, layers, report, seriesColour, takenMeasures } from "./report.js";
+import { aboutBars, lawOf, layers, report, seriesColour, takenMeasures } from "./report.js";
 
 const swatch = (index) => h("i", { class: "swatch", style: { background: seriesColour(index) } });
 
@@ -158,6 +158,7 @@ export function addConvergence(plotSection, reachSection, equalTimeSection) {
         ),
         plot.element,
         help,
+        aboutBars ? h("p", { class: "muted" }, aboutBars) : "",
         h(
             "p",
             { class: "muted" },

@@ -70,3 +70,13 @@ export const measures = {
 };
 
 export const shown = (measure, value) => (measures[measure].inPercent ? percent(value) : number(value));
+
+// The standard deviation behind a mean, in the same unit; nothing where there is none.
+export const bar = (measure, deviation) =>
+    known(deviation) ? ` \u00b1 ${number(measures[measure].inPercent ? 100 * deviation : deviation, 2)}` : "";
+
+// A mean and its bar: "3.21 ± 0.4 %".
+export const withBar = (measure, value, deviation) => {
+    const text = shown(measure, value);
+    return known(deviation) ? text.replace(/( %)?$/, (unit) => `${bar(measure, deviation)}${unit}`) : text;
+};

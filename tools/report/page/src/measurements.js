@@ -1,11 +1,12 @@
 // Every number of every run, per ledger cell.
 import { choice, h, table } from "./dom.js";
-import { known, layerTitle, measures, number, percent, seconds, shown } from "./format.js";
-import { layers, report, seriesColour, takenMeasures } from "./report.js";
+import { known, layerTitle, measures, number, percent, seconds, withBar } from "./format.js";
+import { aboutBars, layers, report, seriesColour, spreadOf, takenMeasures } from "./report.js";
 
-function signed(share) {
+function signed(share, deviation) {
     if (!known(share)) return "\u2013";
-    return share > 0 ? `+${percent(share)}` : percent(share);
+    const text = known(deviation) ? withBar("rrmse", share, deviation) : percent(share);
+    return share > 0 ? `+${text}` : text;
 }
 
 function row(method, index, run, layer) {
@@ -33,11 +34,11 @@ function row(method, index, run, layer) {
             h(
                 "td",
                 { class: "numbers" },
-                errors ? shown(measure, errors[measure]) : "\u2013",
+                errors ? withBar(measure, errors[measure], spreadOf(run, layer, measure)) : "\u2013",
                 measure === "rrmse" ? marks : [],
             ),
         ),
-        h("td", { class: "numbers" }, errors ? signed(errors.mean) : "\u2013"),
+        h("td", { class: "numbers" }, errors ? signed(errors.mean, spreadOf(run, layer, "mean")) : "\u2013"),
     );
 }
 
@@ -70,6 +71,7 @@ export function addMeasurements(section) {
             "The ledger's cells are V (fire seen directly), MV (its light scattered once) and MM " +
                 "(scattered more than once); their sum is the beauty. Each is compared with the same cell of the reference.",
         ),
+        aboutBars ? h("p", { class: "muted", id: "about-bars" }, aboutBars) : "",
         h("div", { class: "controls" }, choice("Layer", options, "", show).element),
         holder,
     );

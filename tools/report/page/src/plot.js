@@ -1,7 +1,7 @@
 // The log-log plot of error against time.
 import uPlot from "uplot";
 import { h } from "./dom.js";
-import { clocks, measures, number, seconds, shown } from "./format.js";
+import { clocks, measures, number, seconds, withBar } from "./format.js";
 import { lawOf, pointsOf, report, seriesColour } from "./report.js";
 import { onThemeChange, resolvedColour } from "./theme.js";
 
@@ -55,6 +55,9 @@ export class ErrorPlot {
             points: pointsOf(method, state.layer, state.measure, state.clock).map((p) => ({
                 ...p,
                 y: scale * p.error,
+                // Of the bar; one that reaches 0 ends at the axis.
+                low: p.deviation > 0 ? scale * (p.error - p.deviation) : NaN,
+                high: p.deviation > 0 ? scale * (p.error + p.deviation) : NaN,
             })),
         }));
         this.floor = state.measure === "rrmse" ? scale * report.reference.noise[state.layer] : NaN;
@@ -74,10 +77,16 @@ export class ErrorPlot {
             all.map((p) => p.seconds),
             1.35,
         );
-        const y = rangeOf([...all.map((p) => p.y), ...(this.floor > 0 ? [this.floor] : [])], 1.35);
+        const ends = all.flatMap((p) => [p.low, p.high]).filter((end) => end > 0);
+        const least = Math.min(...all.map((p) => p.y)) / 4; // a bar that nearly reaches 0 would be all of the axis
+        const y = rangeOf(
+            [...all.map((p) => p.y), ...ends.map((end) => Math.max(end, least)), ...(this.floor > 0 ? [this.floor] : [])],
+            1.35,
+        );
         this.plot = new uPlot(this.options(x, y), this.data(), this.frame);
         this.plot.over.append(this.tip);
         this.element.dataset.points = String(all.length);
+        this.element.dataset.bars = String(all.filter((p) => p.high > 0).length);
         this.element.dataset.series = String(this.series.filter(({ points }) => points.length > 0).length);
     }
 
@@ -129,7 +138,10 @@ export class ErrorPlot {
             ],
             cursor: { drag: { x: false, y: false, setScale: false }, points: { show: false } },
             hooks: {
-                drawSeries: [(plot, i) => this.drawContinuation(plot, this.series[i - 1])],
+                drawSeries: [
+                    (plot, i) => this.drawContinuation(plot, this.series[i - 1]),
+                    (plot, i) => this.drawBars(plot, this.series[i - 1]),
+                ],
                 draw: [(plot) => this.drawFloor(plot)],
                 setCursor: [(plot) => this.showTip(plot)],
                 ready: [(plot) => plot.over.addEventListener("click", () => this.pick(plot))],
@@ -155,6 +167,25 @@ export class ErrorPlot {
             `--series-${series.index % 8}`,
             [2, 5],
         );
+    }
+
+    // One standard deviation up and down, with caps.
+    drawBars(plot, series) {
+        if (!series || this.hidden.has(series.method.label)) return;
+        const bottom = plot.scales.y.min,
+            cap = 5 * devicePixelRatio;
+        for (const point of series.points.filter((p) => p.high > 0)) {
+            const x = plot.valToPos(point.seconds, "x", true);
+            const ends = [Math.max(point.low, bottom), point.high].map((end) => plot.valToPos(end, "y", true));
+            this.stroke(plot, `--series-${series.index % 8}`, [], (ctx) => {
+                ctx.moveTo(x, ends[0]);
+                ctx.lineTo(x, ends[1]);
+                for (const y of ends) {
+                    ctx.moveTo(x - cap, y);
+                    ctx.lineTo(x + cap, y);
+                }
+            });
+        }
     }
 
     drawFloor(plot) {
@@ -183,6 +214,13 @@ export class ErrorPlot {
     }
 
     line(plot, points, colour, dash) {
+        this.stroke(plot, colour, dash, (ctx) => {
+            for (const [x, y] of points) ctx.lineTo(plot.valToPos(x, "x", true), plot.valToPos(y, "y", true));
+        });
+    }
+
+    // What `draw` adds to the path, within the axes.
+    stroke(plot, colour, dash, draw) {
         const { ctx, bbox } = plot;
         ctx.save();
         ctx.beginPath();
@@ -192,7 +230,7 @@ export class ErrorPlot {
         ctx.strokeStyle = resolvedColour(colour);
         ctx.lineWidth = 1.5 * devicePixelRatio;
         ctx.setLineDash(dash.map((length) => length * devicePixelRatio));
-        for (const [x, y] of points) ctx.lineTo(plot.valToPos(x, "x", true), plot.valToPos(y, "y", true));
+        draw(ctx);
         ctx.stroke();
         ctx.restore();
     }
@@ -226,7 +264,11 @@ export class ErrorPlot {
         this.tip.replaceChildren(
             h("strong", {}, series.method.label),
             h("span", {}, point.run.label),
-            h("span", {}, `${shown(this.state.measure, point.error)} in ${seconds(point.seconds)}`),
+            h(
+                "span",
+                {},
+                `${withBar(this.state.measure, point.error, point.deviation)} in ${seconds(point.seconds)}`,
+            ),
         );
         this.tip.classList.toggle("to-left", x > plot.over.clientWidth / 2);
         this.tip.style.setProperty("left", `${x}px`);

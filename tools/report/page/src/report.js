@@ -37,11 +37,26 @@ export function nameOf(id) {
     return `${method.label}, ${run.label}`;
 }
 
-// The points of a method that a plot can show: [{run, seconds, error}], by time. An error of 0 is too small to measure
+// Standard deviation of a measure from repeat to repeat; null where all repeats gave the same picture.
+export const spreadOf = (run, layer, measure) => run.errors[layer]?.spread?.[measure] ?? null;
+
+export const aboutBars =
+    report.time.repeats > 1
+        ? `Errors are means of ${report.time.repeats} renders with other seeds, \u00b1 the standard deviation of one ` +
+          `render; that of the mean is ${Math.sqrt(report.time.repeats).toPrecision(2)} times smaller. A layer without ` +
+          "a bar was the same picture every time. What the reference errs by is the same in all repeats, and in no bar."
+        : "";
+
+// The points of a method that a plot can show: [{run, seconds, error, deviation}], by time. An error of 0 is too small to measure
 // against the reference, and cannot be drawn on a logarithmic axis.
 export function pointsOf(method, layer, measure, clock) {
     return method.runs
-        .map((run) => ({ run, seconds: run[clocks[clock].key], error: run.errors[layer]?.[measure] }))
+        .map((run) => ({
+            run,
+            seconds: run[clocks[clock].key],
+            error: run.errors[layer]?.[measure],
+            deviation: spreadOf(run, layer, measure),
+        }))
         .filter((point) => point.seconds > 0 && point.error > 0)
         .sort((a, b) => a.seconds - b.seconds);
 }

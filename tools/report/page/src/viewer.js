@@ -1,8 +1,8 @@
 // Any two pictures behind a slider.
 import "img-comparison-slider";
 import { choice, h } from "./dom.js";
-import { layerTitle, measures, seconds, shown } from "./format.js";
-import { findRun, layers, nameOf, picturedRuns, pictures, reference, report } from "./report.js";
+import { layerTitle, measures, seconds, withBar } from "./format.js";
+import { findRun, layers, nameOf, picturedRuns, pictures, reference, report, spreadOf } from "./report.js";
 
 export const png = (base64) => `data:image/png;base64,${base64}`;
 const stops = (value) => `${value < 0 ? "\u2212" : "+"}${Math.abs(value)} EV`.replace("+0 EV", "0 EV");
@@ -38,7 +38,7 @@ export function caption(id, layer) {
     const found = findRun(id);
     if (!found) return "what the others are measured against";
     const error = found.run.errors[layer]?.[report.measure];
-    return `${shown(report.measure, error)} \u00b7 ${seconds(found.run.wall_seconds)}`;
+    return `${withBar(report.measure, error, spreadOf(found.run, layer, report.measure))} \u00b7 ${seconds(found.run.wall_seconds)}`;
 }
 
 function pictureSelect(label, onchange) {
