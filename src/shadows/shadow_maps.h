@@ -16,7 +16,7 @@
 //  - For receivers outside of the medium, where a ray ends matters less than where it begins: rays from several such
 //    voxels stay parallel along their full length. Voxels from which light escapes are picked more often and weigh
 //    less; in dense smoke few of them would be picked otherwise. The number of rays follows what the light sends
-//    outside (parallel_rays() below).
+//    outside (ParallelRays below).
 //  - Such rays take four steps in one inside homogeneous bricks (homogeneous_bricks.h), where these are given: rays
 //    through a room full of thin smoke are long.
 //  - Rays see density averaged over a sixteenth of the light's spacing near the light, shrinking to single voxels at

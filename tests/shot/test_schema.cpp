@@ -65,7 +65,7 @@ TEST(Schema, ShotsThatComeWithTheProgramAreRead) {
         ++count;
         EXPECT_NO_THROW({
             const Shot shot = read_shot(entry.path());
-            EXPECT_FALSE(shot.volume.file.empty() && shot.volumes.empty());
+            EXPECT_FALSE(shot.volume.file.empty() && shot.volumes.empty() && shot.scene.empty());
         }) << entry.path();
     }
     EXPECT_GT(count, 0);
