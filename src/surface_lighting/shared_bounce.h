@@ -1,5 +1,5 @@
-// Light between surfaces (SS) that Lambert bases and rough lobes reflect, shared among the pixels of a picture. Light of
-// an even sky on bases (light_of_emitters.h) is shared likewise.
+// Light between surfaces (SS) that Lambert bases and rough lobes reflect, shared among the pixels of a picture. Light
+// of an even sky on bases (light_of_emitters.h) is shared likewise.
 //
 // A pixel has few paths and much noise, while the light that arrives at a matt surface from others changes slowly: over
 // a distance that is a part of the distance to the surfaces around (G. Ward, F. Rubinstein, R. Clear, A Ray Tracing
