@@ -217,15 +217,16 @@ BaseLighting::Together BaseLighting::light_together(const SurfaceReceiver& recei
     Together found{{}, points[samples[0]].pixel, false};
     if (!may_look_together(samples, points))
         return found;
-    Bases bases;
-    for (const std::uint32_t i : samples)
-        bases.emplace_back(points[i], i);
-    Rng rng(kTogether, found.pixel | seed_, points[samples[0]].number);
-    for (int light = 0; light < kLights; ++light)
-        if (ratios_[light] && arriving(receiver, light) != Rgb(0.0f))
-            found.seen[light] =
-                see_together(light, receiver, around.targets(light, points[samples[0]]), bases, rng, out);
     found.tried = true;
+    Bases bases;  // made for the first light that arrives
+    Rng rng(kTogether, found.pixel | seed_, points[samples[0]].number);
+    for (int light = 0; light < kLights; ++light) {
+        if (!ratios_[light] || arriving(receiver, light) == Rgb(0.0f))
+            continue;
+        for (std::size_t k = bases.size(); k < samples.size(); ++k)
+            bases.emplace_back(points[samples[k]], samples[k]);
+        found.seen[light] = see_together(light, receiver, around.targets(light, points[samples[0]]), bases, rng, out);
+    }
     return found;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "fixtures/correlation.h"
 #include "fixtures/media.h"
 #include "make_vdb.h"
 #include "metrics/differences.h"
@@ -118,18 +119,6 @@ Shot lit_corner() {
     shot.virtual_lights.photons = 20000;
     shot.virtual_lights.sharing_radius = 0.0;  // its blur is the same with all seeds
     return shot;
-}
-
-// Of the deviations of two pictures from a third.
-double correlation(const Picture& a, const Picture& b, const Picture& from) {
-    double ab = 0.0, aa = 0.0, bb = 0.0;
-    for (std::size_t i = 0; i < from.pixels.size(); ++i) {
-        const dvec3 da(a.pixels[i] - from.pixels[i]), db(b.pixels[i] - from.pixels[i]);
-        ab += glm::dot(da, db);
-        aa += glm::dot(da, da);
-        bb += glm::dot(db, db);
-    }
-    return ab / std::sqrt(aa * bb);
 }
 
 // Error bars of repeats and the flicker of film strips rest on it. Deviations from the mean of 12 other pictures have a

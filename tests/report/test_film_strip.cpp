@@ -7,12 +7,12 @@
 #include <random>
 #include <set>
 
-#include "media/node_media.h"
 #include "metrics/layers.h"
 #include "render/render_frame.h"
 #include "render/still_variants.h"
 #include "report_text.h"
 #include "shot/keys/keys.h"
+#include "small_ball.h"
 #include "suite/contest.h"
 
 namespace brisance {
@@ -89,17 +89,6 @@ TEST(Strips, HaveOtherSeedsInEveryFrameAndMove) {
     EXPECT_EQ(reseeded(shot, 2).tracing.seed, 1) << "stays a seed that the key takes";
 }
 
-const FrameInput& glowing_ball() {
-    static const FrameInput ball = [] {
-        media::Recipe recipe = media::glowing_ball(5, 2.0f);
-        recipe.settings.smoke.albedo = Rgb(0.7f);
-        FrameInput made;
-        made.medium = media::make_medium(recipe);
-        return made;
-    }();
-    return ball;
-}
-
 Shot looking_at_the_ball(RenderMethod method, int samples) {
     Shot shot;
     shot.volume.file = "ball.vdb";
@@ -119,7 +108,7 @@ double flicker_of_ball(const Shot& shot, bool other_seeds) {
     std::vector<Picture> frames;
     for (int frame = 0; frame < 3; ++frame) {
         const Shot of_frame = other_seeds ? frame_of_strip(shot, frame, 0.0) : shot;
-        frames.push_back(picture_of(render_medium(of_frame, glowing_ball().medium, silent).image, {""}).picture);
+        frames.push_back(picture_of(render_medium(of_frame, input().medium, silent).image, {""}).picture);
     }
     return flicker_of(frames, {frames[0], std::nullopt});
 }

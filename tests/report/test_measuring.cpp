@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "expect.h"
 #include "film/write_image.h"
+#include "fixtures/correlation.h"
 #include "measure_runs.h"
 #include "metrics/layers.h"
 #include "reference.h"
@@ -19,18 +20,6 @@ namespace {
 
 Picture beauty(const Image& image) {
     return picture_of(image, {""}).picture;
-}
-
-// Of the deviations of two pictures from a third, over all pixels.
-double correlation(const Picture& a, const Picture& b, const Picture& truth) {
-    double ab = 0.0, aa = 0.0, bb = 0.0;
-    for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
-        const dvec3 da(a.pixels[i] - truth.pixels[i]), db(b.pixels[i] - truth.pixels[i]);
-        ab += glm::dot(da, db);
-        aa += glm::dot(da, da);
-        bb += glm::dot(db, db);
-    }
-    return ab / std::sqrt(aa * bb);
 }
 
 TEST(Seeds, ShareNoNoise) {

@@ -12,10 +12,19 @@ namespace {
 
 using namespace testing;
 
+const Medium& thin_smoke() {
+    static const Medium thin = [] {
+        Recipe recipe = glowing_ball(8, 0.02f);
+        recipe.settings.smoke.albedo = Rgb(0.8f);
+        return make_medium(recipe);
+    }();
+    return thin;
+}
+
 // A floor and a wall that hides a part of the sky from it. `sun`: besides, from the side; its disc is 2 degrees wide.
-Surroundings yard(const Medium& medium, bool sky, bool sun) {
+Surroundings yard(bool sky, bool sun) {
     Scene scene;
-    scene.origin = medium.world_of_local(vec3(0.0f));
+    scene.origin = thin_smoke().world_of_local(vec3(0.0f));
     add_quad(scene, {-6, -6, -1}, {12, 0, 0}, {0, 12, 0}, lambert(0.6f));
     add_quad(scene, {-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, lambert(0.6f));
     std::vector<LightSettings> lights(2);
@@ -49,10 +58,8 @@ Image picture(const Surroundings& set, double radius, RenderMethod method = Rend
     shot.virtual_lights.count = 500;
     shot.virtual_lights.photons = 50000;
     shot.virtual_lights.sharing_radius = radius;
-    Recipe thin = glowing_ball(8, 0.02f);
-    thin.settings.smoke.albedo = Rgb(0.8f);
     Progress silent;
-    return render_medium(shot, make_medium(thin), silent, &set).image;
+    return render_medium(shot, thin_smoke(), silent, &set).image;
 }
 
 struct Compared {
@@ -71,8 +78,7 @@ Compared compare(const Image& ours, const Image& truth) {
 }
 
 TEST(SharedSky, HasTheEnergyOfPathsAndLessNoiseThanPixelsAlone) {
-    const Medium medium = make_medium(glowing_ball(8, 0.02f));
-    const Surroundings set = yard(medium, true, false);
+    const Surroundings set = yard(true, false);
     const Image truth = picture(set, 0.0, RenderMethod::Path);
     double noise[2];
     for (const double radius : {0.0, 0.2}) {
@@ -86,11 +92,10 @@ TEST(SharedSky, HasTheEnergyOfPathsAndLessNoiseThanPixelsAlone) {
 }
 
 TEST(SharedSky, LeavesTheSunToEachPixel) {
-    const Medium medium = make_medium(glowing_ball(8, 0.02f));
-    const Surroundings sun = yard(medium, false, true);
+    const Surroundings sun = yard(false, true);
     EXPECT_EQ(picture(sun, 0.0).layer("SA").pixels, picture(sun, 0.2).layer("SA").pixels);
     // With a sky about, what the sun adds to the picture is the same with and without sharing, but for noise.
-    const Surroundings both = yard(medium, true, true);
+    const Surroundings both = yard(true, true);
     const Compared shared = compare(picture(both, 0.2), picture(both, 0.0, RenderMethod::Path));
     std::printf("sun and sky: %+.2f %%, %.2f %%\n", 100.0 * shared.bias, 100.0 * shared.rms);
     EXPECT_NEAR(shared.bias, 0.0, 0.01);
