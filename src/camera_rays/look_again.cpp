@@ -21,7 +21,8 @@ constexpr float kBend = 8.0f, kConvergence = 1.5f;
 // Of the sum of a pixel's weights.
 constexpr float kRounding = 1e-5f;
 
-constexpr std::size_t kPixelsAtOnce = 8;
+constexpr std::size_t kPixelsAtOnce = 64;
+constexpr int kSideOfTile = 16;  // pixels
 
 struct Pixel {
     int x, y;
@@ -123,13 +124,26 @@ int samples_at(float bend, const PictureSettings& settings) {
     return static_cast<int>(std::ceil(std::min(float(settings.finest_medium_samples_per_axis), samples)));
 }
 
-// Replaces what the pixels' own rays saw by what more rays see.
-void trace_again(const PixelRays& own, const PixelRays& more, const std::vector<Pixel>& pixels, PictureWriter& writer) {
+// Tile by tile, so that rays of neighbouring pixels meet the medium soon after each other, while it is in the caches.
+template <class Visit>
+void for_each_pixel_of_tiles(int width, int height, const Visit& visit) {
+    for (int top = 0; top < height; top += kSideOfTile)
+        for (int left = 0; left < width; left += kSideOfTile)
+            for (int y = top; y < std::min(top + kSideOfTile, height); ++y)
+                for (int x = left; x < std::min(left + kSideOfTile, width); ++x)
+                    visit(x, y);
+}
+
+// Replaces what the pixels' own rays saw by what more rays see. `nothing_else`: a pixel is the sum of those rays alone.
+void trace_again(const PixelRays& own, const PixelRays& more, const std::vector<Pixel>& pixels, bool nothing_else,
+                 PictureWriter& writer) {
     parallel_for(
         pixels.size(),
         [&](std::size_t i) {
             const Pixel p = pixels[i];
             RaySum difference = more.trace(p.x, p.y, nullptr, nullptr);
+            if (nothing_else)
+                return writer.replace(p.x, p.y, difference);
             add_weighted(difference, own.trace(p.x, p.y, nullptr, nullptr), -1.0f);
             if (std::abs(difference.alpha) < kRounding)
                 difference.alpha = 0.0f;
@@ -151,23 +165,22 @@ void look_again(const SourceField& field, const Camera& camera, const PictureSet
     own.light_rays = {};  // random, and the same on average
     const PixelRays own_rays(field, camera, own);
     const bool finds_edges = has_edges(settings), finds_bends = has_bends(settings);
+    const bool nothing_else = !settings.surroundings && !settings.light_rays;
     const int few = medium_samples(settings);
     const SecondLooks looks(first, width, height);
     std::vector<Pixel> edges;
     std::map<int, std::vector<Pixel>> bends;  // by samples
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            if (finds_edges && looks.edge(writer, {x, y}, own_rays.count()))
-                edges.push_back({x, y});
-            else if (const int samples = finds_bends ? samples_at(looks.bend(writer, {x, y}), settings) : 0;
-                     samples > few)
-                bends[samples].push_back({x, y});
-        }
+    for_each_pixel_of_tiles(width, height, [&](int x, int y) {
+        if (finds_edges && looks.edge(writer, {x, y}, own_rays.count()))
+            edges.push_back({x, y});
+        else if (const int samples = finds_bends ? samples_at(looks.bend(writer, {x, y}), settings) : 0; samples > few)
+            bends[samples].push_back({x, y});
+    });
     const PictureSettings at_edges = for_edges(own);
-    trace_again(own_rays, PixelRays(field, camera, at_edges), edges, writer);
+    trace_again(own_rays, PixelRays(field, camera, at_edges), edges, nothing_else, writer);
     for (const auto& [samples, pixels] : bends) {
         const PictureSettings at_bends = for_bends(own, samples);
-        trace_again(own_rays, PixelRays(field, camera, at_bends), pixels, writer);
+        trace_again(own_rays, PixelRays(field, camera, at_bends), pixels, nothing_else, writer);
     }
 }
 

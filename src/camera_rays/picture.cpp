@@ -12,6 +12,8 @@ namespace brisance {
 
 namespace {
 
+constexpr int kTile = 16;  // pixels along the side of a tile
+
 float luminance_of_medium(const CellSum& cells) {
     float sum = 0.0f;
     for (const Cell cell : {Cell::V, Cell::MV, Cell::MM, Cell::MS, Cell::MA})
@@ -19,7 +21,8 @@ float luminance_of_medium(const CellSum& cells) {
     return sum;
 }
 
-// Rows of a picture together: their surfaces are lit in one call.
+// Rows of a picture together: their surfaces are lit in one call. They are traced in square tiles, so that the rays
+// that one brick of the medium meets come soon after each other, while it is in the caches.
 class Band {
 public:
     Band(const PixelRays& rays, int width, const LightSurfaces& light_surfaces, std::vector<FirstLook>& first)
@@ -27,21 +30,31 @@ public:
 
     void draw(int begin, int end, PictureWriter& writer) {
         sums_.assign(std::size_t(end - begin) * width_, RaySum{});
-        std::vector<std::vector<FoundSurface>> rows(end - begin);
-        parallel_for(end - begin, [&](std::size_t row) { draw_row(begin, static_cast<int>(row), rows[row]); });
+        const int columns = (width_ + kTile - 1) / kTile, rows = (end - begin + kTile - 1) / kTile;
+        Found found(std::size_t(end - begin) * columns);
+        parallel_for(std::size_t(rows) * columns, [&](std::size_t tile) {
+            const int column = static_cast<int>(tile) % columns,
+                      first = begin + static_cast<int>(tile) / columns * kTile;
+            for (int y = first; y < std::min(first + kTile, end); ++y)
+                draw_row_of_tile(begin, y, column, found[std::size_t(y - begin) * columns + column]);
+        });
         if (light_surfaces_)
-            light(rows, begin);
+            light(found, begin);
         for (int y = begin; y < end; ++y)
             for (int x = 0; x < width_; ++x)
                 writer.pixel(x, y, sums_[std::size_t(y - begin) * width_ + x]);
     }
 
 private:
-    void draw_row(int begin, int row, std::vector<FoundSurface>& found) {
-        for (int x = 0; x < width_; ++x) {
-            FirstLook* const look = first_.empty() ? nullptr : &first_[std::size_t(begin + row) * width_ + x];
-            RaySum& sum = sums_[std::size_t(row) * width_ + x];
-            sum = rays_.trace(x, begin + row, &found, look ? &look->glare : nullptr);
+    // What the rays of each tile's rows found; in the order of pixels.
+    using Found = std::vector<std::vector<FoundSurface>>;
+
+    // `begin`: first row of the band.
+    void draw_row_of_tile(int begin, int y, int column, std::vector<FoundSurface>& found) {
+        for (int x = column * kTile; x < std::min((column + 1) * kTile, width_); ++x) {
+            FirstLook* const look = first_.empty() ? nullptr : &first_[std::size_t(y) * width_ + x];
+            RaySum& sum = sums_[std::size_t(y - begin) * width_ + x];
+            sum = rays_.trace(x, y, &found, look ? &look->glare : nullptr);
             if (look) {
                 look->medium = luminance_of_medium(sum.cells);
                 look->through = sum.through;
@@ -49,18 +62,18 @@ private:
         }
     }
 
-    void light(const std::vector<std::vector<FoundSurface>>& rows, int begin) {
+    void light(const Found& found, int begin) {
         const std::size_t first = std::size_t(begin) * width_;
         std::vector<SurfaceSample> all;
-        for (const auto& row : rows)
-            for (const FoundSurface& f : row)
+        for (const auto& some : found)
+            for (const FoundSurface& f : some)
                 all.push_back({f.sample.pixel, f.sample.number, f.sample.ray, f.sample.hit, f.weight,
                                luminance(sums_[f.sample.pixel - first].cells)});
         std::vector<CellSum> lit(all.size());
         light_surfaces_(all, lit);
         std::size_t next = 0;
-        for (const auto& row : rows)
-            for (const FoundSurface& f : row)
+        for (const auto& some : found)
+            for (const FoundSurface& f : some)
                 sums_[f.sample.pixel - first].cells.add(lit[next++], Rgb(f.weight));
     }
 

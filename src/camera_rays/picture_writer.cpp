@@ -51,6 +51,22 @@ void PictureWriter::add(int x, int y, const RaySum& more) {
     }
 }
 
+void PictureWriter::replace(int x, int y, const RaySum& seen) {
+    clear(x, y);
+    add(x, y, seen);
+}
+
+void PictureWriter::clear(int x, int y) {
+    const std::size_t i = std::size_t(y) * image_.width + x;
+    for (int l = 0; l < static_cast<int>(image_.layers.size()); ++l)
+        if (Layer& layer = image_.layers[l]; l != z_) {
+            const std::size_t n = layer.channels.size();
+            std::fill_n(layer.pixels.begin() + std::ptrdiff_t(i * n), n, 0.0f);
+        }
+    if (!from_fire_.empty())
+        from_fire_[i] = from_emitters_[i] = Rgb(0.0f);
+}
+
 float PictureWriter::luminance_at(int x, int y) const {
     const float* b = &image_.layers[beauty_].pixels[4 * (std::size_t(y) * image_.width + x)];
     return luminance(Rgb(b[0], b[1], b[2]));

@@ -17,12 +17,15 @@ public:
     void pixel(int x, int y, const RaySum& seen);
     // Adds further data of a pixel to all layers but Z.
     void add(int x, int y, const RaySum& more);
+    // The same in the place of what was added.
+    void replace(int x, int y, const RaySum& seen);
     float luminance_at(int x, int y) const;  // of the picture
 
     Image take();
 
 private:
     void put(int layer, std::size_t pixel, const Rgb& c);
+    void clear(int x, int y);
     void file_single_scattering(Cell cell, const std::vector<Rgb>& once);
 
     const Camera& camera_;

@@ -87,19 +87,23 @@ int forecast_lattice_level(const Shot& shot, const CountedMedium& counted) {
 }
 
 double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan, const CameraSettings& camera) {
-    const int level = lighting_level(counted.medium, shot.lighting).level;
-    const double nodes = counted.lit_nodes / std::pow(kNodesOfParent, level), gathers = plan.multiple ? 2.0 : 1.0;
+    const LightingLevels levels = lighting_levels(counted.medium, shot.lighting);
+    const auto nodes_of = [&](const LightingLevel& level) {
+        return counted.lit_nodes / std::pow(kNodesOfParent, level.level);
+    };
+    const double nodes = nodes_of(levels.first), of_smoke = plan.multiple ? nodes_of(levels.smoke) : 0.0;
     double evaluations = kEvaluationsOfNode * nodes * std::pow(double(shot.lighting.alpha), kPowerOfAlpha);
     double coarse = 0.0;
     if (plan.multiple) {
         const int series = forecast_lattice_level(shot, counted);
         const double flights = 1.0 + (series > 0 ? kFineBounce * count_of_fine_bounces(orders_of(shot)) : 0.0);
-        evaluations += flights * kEvaluationsOfNode * nodes * std::pow(double(shot.scattering.alpha), kPowerOfAlpha);
+        evaluations += flights * kEvaluationsOfNode * of_smoke * std::pow(double(shot.scattering.alpha), kPowerOfAlpha);
         coarse = counted.lit_nodes / std::pow(kNodesOfParent, series);
     }
     const double map =
         std::pow(double(shadow_resolution(shot.lighting)), 2.0) * shadow_distances(shot.lighting) / kKnownMap;
-    const double values = 0.5 * gathers * map * (kMapValuesOfNode * nodes + kMapValuesAtTop);
+    const double values =
+        0.5 * map * (kMapValuesOfNode * (nodes + of_smoke) + (plan.multiple ? 2.0 : 1.0) * kMapValuesAtTop);
     return kFrame + kEvaluation * (plan.directional ? kDirectional : 1.0) * evaluations + kMapValue * values +
            kCoarseNode * coarse + kCameraRay * camera_rays(shot, counted.medium, camera);
 }

@@ -49,15 +49,17 @@ double voxel_depth(const Medium& medium) {
 
 class ErrorModel {
 public:
-    // `coarse_light`: the error of light on a coarser lattice than the medium's. `fine_bounces`: the share of the
-    // light of the orders on a lattice of `lattice_level` that they replace.
-    ErrorModel(const ModelledFrame& frame, double coarse_light, double lattice_level, double fine_bounces,
-               double remainder)
+    // `coarse_light`: the error of light on a coarser lattice than the medium's, before it has scattered.
+    // `smoke_level`: lattice of light that has. `fine_bounces`: the share of the light of the orders, on a lattice of
+    // `lattice_level`, that they replace.
+    ErrorModel(const ModelledFrame& frame, double coarse_light, double smoke_level, double lattice_level,
+               double fine_bounces, double remainder)
         : plan_(frame.plan),
           coarse_light_(coarse_light),
           interpolation_(tolerated_interpolation(frame.shot.lighting, std::size_t(frame.counted.lit_nodes))),
           depth_(voxel_depth(frame.counted.medium)),
-          orders_(depth_ * error_of_orders(std::exp2(lattice_level), fine_bounces)),
+          orders_(depth_ * std::exp2(smoke_level) *
+                  error_of_orders(std::exp2(lattice_level - smoke_level), fine_bounces)),
           remainder_(remainder) {
         const LightingSettings& settings = frame.shot.lighting;
         if (settings.shadows == ShadowMethod::Maps)
@@ -74,8 +76,7 @@ public:
             return {cell, limited(std::hypot(std::sqrt(gathered), error_of_voxels(float(depth_)) + coarse_light_)),
                     kSpread};
         if (cell == "MM")
-            return mixed(
-                {cell, limited(std::sqrt(gathered + square(coarse_light_) + square(orders_)) + remainder_), kSpread});
+            return mixed({cell, limited(std::sqrt(gathered + square(orders_)) + remainder_), kSpread});
         const ExpectedError rest{cell, kErrorOfSurfaces, kSpreadOfRest};
         return cell == "SM" ? mixed(rest) : rest;
     }
@@ -117,10 +118,12 @@ double sum_of_squares(const Layer& layer) {
 
 std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFrame& frame,
                                            const Statistics& statistics) {
+    const std::string lattice = "lattice of the light";
     const std::string series = "orders of scattering on the coarse lattice";
     const ErrorModel model(
-        frame, noted(statistics, "lattice of the light", "error"), noted(statistics, series, "lattice_level"),
-        noted(statistics, series, "share_of_fine_bounces"), noted(statistics, series, "estimated_remainder"));
+        frame, noted(statistics, lattice, "error"), noted(statistics, lattice, "smoke_lattice_level"),
+        noted(statistics, series, "lattice_level"), noted(statistics, series, "share_of_fine_bounces"),
+        noted(statistics, series, "estimated_remainder"));
     std::vector<ExpectedError> out(1);
     double errors = 0.0, spreads = 0.0, light = 0.0;
     for (const std::string& cell : frame.plan.cells())
@@ -143,10 +146,11 @@ std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFra
 ExpectedError expected_error(const ModelledFrame& frame) {
     const ScatteringSettings settings = orders_of(frame.shot);
     const int level = forecast_lattice_level(frame.shot, frame.counted);
-    const double coarse_light = lighting_level(frame.counted.medium, frame.shot.lighting).error;
+    const LightingLevels levels = lighting_levels(frame.counted.medium, frame.shot.lighting);
     const double fine_bounces = share_of_fine_bounces({level}, settings, frame.shot.lighting.error);
     ExpectedError out =
-        ErrorModel(frame, coarse_light, level, fine_bounces, settings.remainder).of(brightest(frame.plan));
+        ErrorModel(frame, levels.first.error, levels.smoke.level, level, fine_bounces, settings.remainder)
+            .of(brightest(frame.plan));
     out.cell.clear();
     return out;
 }

@@ -13,7 +13,7 @@ namespace {
 
 // The distance between the nodes at which a level's light is gathered, over its blending radius. An interpolant errs as
 // the square of that distance.
-constexpr float kShareOfRadius = 0.0625f, kErrorOfShare = 0.02f;
+constexpr float kShareOfRadius = 0.125f, kErrorOfShare = 0.02f;
 
 // The k-th node of a brick, in sub-blocks of 4 x 2 x 2 so that groups of 16 are compact.
 ivec3 node_in_sub_blocks(int k) {

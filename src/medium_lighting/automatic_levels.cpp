@@ -11,7 +11,8 @@ AutomaticLevels automatic_levels_of(const Medium& medium, const LightingSettings
     if (medium.lattice.brick_count() == 0)
         return {};
     const ExtinctionPyramid pyramid(medium, ExtinctionPyramid::kMaxLevels);
-    return {lighting_level(medium, settings).level, automatic_levels(medium),
+    const LightingLevels levels = lighting_levels(medium, settings);
+    return {levels.first.level, levels.smoke.level, automatic_levels(medium),
             lattice_of_series(pyramid, scattering, settings.error).level};
 }
 

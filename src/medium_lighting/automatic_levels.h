@@ -9,6 +9,7 @@ namespace brisance {
 
 struct AutomaticLevels {
     int light = 0;       // lighting.lattice_level
+    int smoke = 0;       // lighting.smoke_lattice_level
     int lighting = 1;    // lighting.levels
     int scattering = 0;  // scattering.lattice_level
 };

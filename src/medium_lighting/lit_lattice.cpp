@@ -20,6 +20,15 @@ constexpr int kExteriorRayLevel = 2;
 // Levels above the medium's own on which light is gathered first.
 constexpr int kLitLevels = 3;
 
+// Settings count levels from the medium's own lattice.
+MediumLightingInput with_levels_above(MediumLightingInput input, int level) {
+    if (int& levels = input.lighting.levels; levels > 0)
+        levels = std::max(1, levels - level);
+    if (int& scattering = input.scattering.lattice_level; scattering >= 0)
+        scattering = std::max(0, scattering - level);
+    return input;
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> nodes_beside_extinction(const Medium& medium) {
@@ -40,7 +49,7 @@ std::vector<std::uint8_t> nodes_beside_extinction(const Medium& medium) {
 }
 
 LitLattice::LitLattice(const MediumLightingInput& input, int level)
-    : input_(input),
+    : input_(with_levels_above(input, level)),
       level_(level),
       coarse_(level > 0 ? std::make_unique<Medium>(medium_to_light(input.medium, level)) : nullptr),
       pyramid_(medium(), ExtinctionPyramid::kMaxLevels),

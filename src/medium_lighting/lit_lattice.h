@@ -19,12 +19,13 @@ std::vector<std::uint8_t> nodes_beside_extinction(const Medium& medium);
 
 class LitLattice {
 public:
-    // `level`: light lives on the lattice 2^level coarser than the medium's, in a medium of mean extinction.
+    // Keeps what the input refers to. `level`: light lives on the lattice 2^level coarser than the medium's, in a
+    // medium of mean extinction.
     LitLattice(const MediumLightingInput& input, int level);
     LitLattice(const LitLattice&) = delete;
     LitLattice& operator=(const LitLattice&) = delete;
 
-    const MediumLightingInput& input() const { return input_; }
+    const MediumLightingInput& input() const { return input_; }  // its settings count levels from this lattice
     int level() const { return level_; }
     const Medium& medium() const { return coarse_ ? *coarse_ : input_.medium; }  // on the lattice of the light
     const ExtinctionPyramid& pyramid() const { return pyramid_; }
@@ -58,7 +59,7 @@ public:
     std::vector<Rgb> source_function(const Gathered& gathered) const;
 
 private:
-    const MediumLightingInput& input_;
+    MediumLightingInput input_;
     int level_;
     std::unique_ptr<Medium> coarse_;  // null: the input medium itself
     std::unique_ptr<Occluders> surfaces_;

@@ -71,7 +71,8 @@ void check_memory_to_light(const DrawInput& input) {
         return bytes_to_light(input.medium, input.plan.directional, input.shot.lighting.memory_limit_bytes, level);
     };
     if (available && needed(0) > *available)
-        check_memory(input.medium, needed(lighting_level(medium_lighting_input(input, input.plan, input.medium)).level),
+        check_memory(input.medium,
+                     needed(lighting_levels(medium_lighting_input(input, input.plan, input.medium)).first.level),
                      available);
 }
 

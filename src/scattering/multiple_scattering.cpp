@@ -203,8 +203,7 @@ void prepare_interpolation(const BrickLattice& lattice, const std::vector<std::u
 }
 
 std::vector<ScatteredLight> solve_scattering(const ScatteringInput& input, ScatteringCosts& costs, Progress& progress) {
-    std::vector<ScatteredLight> orders;
-    orders.push_back(scattered_light(input.pyramid->medium(), *input.first, *input.needed));
+    std::vector<ScatteredLight> orders{*input.once};
     if (input.settings.bounces == 2 || !(total_luminance(orders[0].intensity) > 0.0))
         return orders;
 

@@ -54,8 +54,7 @@ struct ScatteringCosts {
 
 struct ScatteringInput {
     const ExtinctionPyramid* pyramid;
-    const Gathered* first;                    // light arriving at the nodes from the fire, balanced; moments if g != 0
-    const std::vector<std::uint8_t>* needed;  // nodes where `first` holds
+    const ScatteredLight* once;  // leaving the nodes after its first scattering, not sharpened; directional if g != 0
     LightingSettings lighting;
     ScatteringSettings settings;
     bool separate_orders = false;

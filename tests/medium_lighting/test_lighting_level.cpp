@@ -80,14 +80,55 @@ TEST(LightingLevel, SmoothFireInThinSmokeNeedsNoFineLattice) {
 
 TEST(LightingLevel, SmallMediaAndStatedInterpolationKeepTheirLattice) {
     LightingSettings settings;
-    EXPECT_EQ(lighting_level(smooth_fire(0.01f), settings).level, 0);
+    EXPECT_EQ(lighting_levels(smooth_fire(0.01f), settings).first.level, 0);
     settings.interpolation = 0.5f;
-    EXPECT_EQ(lighting_level(smooth_fire(0.01f), settings).level, 0);
+    EXPECT_EQ(lighting_levels(smooth_fire(0.01f), settings).first.level, 0);
+    EXPECT_EQ(lighting_levels(smooth_fire(0.01f), settings).smoke.level, 0);
     settings.lattice_level = 3;
-    EXPECT_EQ(lighting_level(smooth_fire(0.01f), settings).level, 3);
+    EXPECT_EQ(lighting_levels(smooth_fire(0.01f), settings).first.level, 3);
+    EXPECT_EQ(lighting_levels(smooth_fire(0.01f), settings).smoke.level, 3);
 }
 
-// Over two million voxels: what is allowed is 0.37 % at an error of 2 %.
+TEST(LightingLevel, LightOfTheSmokeIsNeverOnAFinerLatticeThanTheFires) {
+    LightingSettings settings;
+    settings.smoke_lattice_level = 2;
+    EXPECT_EQ(lighting_levels(smooth_fire(0.01f), settings).smoke.level, 2);
+    settings.lattice_level = 3;
+    EXPECT_EQ(lighting_levels(smooth_fire(0.01f), settings).smoke.level, 3);
+}
+
+// The same smoke in voxels half as wide: its light has voxels of the same width in the world.
+TEST(LightingLevel, VoxelsOfTheSmokesLightDoNotDependOnThoseOfTheVolume) {
+    const auto width = [](int nodes, float extinction) {
+        Recipe r;
+        r.box = cube(-nodes, nodes);
+        r.world_from_index = cubic(1.0 / nodes);
+        r.density = [&](const ivec3& n) { return ball(n, dvec3(0.0), nodes - 1.0); };
+        r.settings.smoke.extinction_per_metre = extinction;
+        r.settings.smoke.albedo = Rgb(0.8f);
+        return std::exp2(float(lighting_levels(make_medium(r), {}).smoke.level)) / float(nodes);
+    };
+    EXPECT_EQ(width(16, 11.0f), width(32, 11.0f));
+    EXPECT_EQ(width(8, 5.0f), width(16, 5.0f));
+    EXPECT_LT(width(32, 30.0f), width(32, 11.0f));
+}
+
+TEST(LightingLevel, LightOfTheSmokeOnAWiderLatticeIsNearlyTheSame) {
+    const Medium medium = smooth_fire(4.0f);
+    const auto picture = [&](int level) {
+        Shot shot = small_view(24);
+        shot.lighting.smoke_lattice_level = level;
+        Progress silent;
+        return render_medium(shot, medium, silent);
+    };
+    const RenderedFrame fine = picture(0), coarse = picture(1);
+    EXPECT_EQ(layer_difference(coarse.image, fine.image, "MV"), 0.0);
+    const double difference = layer_difference(coarse.image, fine.image, "MM");
+    EXPECT_GT(difference, 0.0);
+    EXPECT_LT(difference, 0.02);
+}
+
+// Over two million voxels: what is allowed of the fire's light is 0.37 % at an error of 2 %.
 TEST(LightingLevel, FollowsTheOpticalDepthOfVoxelsWithoutJumps) {
     Recipe r;
     r.box = cube(-64, 64);
@@ -96,19 +137,25 @@ TEST(LightingLevel, FollowsTheOpticalDepthOfVoxelsWithoutJumps) {
     LightingSettings settings;
     r.settings.smoke.extinction_per_metre = 1.0f;
     Medium medium = make_medium(r);
-    float before = 1e9f;
+    float before = 1e9f, smoke_before = 1e9f;
     for (float extinction = 1.0f; extinction < 60.0f; extinction *= 1.03f) {
         for (float& e : medium.extinction)
             e = e > 0.0f ? extinction : 0.0f;
-        const LightingLevel level = lighting_level(medium, settings);
-        const float at = float(level.level) + level.share_of_coarser;
+        const LightingLevels levels = lighting_levels(medium, settings);
+        const auto number = [](const LightingLevel& level) { return float(level.level) + level.share_of_coarser; };
+        const float at = number(levels.first), smoke = number(levels.smoke);
         EXPECT_LE(at, before);
+        EXPECT_LE(smoke, smoke_before);
+        EXPECT_LE(at, smoke);
         if (before < 100.0f) {
             EXPECT_LT(before - at, 0.35f) << extinction;
+            EXPECT_LT(smoke_before - smoke, 0.35f) << extinction;
         }
         before = at;
+        smoke_before = smoke;
     }
     EXPECT_EQ(before, 0.0f);
+    EXPECT_EQ(smoke_before, 0.0f);
 }
 
 }  // namespace

@@ -29,12 +29,14 @@ constexpr float kNearlyAllowed = 1.5f;
 // The errors above do not see how light changes around a small fire in thin smoke: voxels twice as wide changed MV by
 // 2 % where the fire had 18 voxels across, and four times as wide by 11 %. Wider ones are not chosen.
 constexpr int kWidest = 1;
+// Of the smoke's, above those.
+constexpr int kSmokeWider = 1;
 
 // Errors of light on ever coarser lattices.
 class LatticeErrors {
 public:
-    explicit LatticeErrors(const Medium& medium)
-        : medium_(medium), depth_(medium.spacing * float(extinction_met(medium.extinction))) {
+    // `depth`: optical depth of a voxel.
+    LatticeErrors(const Medium& medium, float depth) : medium_(medium), depth_(depth) {
         if (medium.emits())
             emission_ = emission_luminance(medium);
     }
@@ -89,19 +91,23 @@ bool stays_on_its_lattice(const MediumLightingInput& input) {
            surfaces_reach_into(input.surroundings->scene(), input.medium);
 }
 
-}  // namespace
-
-float error_of_voxels(float depth) {
-    return kErrorOfVoxels * depth * depth;
+// The mean albedo, as a collision meets it: no larger part of what the picture shows has scattered twice.
+float albedo_met(const Medium& medium) {
+    double sum = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < medium.extinction.size(); ++i) {
+        const double weight = double(medium.extinction[i]) * medium.extinction[i];
+        sum += weight * luminance(medium.albedo_at(i));
+        all += weight;
+    }
+    return all > 0.0 ? float(sum / all) : 0.0f;
 }
 
-LightingLevel lighting_level(const MediumLightingInput& input) {
-    const LightingLevel level = lighting_level(input.medium, input.lighting);
-    const bool coarse = level.level > 0 || level.share_of_coarser > 0.0f;
-    return coarse && stays_on_its_lattice(input) ? LightingLevel{} : level;
+// Light of a lattice and the next coarser one, whose errors are known.
+LightingLevel between(int level, float error, float of_coarser, float allowed) {
+    return {level, 1.0f - glm::smoothstep(1.0f, kNearlyAllowed, of_coarser / allowed), error, of_coarser};
 }
 
-LightingLevel lighting_level(const Medium& medium, const LightingSettings& settings) {
+LightingLevel level_of_first(const Medium& medium, float depth, const LightingSettings& settings) {
     if (settings.lattice_level >= 0 || settings.interpolation >= 0.0f)
         return {std::max(0, settings.lattice_level)};
     const std::vector<float>& extinction = medium.extinction;
@@ -109,18 +115,54 @@ LightingLevel lighting_level(const Medium& medium, const LightingSettings& setti
     const float allowed = kTimesInterpolation * tolerated_interpolation(settings, std::size_t(voxels));
     if (!(allowed > 0.0f))
         return {};
-    const LatticeErrors errors(medium);
-    LightingLevel out;
-    for (float next = errors.of(1);; next = errors.of(out.level + 1)) {
-        out.error_of_coarser = next;
-        if (next > allowed) {
-            out.share_of_coarser = 1.0f - glm::smoothstep(1.0f, kNearlyAllowed, next / allowed);
-            return out;
-        }
-        out.error = next;
-        if (++out.level == kWidest)
-            return out;
+    const LatticeErrors errors(medium, depth);
+    int level = 0;
+    float error = 0.0f;
+    for (;;) {
+        const float next = errors.of(level + 1);
+        if (next > allowed)
+            return between(level, error, next, allowed);
+        error = next;
+        if (++level == kWidest)
+            return {level, 0.0f, error};
     }
+}
+
+LightingLevel level_of_smoke(const Medium& medium, float depth, const LightingSettings& settings,
+                             const LightingLevel& first) {
+    if (settings.smoke_lattice_level >= 0)
+        return {std::max(settings.smoke_lattice_level, first.level)};
+    if (settings.lattice_level >= 0 || settings.interpolation >= 0.0f)
+        return {first.level};
+    const float albedo = albedo_met(medium);
+    const auto error_of = [&](int level) { return albedo * error_of_voxels(std::exp2(float(level)) * depth); };
+    // Both as a level and a share of the next in one number.
+    const float finest = float(first.level) + first.share_of_coarser, widest = finest + kSmokeWider;
+    int allowed = first.level;
+    while (float(allowed) < widest && error_of(allowed + 1) <= settings.error)
+        ++allowed;
+    const LightingLevel by_error = between(allowed, error_of(allowed), error_of(allowed + 1), settings.error);
+    const float at = std::clamp(float(allowed) + by_error.share_of_coarser, finest, widest);
+    const int level = static_cast<int>(at);
+    return {level, at - float(level), error_of(level), error_of(level + 1)};
+}
+
+}  // namespace
+
+float error_of_voxels(float depth) {
+    return kErrorOfVoxels * depth * depth;
+}
+
+LightingLevels lighting_levels(const MediumLightingInput& input) {
+    const LightingLevels levels = lighting_levels(input.medium, input.lighting);
+    const auto coarse = [](const LightingLevel& level) { return level.level > 0 || level.share_of_coarser > 0.0f; };
+    return (coarse(levels.first) || coarse(levels.smoke)) && stays_on_its_lattice(input) ? LightingLevels{} : levels;
+}
+
+LightingLevels lighting_levels(const Medium& medium, const LightingSettings& settings) {
+    const float depth = medium.spacing * float(extinction_met(medium.extinction));
+    const LightingLevel first = level_of_first(medium, depth, settings);
+    return {first, level_of_smoke(medium, depth, settings, first)};
 }
 
 }  // namespace brisance

@@ -1,9 +1,13 @@
-// The lattice on which the light of a medium lives: coarser than the medium's own where its error is allowed.
+// The lattices on which the light of a medium lives: coarser than the medium's own where the error is allowed.
 //
 // A picture errs with the square of the optical depth of the voxels on which light is gathered, with the constant of
-// the believed errors (forecast/expected_errors.cpp), and with the emission that a coarser lattice cannot represent,
-// whose constant was chosen by pictures of one volume. What is allowed is what interpolation may add
-// (gathering/settings.h): nothing where lighting every node takes no more than a minute.
+// the believed errors (forecast/expected_errors.cpp).
+//
+// - Light that has not scattered yet errs as well by the emission that a coarser lattice cannot represent; that
+//   constant was chosen by pictures of one volume. What is allowed is what interpolation may add
+//   (gathering/settings.h): nothing where lighting every node takes no more than a minute.
+// - Light of the smoke is smooth where smoke is thin, whatever the fire does. Its voxels are the widest whose whole
+//   error lighting.error allows: they depend on the smoke in the world, not on the voxels that it is stored in.
 #pragma once
 
 #include "medium_lighting/input.h"
@@ -17,12 +21,17 @@ struct LightingLevel {
     float error_of_coarser = 0.0f;  // that light on level + 1 would add; 0 where it was not asked for
 };
 
-// As LightingSettings::lattice_level says, or by the errors; where an error of interpolation is stated, the medium's
-// own lattice. Beside surfaces that reach into the medium light stays on the medium's own lattice: it would be
-// interpolated through walls.
-LightingLevel lighting_level(const MediumLightingInput& input);
+struct LightingLevels {
+    LightingLevel first;  // of light that has not scattered yet
+    LightingLevel smoke;  // of light that has; never finer
+};
+
+// As LightingSettings say, or by the errors; where an error of interpolation is stated, the medium's own lattice.
+// Beside surfaces that reach into the medium light stays on the medium's own lattice: it would be interpolated through
+// walls.
+LightingLevels lighting_levels(const MediumLightingInput& input);
 // The same without surfaces.
-LightingLevel lighting_level(const Medium& medium, const LightingSettings& settings);
+LightingLevels lighting_levels(const Medium& medium, const LightingSettings& settings);
 
 // Relative error of light gathered on voxels of this optical depth, as a collision meets it.
 float error_of_voxels(float depth);

@@ -16,15 +16,15 @@ namespace brisance {
 
 namespace {
 
-std::vector<ScatteredLight> orders_of_scattering(const LitLattice& lattice, const Gathered& first,
+std::vector<ScatteredLight> orders_of_scattering(const LitLattice& lattice, const ScatteredLight& once,
                                                  const ScatteringSettings& settings, float fine_bounces,
                                                  Statistics& statistics, Progress& progress) {
     progress.stage("orders of scattering");
     const Stopwatch watch;
     const MediumLightingInput& input = lattice.input();
     ScatteringCosts costs;
-    std::vector<ScatteredLight> orders = solve_scattering(
-        {&lattice.pyramid(), &first, &lattice.needed(), input.lighting, settings, input.orders_apart}, costs, progress);
+    std::vector<ScatteredLight> orders =
+        solve_scattering({&lattice.pyramid(), &once, input.lighting, settings, input.orders_apart}, costs, progress);
     StageCost series{"orders of scattering on the coarse lattice", watch.seconds(), costs.bytes, {}};
     series.detail = {{"lattice_level", lattice.level() + costs.lattice_level},
                      {"share_of_coarser_level", costs.share_of_coarser},
@@ -87,7 +87,7 @@ FineBounces plan_fine_bounces(const LitLattice& lattice, ScatteringSettings& set
 }
 
 // Where light is gathered adaptively, the finest level of a bounce: what scatters on is smoothed.
-constexpr int kFinestOfBounce = 2;
+constexpr int kFinestOfBounce = 0;
 
 // The flights on the light's own lattice. The last ends where the light is scattered toward the camera.
 class FineFlights {
@@ -99,15 +99,14 @@ public:
         return build_hierarchy(lattice_.medium(), std::move(order), lattice_.input().lighting.levels);
     }
 
-    // Replaces the part `share` of the lights by what scatters after one more flight, with the light of `first` that
-    // has scattered once. Its far light is gathered at every second node: what scatters on needs no more.
-    void bounce(HierarchyLights& lights, const Gathered& first, float share) {
+    // Replaces the part `share` of the lights by what scatters after one more flight, with the light that has scattered
+    // once. Its far light is gathered at every second node: what scatters on needs no more.
+    void bounce(HierarchyLights& lights, const ScatteredLight& once, float share) {
         const MediumLightingInput& input = lattice_.input();
         keeps_maps_ = map_bytes(lights.field(lattice_.pyramid(), input.scattering.alpha, input.lighting, nullptr)) <=
                       input.lighting.memory_limit_bytes;
-        Gathered arriving = first;
-        arriving.add(gather(lights, {"fine", true}));
-        ScatteredLight leaving = scattered_light(lattice_.medium(), arriving, lattice_.needed());
+        ScatteredLight leaving = scattered_light(lattice_.medium(), gather(lights, {"fine", true}), lattice_.needed());
+        leaving.add(once, Rgb(1.0f));
         leaving.sharpen(lattice_.medium().lattice);
         ScatteredLight& light = lights.light;
         light.add(light, Rgb(-share));
@@ -195,34 +194,33 @@ private:
     nlohmann::ordered_json balances_ = nlohmann::ordered_json::array();
 };
 
-// The lights of all orders as seen from outside. Light that the camera sees also illuminates the surroundings: all
-// light that arrives at the nodes, scattered once more. Where light has a direction, or orders are counted, that is not
-// known, and the lights of the last flight replace it.
-HierarchyLights exterior_lights_of(const LitLattice& lattice, HierarchyLights last_flight, const Gathered& first,
+// The lights of all orders as seen from outside. Light that the camera sees also illuminates the surroundings: light
+// scattered once, and all light of the smoke that arrives at the nodes, scattered once more. Where light has a
+// direction, or orders are counted, that is not known, and the lights of the last flight replace it.
+HierarchyLights exterior_lights_of(const LitLattice& lattice, HierarchyLights last_flight, const ScatteredLight& once,
                                    const Gathered& scattered) {
     const MediumLightingInput& input = lattice.input();
     if (input.directional || input.scattering.bounces >= 0)
         return last_flight;
-    Gathered all = first;
-    all.add(scattered);
-    ScatteredLight leaving = scattered_light(lattice.medium(), all, lattice.needed());
+    ScatteredLight leaving = scattered_light(lattice.medium(), scattered, lattice.needed());
+    leaving.add(once, Rgb(1.0f));
     leaving.sharpen(lattice.medium().lattice);
     return build_hierarchy(lattice.medium(), std::move(leaving), input.lighting.levels);
 }
 
-Gathered gather_together(const LitLattice& lattice, ScatteredLight orders, const Gathered& first,
+Gathered gather_together(const LitLattice& lattice, ScatteredLight orders, const ScatteredLight& once,
                          const FineBounces& bounces, FineFlights& flights, SmokeLight& out, Statistics& statistics,
                          Progress& progress) {
     Gathered sum;
     sum.resize(lattice.node_count(), lattice.input().directional, false);
     HierarchyLights lights = flights.build(std::move(orders));
     for (int k = 0; k < bounces.count; ++k)
-        flights.bounce(lights, first, bounces.share);
+        flights.bounce(lights, once, bounces.share);
     sum.add(flights.gather_last(lights, "last"));
     const bool on_surfaces = lattice.input().smoke_on_surfaces;
     if (lattice.lights_exterior(on_surfaces)) {
         out.exterior =
-            std::make_unique<ExteriorLights>(lattice, exterior_lights_of(lattice, std::move(lights), first, sum),
+            std::make_unique<ExteriorLights>(lattice, exterior_lights_of(lattice, std::move(lights), once, sum),
                                              on_surfaces, lattice.input().scattering.alpha, statistics);
         out.exterior->light_thin_medium(lattice.last_request(), sum, statistics, progress);
     }
@@ -250,19 +248,19 @@ Gathered gather_apart(const LitLattice& lattice, std::vector<ScatteredLight> ord
 
 }  // namespace
 
-SmokeLight light_from_smoke(const LitLattice& lattice, const Gathered& first, Statistics& statistics,
+SmokeLight light_from_smoke(const LitLattice& lattice, const ScatteredLight& once, Statistics& statistics,
                             Progress& progress) {
     ScatteringSettings settings = lattice.input().scattering;
     const FineBounces bounces = plan_fine_bounces(lattice, settings);
     std::vector<ScatteredLight> orders =
-        orders_of_scattering(lattice, first, settings, bounces.count > 0 ? bounces.share : 0.0f, statistics, progress);
+        orders_of_scattering(lattice, once, settings, bounces.count > 0 ? bounces.share : 0.0f, statistics, progress);
     progress.stage("light from the smoke (MM)");
     FineFlights flights(lattice, progress);
     SmokeLight out;
     const Gathered sum =
         lattice.input().orders_apart
             ? gather_apart(lattice, std::move(orders), flights, out, statistics, progress)
-            : gather_together(lattice, std::move(orders.front()), first, bounces, flights, out, statistics, progress);
+            : gather_together(lattice, std::move(orders.front()), once, bounces, flights, out, statistics, progress);
     out.multiple = lattice.source_function(sum);
     statistics.stages.push_back(flights.cost(sum));
     return out;

@@ -16,8 +16,8 @@ struct SmokeLight {
     std::unique_ptr<ExteriorLights> exterior;  // where LitLattice::lights_exterior(), or null
 };
 
-// `first`: light that arrives at the nodes without having scattered in the medium, or from surfaces.
-SmokeLight light_from_smoke(const LitLattice& lattice, const Gathered& first, Statistics& statistics,
+// `once`: light leaving the nodes after its first scattering, not sharpened.
+SmokeLight light_from_smoke(const LitLattice& lattice, const ScatteredLight& once, Statistics& statistics,
                             Progress& progress);
 
 }  // namespace brisance

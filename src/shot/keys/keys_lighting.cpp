@@ -17,6 +17,11 @@ void add_lighting_keys(std::vector<Key>& keys) {
         "light in smoke is gathered on voxels 2^n wide; auto: as wide as lighting.error allows",
         or_word(whole(0, 8), "auto", -1), [](Shot & s) -> auto& { return s.lighting.lattice_level; }));
     keys.push_back(make_key(
+        "lighting.smoke_lattice_level",
+        "the same for light that smoke scatters on to smoke, on no finer ones; auto: as lighting.lattice_level where "
+        "that is stated, or as wide as lighting.error allows",
+        or_word(whole(0, 8), "auto", -1), [](Shot & s) -> auto& { return s.lighting.smoke_lattice_level; }));
+    keys.push_back(make_key(
         "lighting.alpha", "a light of level l serves up to about alpha spacings of its level: larger is more exact",
         real_float({1.0, 64.0}), [](Shot & s) -> auto& { return s.lighting.alpha; }));
     keys.push_back(make_key(

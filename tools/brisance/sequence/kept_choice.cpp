@@ -27,6 +27,7 @@ std::string to_text(const KeptChoice& choice) {
     Json json = {{"time", of_time(shot.time, shot.velocity)},
                  {"lighting_levels", shot.lighting.levels},
                  {"lighting_lattice_level", shot.lighting.lattice_level},
+                 {"smoke_lattice_level", shot.lighting.smoke_lattice_level},
                  {"lattice_level", shot.scattering.lattice_level},
                  {"escape", shot.scattering.escape},
                  {"said", choice.said},
@@ -46,6 +47,7 @@ std::optional<KeptChoice> kept_choice(const std::string& text, const Shot& given
         take_time(json.at("time"), shot.time, shot.velocity);
         shot.lighting.levels = json.at("lighting_levels").get<int>();
         shot.lighting.lattice_level = json.at("lighting_lattice_level").get<int>();
+        shot.lighting.smoke_lattice_level = json.at("smoke_lattice_level").get<int>();
         shot.scattering.lattice_level = json.at("lattice_level").get<int>();
         shot.scattering.escape = json.at("escape").get<float>();
         json.at("said").get_to(out.said);
