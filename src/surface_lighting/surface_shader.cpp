@@ -39,11 +39,6 @@ float share_of_walks(const SurfaceLightingInput& input) {
     return glm::smoothstep(0.3f, 0.6f, std::abs(input.field.medium().mean_cosine));
 }
 
-// Whether the lobes other than the base are not deltas.
-bool has_wide_lobes(const SurfaceMaterial& m) {
-    return has_specular(m) && double(m.roughness) * m.roughness >= kSmoothAlpha;
-}
-
 }  // namespace
 
 SurfaceShader::SurfaceShader(const SurfaceLightingInput& input)
@@ -52,6 +47,7 @@ SurfaceShader::SurfaceShader(const SurfaceLightingInput& input)
       medium_(input.field, input.paths.direct(), input.parts, input.in_scattering, input.emitters_by_rays),
       emitters_(input.paths.direct(), input.samples, input.seed),
       panes_(surroundings_),
+      gloss_(input.paths.direct(), medium_, samples_through_panes()),
       mirrors_(input.paths.direct(), medium_, input.needed.contains(Cell::SS), input.seed),
       planar_(input.paths.direct().field().medium()),
       smoke_of_paths_({input.field, input.paths.direct(), kPartsForPaths, nullptr, input.emitters_by_rays}),
@@ -109,48 +105,6 @@ std::vector<BaseLight> SurfaceShader::light_bases(const std::vector<SurfaceSampl
         .light(bases, receivers);
 }
 
-// All lobes but the base, and how rays and lights share them.
-struct SurfaceShader::GlossyLobes {
-    Bsdf bsdf;
-    GlossSplit split;
-    GlossyLobes(const SurfacePoint& point, const dvec3& toward_viewer, int light_samples)
-        : bsdf(point.material, point.frame, Lobes::Specular), split(point, bsdf, toward_viewer, light_samples) {}
-    GlossyLobes(const GlossyLobes&) = delete;
-    GlossyLobes& operator=(const GlossyLobes&) = delete;
-};
-
-// Samples one direction of those lobes and adds what the medium emits and scatters along it. Small flames are rarely
-// met so: a line toward the fire finds its emission, too, and the balance heuristic weights both.
-void SurfaceShader::reflect_medium(const SurfacePoint& point, const dvec3& toward_viewer, const GlossyLobes& lobes,
-                                   Rng& rng, Rng& ray_rng, CellSum& light) const {
-    const DirectLight& direct = input_.paths.direct();
-    const PathVertex vertex(point, lobes.bsdf, -toward_viewer);
-    const float lines = has_wide_lobes(point.material) ? direct.fire_lines_on_surface(vertex) : 0.0f;
-    if (lines > 0.0f)
-        light.at(Cell::SV) += direct.from_fire(vertex, lines, ray_rng);
-    const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
-    const std::optional<BsdfSample> drawn = lobes.bsdf.sample(toward_viewer, {x, y, z});
-    if (!drawn || point.leaks(toward_viewer, drawn->wi))
-        return;
-    const float of_rays = drawn->delta ? 1.0f : float(lobes.split.of_rays(drawn->wi));
-    Rgb weight = drawn->weight;
-    RaySegment segment = direct.segment_along(point.leaving(drawn->wi));
-    for (int panes = 0;; ++panes) {
-        RaySum seen = medium_.look(segment.ray, segment.end, ray_rng);
-        seen.cells.at(Cell::MM) *= of_rays;
-        if (panes == 0 && !drawn->delta && seen.cells.at(Cell::V) != Rgb(0.0f))
-            seen.cells.at(Cell::V) *= direct.weight_of_sample(lines, segment.ray, drawn->pdf);
-        light.at(panes == 0 ? Cell::SV : Cell::SS) += weight * seen.cells.at(Cell::V);
-        light.at(panes == 0 ? Cell::SM : Cell::SS) += weight * scattered_by_medium(seen.cells);
-        if (!samples_through_panes() || !segment.point || seen.depth > kOpaqueDepth)
-            return;
-        weight *= std::exp(-seen.depth) * Panes::straight_on(*segment.point, segment.ray.direction);
-        if (weight == Rgb(0.0f))
-            return;
-        segment = direct.segment_along(segment.point->leaving(segment.ray.direction));
-    }
-}
-
 // Adds the medium's light that the grids of fire and smoke do not hold: lights in the smoke, and glossy reflection.
 void SurfaceShader::reflect_scattered(const SurfacePoint& point, const dvec3& toward_viewer, Rng& rng, Rng& ray_rng,
                                       CellSum& light) const {
@@ -167,7 +121,7 @@ void SurfaceShader::reflect_scattered(const SurfacePoint& point, const dvec3& to
                 point, ReceiverLobes(base, shared ? &gloss->split : nullptr), toward_viewer, ray_rng);
     }
     if (gloss)
-        reflect_medium(point, toward_viewer, *gloss, rng, ray_rng, light);
+        gloss_.reflect(point, toward_viewer, *gloss, rng, ray_rng, light);
 }
 
 VirtualLights::Shading SurfaceShader::shading(ShadedPoint& at) const {

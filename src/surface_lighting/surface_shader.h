@@ -26,6 +26,7 @@
 #include "medium_lighting/medium_lighting.h"
 #include "reference/path_tracer.h"
 #include "surface_lighting/bound_account.h"
+#include "surface_lighting/gloss_of_medium.h"
 #include "surface_lighting/light_of_emitters.h"
 #include "surface_lighting/light_reuse.h"
 #include "surface_lighting/mirrors.h"
@@ -72,7 +73,6 @@ public:
 
 private:
     struct ShadedPoint;
-    struct GlossyLobes;
     std::vector<ShadedPoint> shaded_points(const std::vector<SurfaceSample>& samples,
                                            std::vector<CellSum>& light) const;
     std::vector<BaseLight> light_bases(const std::vector<SurfaceSample>& samples,
@@ -94,8 +94,6 @@ private:
                                                        const CellSum& light) const;
     void reflect_scattered(const SurfacePoint& point, const dvec3& toward_viewer, Rng& rng, Rng& ray_rng,
                            CellSum& light) const;
-    void reflect_medium(const SurfacePoint& point, const dvec3& toward_viewer, const GlossyLobes& lobes, Rng& rng,
-                        Rng& ray_rng, CellSum& light) const;
 
     // Whether fire or smoke shines.
     bool medium_shines() const { return input_.medium_lighting || input_.fire; }
@@ -110,6 +108,7 @@ private:
     MediumAlongRay medium_;
     LightOfEmitters emitters_;
     Panes panes_;
+    GlossOfMedium gloss_;
     Mirrors mirrors_;
     PlanarLight planar_;
     LitSmokeAlongRay smoke_of_paths_;

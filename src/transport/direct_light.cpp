@@ -44,19 +44,22 @@ float DirectLight::fire_lines_on_surface(const PathVertex& vertex) const {
 }
 
 // value / (lines pdf) times the balance heuristic's weight, lines pdf / (lines pdf + pdf of the BSDF): one quotient.
-Rgb DirectLight::from_fire(const PathVertex& vertex, float fire_lines, Rng& rng) const {
+std::optional<DirectLight::LineTowardFire> DirectLight::line_toward_fire(const PathVertex& vertex, float fire_lines,
+                                                                         Rng& rng) const {
     const Ray line = vertex.leaving(fire_.sample(vertex.position(), rng));
     const PathVertex::Value scattered = vertex.at(line.direction);
     if (scattered.value == Rgb(0.0f))
-        return Rgb(0.0f);
+        return std::nullopt;
     double end = kNoEnd;
     if (surroundings_)
         if (const std::optional<SurfaceHit> hit = surroundings_->intersector().first_hit(line))
             end = hit->distance;
-    const Rgb seen = lines_.follow_line(line, rng, end);
-    if (seen == Rgb(0.0f))
-        return seen;
-    return scattered.value / float(fire_lines * fire_.pdf(line) + scattered.pdf) * seen;
+    return LineTowardFire{line, end, scattered.value / float(fire_lines * fire_.pdf(line) + scattered.pdf)};
+}
+
+Rgb DirectLight::from_fire(const PathVertex& vertex, float fire_lines, Rng& rng) const {
+    const std::optional<LineTowardFire> line = line_toward_fire(vertex, fire_lines, rng);
+    return line ? line->weight * lines_.follow_line(line->ray, rng, line->end) : Rgb(0.0f);
 }
 
 float DirectLight::weight_of_sample(float fire_lines, const Ray& ray, double pdf) const {

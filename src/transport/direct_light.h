@@ -37,10 +37,18 @@ public:
     float fire_lines_in_medium(const Collision& collision) const;
     float fire_lines_on_surface(const PathVertex& vertex) const;
 
-    // Radiance [W/(m^2 sr)] scattered from one line toward the fire, sampled with probability `fire_lines` and weighted
-    // against the direction that the vertex samples. There must be a fire.
+    // A line from the vertex toward the fire, sampled with probability `fire_lines` and weighted against the direction
+    // that the vertex samples: `weight` times the radiance along it is the light scattered. Up to the first surface;
+    // none where nothing is scattered. There must be a fire.
+    struct LineTowardFire {
+        Ray ray;
+        double end;
+        Rgb weight;
+    };
+    std::optional<LineTowardFire> line_toward_fire(const PathVertex& vertex, float fire_lines, Rng& rng) const;
+    // Radiance [W/(m^2 sr)] of the fire's emission scattered from such a line.
     Rgb from_fire(const PathVertex& vertex, float fire_lines, Rng& rng) const;
-    // The weight of the fire's emission along a ray that the vertex sampled with density `pdf` [1/sr].
+    // The weight of a ray that the vertex sampled with density `pdf` [1/sr] against such lines.
     float weight_of_sample(float fire_lines, const Ray& ray, double pdf) const;
 
     // Radiance [W/(m^2 sr)] scattered from a point on one of the emitters, seen through the medium and weighted against
