@@ -16,7 +16,8 @@ namespace {
 Gathered light_from_emitters(const LitLattice& lattice, Statistics& statistics, Progress& progress) {
     progress.stage("light from emitters (MA)");
     const Stopwatch watch;
-    Gathered arriving = gather_from_emitters(*lattice.input().surroundings, lattice.pyramid(), lattice.request());
+    Gathered arriving = gather_from_emitters(*lattice.input().surroundings, lattice.pyramid(), lattice.request(),
+                                             lattice.input().eye, lattice.input().emitters_at_nodes);
     prepare_interpolation(lattice.medium().lattice, lattice.needed(), arriving);
     statistics.stages.push_back({"light from emitters (MA)", watch.seconds(), 0, {}});
     return arriving;
@@ -52,11 +53,8 @@ LatticeLighting::LatticeLighting(const MediumLightingInput& input, int level, St
     }
     if (input.surroundings && input.emitters_on_medium) {
         const Gathered arriving = light_from_emitters(lattice_, statistics, progress);
-        if (input.emitters_at_nodes > 0.0f) {
-            nodes_.from_emitters = lattice_.source_function(arriving);
-            for (Rgb& source : nodes_.from_emitters)
-                source *= input.emitters_at_nodes;
-        }
+        nodes_.from_emitters = lattice_.source_function(arriving);
+        nodes_.emitters_at_nodes = input.emitters_at_nodes;
         first.add(arriving);
     }
     if (input.multiple) {
