@@ -71,8 +71,8 @@ void add_part(RaySum& sum, const SourceField& field, const Part& p) {
     sum.cells.at(Cell::MM) += slot(r, SourceRecord::MM) * scattering.opacity;
     if (field.has_outside()) {
         sum.cells.at(Cell::MS) += slot(p.outside.value, SurroundingsRecord::MS) * scattering.opacity;
-        sum.cells.at(Cell::MA) += slot(p.outside.value, SurroundingsRecord::MA) *
-                                  (field.emitters_share() * scattering.opacity);
+        sum.cells.at(Cell::MA) +=
+            slot(p.outside.value, SurroundingsRecord::MA) * (field.emitters_share() * scattering.opacity);
     }
     sum.albedo_sum += Rgb(own.opacity * r[SourceRecord::Albedo]);
     sum.distance_weight += own.opacity;

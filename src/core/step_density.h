@@ -9,7 +9,8 @@ namespace brisance {
 class StepDensity {
 public:
     void clear() { steps_.clear(); }
-    // Steps in ascending order, without overlap; `weight`, at least 0: of the whole step. Those of weight 0 are left out.
+    // Steps in ascending order, without overlap; `weight`, at least 0: of the whole step. Those of weight 0 are left
+    // out.
     void add(double begin, double end, double weight) {
         if (weight > 0.0 && end > begin)
             steps_.push_back({begin, end, weight, all() + weight});

@@ -59,8 +59,8 @@ bool lights_medium(const Plan& plan) {
 // Whether MV and MA of the lighting hold light that scattered more than once, and it is needed separately: for a layer,
 // or beside an MV or MA that is not the lighting's.
 bool wants_single_scattering_apart(const DrawInput& input) {
-    return takes_peaks_for_straight(input) && (input.shot.output.cell_layers || input.plan.fire_on_rays() ||
-                                               input.plan.emitters_by_rays > 0.0f);
+    return takes_peaks_for_straight(input) &&
+           (input.shot.output.cell_layers || input.plan.fire_on_rays() || input.plan.emitters_by_rays > 0.0f);
 }
 
 }  // namespace

@@ -15,9 +15,9 @@ namespace brisance {
 
 namespace {
 
-// Points on the emitters for a node: most where the camera sees it, least where smoke hides it. A node's variance counts
-// by the square of the transmittance T to the camera, so that for the least error at equal cost their number is in
-// proportion to T.
+// Points on the emitters for a node: most where the camera sees it, least where smoke hides it. A node's variance
+// counts by the square of the transmittance T to the camera, so that for the least error at equal cost their number is
+// in proportion to T.
 constexpr float kMost = 32.0f, kLeast = 8.0f, kMostPerTransmittance = 1.5f;
 // Width of the cone in which smoke is averaged, over that of the solid angle that a sample stands for. With 0.5 smoke
 // under a sky is 0.8 % too dark, with 0.2 by less than its noise; the time hardly differs.
@@ -50,8 +50,8 @@ public:
           // Larger than any distance within the medium.
           beyond_(2.0f * local_bounds(medium).diagonal()) {}
 
-    // Appends the rays of a node at `p`. A light without extent has one ray, however often it was sampled. Each light at
-    // infinity, and all others together, take an equal part of `samples`. That need not be a whole number: the last
+    // Appends the rays of a node at `p`. A light without extent has one ray, however often it was sampled. Each light
+    // at infinity, and all others together, take an equal part of `samples`. That need not be a whole number: the last
     // sample of a part counts for what is left, so that light is continuous in it.
     void sample(std::size_t node, const vec3& p, float samples, std::vector<NodeRay>& rays) const {
         const std::size_t first = rays.size(), parts = surroundings_.emitters().choices();
