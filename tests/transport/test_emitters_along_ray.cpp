@@ -127,10 +127,10 @@ TEST(EmittersAlongRay, AGuideChangesNoiseAlone) {
     const Medium medium = even_smoke();
     Scene none;
     none.origin = medium.world_of_local(vec3(0.0f));
-    std::vector<LightSettings> lamps(9);  // more than points are aimed at
+    std::vector<LightSettings> lamps(24);  // more than points are aimed at
     double exact = 0.0;
     for (LightSettings& lamp : lamps) {
-        lamp.position = {0.2, -0.2 + 0.01 * double(&lamp - lamps.data()), 0.42};
+        lamp.position = {0.2, -0.2 + 0.002 * double(&lamp - lamps.data()), 0.33};
         lamp.power = Rgb(1.0f);
         exact += expected(lamp.position, kRay, kEnd, [](const dvec3&) { return 1.0; });
         lamp.position += none.origin;
@@ -138,10 +138,10 @@ TEST(EmittersAlongRay, AGuideChangesNoiseAlone) {
     const Surroundings surroundings(std::move(none), lamps);
     const DirectLight scene(medium, {}, &surroundings);
     StepDensity right, wrong;
-    for (int i = 0; i < 30; ++i) {
-        const double middle = (i + 0.5) * 0.1, from_lamps = middle - 1.7;
-        right.add(i * 0.1, i * 0.1 + 0.1, 1.0 / (from_lamps * from_lamps + 0.02));
-        wrong.add(i * 0.1, i * 0.1 + 0.1, i < 5 ? 1.0 : 0.0);
+    for (int i = 0; i < 150; ++i) {
+        const double middle = (i + 0.5) * 0.02, from_lamps = middle - 1.7;
+        right.add(i * 0.02, i * 0.02 + 0.02, 1.0 / (from_lamps * from_lamps + 0.002));
+        wrong.add(i * 0.02, i * 0.02 + 0.02, i < 25 ? 1.0 : 0.0);
     }
     const Spread plain = found(scene, kRay, kEnd, 8), guided = found(scene, kRay, kEnd, 8, &right),
                  misled = found(scene, kRay, kEnd, 8, &wrong);
