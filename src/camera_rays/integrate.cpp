@@ -71,7 +71,8 @@ void add_part(RaySum& sum, const SourceField& field, const Part& p) {
     sum.cells.at(Cell::MM) += slot(r, SourceRecord::MM) * scattering.opacity;
     if (field.has_outside()) {
         sum.cells.at(Cell::MS) += slot(p.outside.value, SurroundingsRecord::MS) * scattering.opacity;
-        sum.cells.at(Cell::MA) += slot(p.outside.value, SurroundingsRecord::MA) * scattering.opacity;
+        sum.cells.at(Cell::MA) +=
+            slot(p.outside.value, SurroundingsRecord::MA) * (field.emitters_share() * scattering.opacity);
     }
     sum.albedo_sum += Rgb(own.opacity * r[SourceRecord::Albedo]);
     sum.distance_weight += own.opacity;
@@ -118,6 +119,22 @@ RaySum integrate(const SourceField& field, const Ray& ray, int parts, double end
     sum.alpha = -std::expm1(-sum.depth);
     sum.through = 1.0f - sum.alpha;
     return sum;
+}
+
+void guide_by_emitters(const SourceField& field, const Ray& ray, double end, StepDensity& guide) {
+    guide.clear();
+    if (!field.has_emitters())
+        return;
+    float depth = 0.0f;
+    const auto add_voxel = [&](const VoxelSegment& s) {
+        const vec3 middle = sample_position(s, 0.5 * (s.begin + s.end));
+        const SourceRecord own = field.sample(s.brick, middle);
+        const SurroundingsRecord outside = field.sample_outside(s.brick, middle);
+        const Shown seen = shown(own.value[SourceRecord::Extinction], static_cast<float>(s.end - s.begin), depth);
+        guide.add(s.begin, s.end, seen.opacity * luminance(slot(outside.value, SurroundingsRecord::MA)));
+        return depth < kOpaqueDepth;
+    };
+    walk_voxels(field, ray, add_voxel, end);
 }
 
 }  // namespace brisance

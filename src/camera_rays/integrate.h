@@ -5,6 +5,7 @@
 
 #include "camera_rays/ray_sum.h"
 #include "camera_rays/source_field.h"
+#include "core/step_density.h"
 
 namespace brisance {
 
@@ -14,5 +15,9 @@ namespace brisance {
 // [m].
 RaySum integrate(const SourceField& field, const Ray& ray, int parts,
                  double end = std::numeric_limits<double>::infinity());
+
+// About where on the ray the light of emitters scatters, as the field's nodes know it, by the distance from its origin
+// [m]. Empty where they hold none.
+void guide_by_emitters(const SourceField& field, const Ray& ray, double end, StepDensity& guide);
 
 }  // namespace brisance

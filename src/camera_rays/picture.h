@@ -42,6 +42,7 @@ struct PictureSettings {
     // and MA of the main field hold light that scattered more than once. This field then holds the light that scattered
     // once, and the rest counts as MM.
     const SourceField* once = nullptr;
+    float once_by_rays = 0.0f;     // the share of its MA in whose place light_rays come
     int pass = 0;                  // index among averaged pictures, each with its own random numbers
     glm::dvec2 sample_shift{0.0};  // of the rays of all pixels, in parts of their spacing (pixel_samples.h)
 };

@@ -11,7 +11,9 @@ RaySum medium_along(const SourceField& field, const PixelRay& ray, double end, c
     if (settings.once) {
         const CellSum once = integrate(*settings.once, ray.ray, settings.parts, end).cells;
         sum.once_from_fire = once.at(Cell::MV);
-        sum.once_from_emitters = once.at(Cell::MA);
+        const Rgb by_rays = settings.once_by_rays * once.at(Cell::MA);
+        sum.once_from_emitters = once.at(Cell::MA) - by_rays;
+        sum.cells.at(Cell::MA) -= by_rays;
     }
     if (settings.fire_by_rays) {
         // What remains has scattered more than once.

@@ -56,6 +56,9 @@ public:
     float majorant_of_voxel(std::size_t brick, const ivec3& voxel) const;  // of extinction over its corners
     bool has_similar() const { return similar_ != nullptr; }
     bool has_outside() const { return outside_; }
+    // The share of MA that the field holds; the rest is sampled along rays, and the field guides it.
+    float emitters_share() const { return sources_ ? sources_->emitters_at_nodes : 1.0f; }
+    bool has_emitters() const { return sources_ && !sources_->from_emitters.empty(); }
     std::uint64_t bytes() const;  // of what has been made so far
 
     // Trilinear samples at p, in nodes from the brick's first node, each coordinate in [0, 8].

@@ -50,7 +50,7 @@ ScatteringChoice choose_scattering(const Shot& shot, const Medium& medium, bool 
     }
     if (automatic)
         out.reason += fmt::format(": abs(mean_cosine) up to {} the lighting grid", kSmooth);
-    const bool open = (automatic && sharp > 0.0f) || (lamps && out.share == 0.0f && (automatic || sharp < 1.0f));
+    const bool open = (automatic && sharp > 0.0f) || (lamps && out.share == 0.0f);
     if (!open)
         return out;
     const Stopwatch watch;
@@ -63,7 +63,7 @@ ScatteringChoice choose_scattering(const Shot& shot, const Medium& medium, bool 
             out.method = VolumetricPhotonsMethod::kName;
     }
     if (lamps)
-        out.emitters_by_rays = out.share == 1.0f ? 1.0f : std::min(1.0f, thin * (1.0f - sharp) / (1.0f - out.share));
+        out.emitters_by_rays = thin;
     out.cost = {"choice of the scattering method",
                 watch.seconds(),
                 0,

@@ -7,9 +7,8 @@
 // see lamps inside haze, but blur over voxels and have noise, which grows with the optical depth. So they are for haze
 // that scatters sharply. Both limits are soft, and whole pictures are mixed:
 //   thin(E) sharp(g)   by volumetric photons, MA along rays,
-//   the rest           by the lighting grid, with MA along rays to the share thin(E) (1 - sharp(g)) of the picture,
-//   since
-//                      beams of lamps may be narrower than voxels, and else at the nodes.
+//   the rest           by the lighting grid, with the share thin(E) of its MA along rays, since beams of lamps may be
+//                      narrower than voxels, and the rest at the nodes.
 // E is the mean escape probability (mean_escape.h), g the mean cosine. Nothing depends on whether a file or a box holds
 // the smoke.
 #pragma once

@@ -12,7 +12,8 @@ namespace {
 Gathered light_from_emitters(const LitLattice& lattice, Statistics& statistics, Progress& progress) {
     progress.stage("light from emitters (MA)");
     const Stopwatch watch;
-    Gathered arriving = gather_from_emitters(*lattice.input().surroundings, lattice.pyramid(), lattice.request());
+    Gathered arriving = gather_from_emitters(*lattice.input().surroundings, lattice.pyramid(), lattice.request(),
+                                             lattice.input().eye, lattice.input().emitters_at_nodes);
     prepare_interpolation(lattice.medium().lattice, lattice.needed(), arriving);
     statistics.stages.push_back({"light from emitters (MA)", watch.seconds(), 0, {}});
     return arriving;
@@ -39,11 +40,8 @@ FirstLight first_light(const LitLattice& lattice, Statistics& statistics, Progre
     }
     if (input.surroundings && input.emitters_on_medium) {
         const Gathered arriving = light_from_emitters(lattice, statistics, progress);
-        if (input.emitters_at_nodes > 0.0f) {
-            out.sources.from_emitters = lattice.source_function(arriving);
-            for (Rgb& source : out.sources.from_emitters)
-                source *= input.emitters_at_nodes;
-        }
+        out.sources.from_emitters = lattice.source_function(arriving);
+        out.sources.emitters_at_nodes = input.emitters_at_nodes;
         first.add(arriving);
     }
     if (input.multiple)

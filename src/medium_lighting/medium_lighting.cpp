@@ -86,6 +86,7 @@ private:
         note(std::move(costs), coarser);
         for (auto field : {&NodeSources::single, &NodeSources::from_surfaces, &NodeSources::from_emitters})
             add(to_.nodes_.*field, std::move(light.sources.*field), of.share);
+        to_.nodes_.emitters_at_nodes = light.sources.emitters_at_nodes;
         once_.push_back({on, of.share, std::move(light.once)});
         keep(std::move(on), &SurfaceReceiver::fire, of.share, std::move(light.fire));
     }

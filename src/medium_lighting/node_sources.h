@@ -14,6 +14,8 @@ struct NodeSources {
     std::vector<Rgb> multiple;       // MM
     std::vector<Rgb> from_surfaces;  // MS
     std::vector<Rgb> from_emitters;  // MA
+    // The share of MA that is theirs; the rest is sampled along the camera's rays, which they guide.
+    float emitters_at_nodes = 1.0f;
 };
 
 struct NodeLighting : NodeSources {

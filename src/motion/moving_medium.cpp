@@ -171,6 +171,7 @@ NodeSources moved_sources(const NodeSources& sources, const Medium& from, const 
     for (auto part :
          {&NodeSources::single, &NodeSources::multiple, &NodeSources::from_surfaces, &NodeSources::from_emitters})
         out.*part = moved(sources.*part, from, origins);
+    out.emitters_at_nodes = sources.emitters_at_nodes;
     return out;
 }
 

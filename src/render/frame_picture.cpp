@@ -180,10 +180,11 @@ float FramePicture::shading_tolerance() const {
 Image FramePicture::picture(const InScattering* estimator, int number, const MomentLights& lights, const Camera& camera,
                             const Surroundings* surroundings) {
     settings_.pass = number;
-    settings_.light_rays = light_rays_by(estimator, lights.direct(), input_.plan.emitters_by_rays,
+    settings_.light_rays = light_rays_by(estimator, lights.direct(), lights.field(), input_.plan.emitters_by_rays,
                                          input_.plan.fire_on_rays() ? lights.fire() : nullptr);
     settings_.surroundings = surroundings;
     settings_.once = lights.once();
+    settings_.once_by_rays = takes_peaks_for_straight(input_) ? input_.plan.emitters_by_rays : 0.0f;
     if (!input_.plan.surfaces)
         return render_picture(lights.field(), camera, settings_, progress_);
     const bool asks_for_bound = has_bound_layers(input_.shot, input_.plan);
@@ -205,7 +206,7 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
                           lights_.medium().lighting(),
                           lights_.virtual_lights(),
                           estimator,
-                          input_.plan.emitters_by_rays,
+                          takes_peaks_for_straight(input_) ? 0.0f : input_.plan.emitters_by_rays,
                           settings_.parts,
                           camera.settings().width,
                           static_cast<float>(input_.shot.lighting.error),

@@ -56,20 +56,20 @@ bool lights_medium(const Plan& plan) {
     return plan.single || plan.needs(Cell::SV) || plan.needs(Cell::MA) || plan.needs(Cell::MS);
 }
 
-// Whether the lighting counts light as not scattered that scattered into the peak of the phase function.
+// Whether MV and MA of the lighting hold light that scattered more than once, and it is needed separately: for a layer,
+// or beside an MV or MA that is not the lighting's.
+bool wants_single_scattering_apart(const DrawInput& input) {
+    return takes_peaks_for_straight(input) &&
+           (input.shot.output.cell_layers || input.plan.fire_on_rays() || input.plan.emitters_by_rays > 0.0f);
+}
+
+}  // namespace
+
 bool takes_peaks_for_straight(const DrawInput& input) {
     const Plan& plan = input.plan;
     return plan.multiple && !plan.scattering_method && input.shot.scattering.bounces < 0 &&
            forward_share(input.medium.mean_cosine) > 0.0f;
 }
-
-// Whether MV and MA of the lighting hold light that scattered more than once, and it is needed separately: for a layer,
-// or beside an MV that is not the lighting's.
-bool wants_single_scattering_apart(const DrawInput& input) {
-    return takes_peaks_for_straight(input) && (input.shot.output.cell_layers || input.plan.fire_on_rays());
-}
-
-}  // namespace
 
 MediumLightingInput medium_lighting_input(const DrawInput& input, const Plan& plan, const Medium& medium,
                                           const ReflectedLight& reflected, bool orders_apart) {
@@ -85,7 +85,9 @@ MediumLightingInput medium_lighting_input(const DrawInput& input, const Plan& pl
     out.multiple = plan.multiple;
     out.surfaces_on_medium = plan.needs(Cell::MS);
     out.emitters_on_medium = plan.needs(Cell::MA);
-    out.emitters_at_nodes = 1.0f - plan.emitters_by_rays;
+    // Where MA of the nodes holds more than single scattering, all of it stays, and what scattered once is exchanged by
+    // the camera's rays (PictureSettings::once_by_rays).
+    out.emitters_at_nodes = takes_peaks_for_straight(input) ? 1.0f : 1.0f - plan.emitters_by_rays;
     out.fire_on_surfaces = plan.needs(Cell::SV);
     out.smoke_on_surfaces = plan.needs(Cell::SM);
     out.directional = plan.directional;

@@ -14,6 +14,9 @@
 
 namespace brisance {
 
+// Whether the lighting counts light as not scattered that scattered into the peak of the phase function.
+bool takes_peaks_for_straight(const DrawInput& input);
+
 // `plan`: the light to compute; `medium`: the medium through which it is traced.
 MediumLightingInput medium_lighting_input(const DrawInput& input, const Plan& plan, const Medium& medium,
                                           const ReflectedLight& reflected = {}, bool orders_apart = false);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "camera_rays/integrate.h"
 #include "core/stopwatch.h"
 #include "transport/emitters_along_ray.h"
 
@@ -90,11 +91,11 @@ Image mean_of_passes(const ScatteringMethod& method, const ScatteringMethodSetti
     return mean;
 }
 
-LightRays light_rays_by(const InScattering* estimator, const DirectLight* scene, float emitters,
-                        const SampledFire* fire) {
+LightRays light_rays_by(const InScattering* estimator, const DirectLight* scene, const SourceField& field,
+                        float emitters, const SampledFire* fire) {
     if (!estimator && emitters == 0.0f && !fire)
         return {};
-    return [=](const PixelRay& r, double end) {
+    return [=, &field](const PixelRay& r, double end) {
         thread_local RayMedium seen;
         seen.look(scene->field(), r.ray, end);
         Rng rng = estimator ? estimator->rng(Stream::RayLightPair, r.pixel, r.number)
@@ -102,8 +103,11 @@ LightRays light_rays_by(const InScattering* estimator, const DirectLight* scene,
         LightOnRay light;
         if (estimator)
             light.scattered = estimator->along_ray(seen, rng);
-        if (emitters > 0.0f)
-            light.emitters = emitters * emitters_along_ray(*scene, seen, r.ray, kEmitterPoints, rng);
+        if (emitters > 0.0f) {
+            thread_local StepDensity guide;
+            guide_by_emitters(field, r.ray, end, guide);
+            light.emitters = emitters * emitters_along_ray(*scene, seen, r.ray, kEmitterPoints, rng, &guide);
+        }
         if (fire) {
             Rng of_fire = fire->rng(r.pixel, r.number);
             light.fire = fire->along(seen, r.ray, of_fire);

@@ -26,8 +26,8 @@ Image mean_of_passes(const ScatteringMethod& method, const ScatteringMethodSetti
                      Statistics& statistics, Progress& progress);
 
 // MM by the estimator, or null, the share `emitters` of MA, and MV by the fire's lights, or null; empty where there is
-// nothing of that. Keeps references to all.
-LightRays light_rays_by(const InScattering* estimator, const DirectLight* scene, float emitters,
-                        const SampledFire* fire = nullptr);
+// nothing of that. `field` guides MA. Keeps references to all.
+LightRays light_rays_by(const InScattering* estimator, const DirectLight* scene, const SourceField& field,
+                        float emitters, const SampledFire* fire = nullptr);
 
 }  // namespace brisance

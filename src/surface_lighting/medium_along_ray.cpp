@@ -22,8 +22,12 @@ RaySum MediumAlongRay::look(const Ray& ray, double end, Rng& rng) const {
     medium.look(scene_.field(), ray, end);
     if (in_scattering_)
         sum.cells.at(Cell::MM) += in_scattering_->along_ray(medium, rng);
-    if (emitters_by_rays_ > 0.0f)
-        sum.cells.at(Cell::MA) += emitters_by_rays_ * emitters_along_ray(scene_, medium, ray, kEmitterSamples, rng);
+    if (emitters_by_rays_ > 0.0f) {
+        thread_local StepDensity guide;
+        guide_by_emitters(field_, ray, end, guide);
+        sum.cells.at(Cell::MA) +=
+            emitters_by_rays_ * emitters_along_ray(scene_, medium, ray, kEmitterSamples, rng, &guide);
+    }
     return sum;
 }
 

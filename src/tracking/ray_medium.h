@@ -38,7 +38,8 @@ public:
     bool empty() const { return voxels_.empty(); }
     // From the first to the last voxel with extinction.
     const Segment& segment() const { return segment_; }
-    double transmittance(double t) const;  // from the ray's origin to t along the segment
+    double begin() const { return begin_; }  // of the segment, from the ray's origin [m]
+    double transmittance(double t) const;    // from the ray's origin to t along the segment
     Coefficients coefficients(double t) const { return probe_->at(begin_ + t); }
     // Its distance is from the ray's origin.
     std::optional<Collision> collision_at(double t) const { return probe_->collision_at(begin_ + t); }

@@ -104,6 +104,19 @@ private:
     double all_ = 0.0;
 };
 
+// Shares of the points: by lamps without extent, and by a guide; the rest are free flights.
+struct Shares {
+    double lamps = 0.0, guide = 0.0;
+    double flights() const { return 1.0 - lamps - guide; }
+};
+
+// Flights keep a part, so that no point has a density far below what it needs where a guide is wrong.
+Shares shares_of(bool lamps, bool guide) {
+    if (!guide)
+        return {lamps ? 0.5 : 0.0, 0.0};
+    return lamps ? Shares{0.375, 0.375} : Shares{0.0, 0.75};
+}
+
 }  // namespace
 
 bool aims_at_lamps(const DirectLight& scene) {
@@ -111,23 +124,37 @@ bool aims_at_lamps(const DirectLight& scene) {
     return lamps > 0 && lamps <= kMostLamps;
 }
 
-Rgb emitters_along_ray(const DirectLight& scene, const RayMedium& seen, const Ray& ray, int points, Rng& rng) {
+Rgb emitters_along_ray(const DirectLight& scene, const RayMedium& seen, const Ray& ray, int points, Rng& rng,
+                       const StepDensity* guide) {
     Rgb sum(0.0f);
     if (seen.empty())
         return sum;
     const LampSampling lamps(scene.surroundings()->emitters().points(), seen.segment(), scene.field().mean_cosine());
-    const double by_flights = lamps.empty() ? 1.0 : 0.5, shift = rng.next_double();
+    const Shares shares = shares_of(!lamps.empty(), guide && !guide->empty());
+    const double by_flights = shares.flights(), shift = rng.next_double();
+    const auto sample = [&](double xi) {
+        if (xi < by_flights)
+            return seen.sample_flight(xi / by_flights);
+        if (xi < by_flights + shares.guide)
+            return guide->sample((xi - by_flights) / shares.guide) - seen.begin();
+        return lamps.sample((xi - by_flights - shares.guide) / shares.lamps, rng);
+    };
     for (int i = 0; i < points; ++i) {
-        const double xi = (i + shift) / points;
-        const double t = xi < by_flights ? seen.sample_flight(xi / by_flights)
-                                         : lamps.sample((xi - by_flights) / (1.0 - by_flights), rng);
+        const double t = sample((i + shift) / points);
+        if (!(t >= 0.0 && t <= seen.segment().length))
+            continue;
         const std::optional<Collision> c = seen.collision_at(t);
         if (!c)
             continue;
         double weight = seen.opacity();
-        if (!lamps.empty()) {
+        if (by_flights < 1.0) {
             const double collides = seen.pdf_of_flight(t);
-            weight *= collides / (by_flights * collides + (1.0 - by_flights) * lamps.pdf(t));
+            double pdf = by_flights * collides;
+            if (shares.lamps > 0.0)
+                pdf += shares.lamps * lamps.pdf(t);
+            if (shares.guide > 0.0)
+                pdf += shares.guide * guide->pdf(seen.begin() + t);
+            weight *= collides / pdf;
         }
         if (!(weight > 0.0))
             continue;

@@ -35,14 +35,14 @@ struct Spread {
     double mean = 0.0, deviation = 0.0;
 };
 
-Spread found(const DirectLight& scene, const Ray& ray, double end, int points) {
+Spread found(const DirectLight& scene, const Ray& ray, double end, int points, const StepDensity* guide = nullptr) {
     constexpr int kTries = 4000;
     RayMedium seen;
     seen.look(scene.field(), ray, end);
     double sum = 0.0, square = 0.0;
     for (int i = 0; i < kTries; ++i) {
         Rng rng(Stream::Points, static_cast<std::uint64_t>(i));
-        const double v = emitters_along_ray(scene, seen, ray, points, rng).x;
+        const double v = emitters_along_ray(scene, seen, ray, points, rng, guide).x;
         sum += v / kTries;
         square += v * v / kTries;
     }
@@ -119,6 +119,35 @@ TEST(EmittersAlongRay, FindTheBeamOfASpot) {
 // Along the middle of the beam, toward the lamp: the whole ray is in its cone.
 TEST(EmittersAlongRay, LookUpTheBeam) {
     expect_spot({1.6, -0.2, 0.31}, {-1.0, 0.0, 0.0}, 20.0, 40.0);
+}
+
+// A guide, right or wrong, changes the mean no more than noise does (three standard errors).
+TEST(EmittersAlongRay, AGuideDoesNotChangeTheMean) {
+    const Medium medium = even_smoke();
+    Scene none;
+    none.origin = medium.world_of_local(vec3(0.0f));
+    std::vector<LightSettings> lamps(24);  // more than points are aimed at
+    double exact = 0.0;
+    for (LightSettings& lamp : lamps) {
+        lamp.position = {0.2, -0.2 + 0.002 * double(&lamp - lamps.data()), 0.33};
+        lamp.power = Rgb(1.0f);
+        exact += expected(lamp.position, kRay, kEnd, [](const dvec3&) { return 1.0; });
+        lamp.position += none.origin;
+    }
+    const Surroundings surroundings(std::move(none), lamps);
+    const DirectLight scene(medium, {}, &surroundings);
+    StepDensity right, wrong;
+    for (int i = 0; i < 150; ++i) {
+        const double middle = (i + 0.5) * 0.02, from_lamps = middle - 1.7;
+        right.add(i * 0.02, i * 0.02 + 0.02, 1.0 / (from_lamps * from_lamps + 0.002));
+        wrong.add(i * 0.02, i * 0.02 + 0.02, i < 25 ? 1.0 : 0.0);
+    }
+    const Spread plain = found(scene, kRay, kEnd, 8), guided = found(scene, kRay, kEnd, 8, &right),
+                 misled = found(scene, kRay, kEnd, 8, &wrong);
+    std::printf("exact %.5g; plain %.5g, spread %.3g; guided %.5g, %.3g; misled %.5g, %.3g\n", exact, plain.mean,
+                plain.deviation / exact, guided.mean, guided.deviation / exact, misled.mean, misled.deviation / exact);
+    for (const Spread& s : {plain, guided, misled})
+        EXPECT_NEAR(s.mean, exact, 3.0 * s.deviation / std::sqrt(4000.0) + 1e-3 * exact);
 }
 
 }  // namespace

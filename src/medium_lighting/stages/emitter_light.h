@@ -10,7 +10,10 @@ namespace brisance {
 // have the same error of about a tenth; independent noise is averaged along the camera rays. Point lights and suns take
 // one ray each, and are exact except for the ray march, by half a voxel. A sample of an extended light stands for a
 // cone of it, in which the smoke is averaged (gathering/cone_depths.h).
+//
+// Nodes that smoke hides from `eye` take fewer points. `seen`: the share of the nodes' light that the camera sees; the
+// rest only scatters on.
 Gathered gather_from_emitters(const Surroundings& surroundings, const ExtinctionPyramid& pyramid,
-                              const LatticeRequest& request);
+                              const LatticeRequest& request, const vec3& eye, float seen);
 
 }  // namespace brisance
