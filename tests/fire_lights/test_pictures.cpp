@@ -94,9 +94,8 @@ INSTANTIATE_TEST_SUITE_P(Samplings, FireLightPictures, ::testing::ValuesIn(all_s
 
 // The mean of a cell over pictures of other seeds is the path tracer's, whose two halves tell its own error. Half a
 // percent: the camera's samples differ.
-void expect_mean_of_paths(const char* cell, const Shot& traced, Shot lit, const Medium& medium, const Surroundings* set,
-                          int seeds) {
-    const RenderedFrame paths = rendered(traced, medium, set);
+void expect_mean_of_paths(const char* cell, const RenderedFrame& paths, Shot lit, const Medium& medium,
+                          const Surroundings* set, int seeds) {
     const double a = mean_of(paths.halves[0], cell), b = mean_of(paths.halves[1], cell), truth = 0.5 * (a + b);
     double sum = 0.0, square = 0.0;
     for (int seed = 0; seed < seeds; ++seed) {
@@ -110,6 +109,15 @@ void expect_mean_of_paths(const char* cell, const Shot& traced, Shot lit, const 
                 truth, sum, error);
     EXPECT_NEAR(sum, truth, 4.0 * error + 0.005 * truth);
     EXPECT_LT(error, 0.05 * truth);
+}
+
+// What paths see of light that was scattered once.
+RenderedFrame traced(int samples, const Medium& medium, const Surroundings* set) {
+    Shot shot = small_shot(kFireByHierarchy);
+    shot.method = RenderMethod::Path;
+    shot.tracing.samples = samples;
+    shot.scattering.bounces = 1;
+    return rendered(shot, medium, set);
 }
 
 // Sharp peaks make the grid count light as not scattered: MM must not hold it twice, nor lose it.
@@ -136,12 +144,13 @@ TEST_P(FireLightPictures, ChangeMVAlone) {
 TEST_P(FireLightPictures, HaveThePathTracersMV) {
     constexpr int kSeeds = 8;
     const Medium medium = smoke(0.3f);
-    Shot traced = small_shot(kFireByHierarchy), lit = small_shot(GetParam());
-    traced.method = RenderMethod::Path;
-    traced.scattering.bounces = lit.scattering.bounces = 1;
+    // One truth for all samplings.
+    static const RenderedFrame paths = traced(256, medium, nullptr);
+    Shot lit = small_shot(GetParam());
+    lit.scattering.bounces = 1;
     lit.fire_lights.points = GetParam() == "all" ? 1 : 8;
     lit.fire_lights.lightcuts_error = 0.002;
-    expect_mean_of_paths("MV", traced, lit, medium, nullptr, kSeeds);
+    expect_mean_of_paths("MV", paths, lit, medium, nullptr, kSeeds);
 }
 
 // A floor, of which a plate keeps a part in the dark. Over pictures of other seeds; half a percent: the camera's
@@ -153,15 +162,15 @@ TEST_P(FireLightPictures, HaveThePathTracersSV) {
     add_quad(scene, {0.1f, -0.8f, -1.15f}, {1.5f, 0, 0}, {0, 1.6f, 0}, lambert(0.3f));
     const Surroundings set(std::move(scene), {});
     const Medium medium = smoke(0.3f);
-    Shot traced = small_shot(kFireByHierarchy), lit = small_shot(GetParam());
-    traced.method = RenderMethod::Path;
-    traced.tracing.samples = 2048;
-    traced.scattering.bounces = lit.scattering.bounces = 1;
+    // One truth for all samplings.
+    static const RenderedFrame paths = traced(2048, medium, &set);
+    Shot lit = small_shot(GetParam());
+    lit.scattering.bounces = 1;
     lit.camera.samples_per_axis = 3;
     lit.fire_lights.points = 1;
     lit.fire_lights.samples = GetParam() == "intensity" ? 32 : 8;
     lit.fire_lights.lightcuts_error = 0.002;
-    expect_mean_of_paths("SV", traced, lit, medium, &set, kSeeds);
+    expect_mean_of_paths("SV", paths, lit, medium, &set, kSeeds);
 }
 
 TEST_P(FireLightPictures, AreTheSameOnAnyNumberOfThreads) {
