@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <cstdint>
 #include <vector>
 
+#include "core/nearest_whole.h"
 #include "core/vec.h"
 
 namespace brisance {
@@ -17,12 +17,18 @@ class FixedSums {
 public:
     FixedSums(std::size_t count, double whole) : unit_(std::max(whole, 1e-300) / 0x1p46), sums_(3 * count) {}
 
-    // From any thread.
-    void add(std::size_t sum, const dvec3& value) {
-        for (std::size_t c = 0; c < 3; ++c)
-            std::atomic_ref<std::int64_t>(sums_[3 * sum + c])
-                .fetch_add(std::llround(value[int(c)] / unit_), std::memory_order_relaxed);
+    // A value in whole steps. Values that go to one sum may be added up so before.
+    using Steps = glm::vec<3, std::int64_t>;
+    Steps steps(const dvec3& value) const {
+        return {nearest_whole(value.x / unit_), nearest_whole(value.y / unit_), nearest_whole(value.z / unit_)};
     }
+
+    // From any thread.
+    void add_steps(std::size_t sum, const Steps& steps) {
+        for (std::size_t c = 0; c < 3; ++c)
+            std::atomic_ref<std::int64_t>(sums_[3 * sum + c]).fetch_add(steps[int(c)], std::memory_order_relaxed);
+    }
+    void add(std::size_t sum, const dvec3& value) { add_steps(sum, steps(value)); }
     dvec3 read(std::size_t sum) const {
         return unit_ * dvec3(double(sums_[3 * sum]), double(sums_[3 * sum + 1]), double(sums_[3 * sum + 2]));
     }

@@ -18,15 +18,22 @@ struct Crossing {
     double sine;
 };
 
-// Of the two lines; none where they are parallel.
-std::optional<Crossing> crossing_of(const Segment& ray, const PhotonFlight& beam) {
+// More than rounding of the test against it, so that no crossing within the radius is left out.
+constexpr double kRounding = 1e-9;
+
+// Of the two lines; none where they are parallel. Nor, mostly, where they are farther apart than `radius` [m]: few pass
+// so near to each other, and those that do not cost no division.
+std::optional<Crossing> crossing_of(const Segment& ray, const PhotonFlight& beam, double radius) {
     const dvec3 direction(beam.direction), normal = glm::cross(ray.direction, direction);
     const double sine2 = glm::dot(normal, normal);
     if (!(sine2 > kParallel2))
         return std::nullopt;
     const dvec3 offset = dvec3(beam.start) - ray.start;
+    const double across = glm::dot(offset, normal);
+    if (across * across > (1.0 + kRounding) * radius * radius * sine2)
+        return std::nullopt;
     const double along_ray = glm::dot(offset, ray.direction), along_beam = glm::dot(offset, direction),
-                 cosine = glm::dot(ray.direction, direction), across = glm::dot(offset, normal);
+                 cosine = glm::dot(ray.direction, direction);
     return Crossing{(along_ray - cosine * along_beam) / sine2, (cosine * along_ray - along_beam) / sine2,
                     across * across / sine2, std::sqrt(sine2)};
 }
@@ -65,7 +72,7 @@ Rgb PhotonBeams::along(const RayMedium& seen, double mean_cosine) const {
     Rgb sum(0.0f);
     tree_.find(SegmentNearBox(ray, radius_), [&](std::size_t k) {
         const PhotonFlight& beam = beams_[k];
-        const std::optional<Crossing> c = crossing_of(ray, beam);
+        const std::optional<Crossing> c = crossing_of(ray, beam, radius_);
         if (!c || c->distance2 >= radius_ * radius_ || c->u < 0.0 || c->u >= ray.length || c->v < 0.0 ||
             c->v >= double(beam.length))
             return;

@@ -71,16 +71,27 @@ bool TrackLengthCache::Track::precedes(const Track& o) const {
 
 void TrackLengthCache::add(const Ray& ray, double end, const Rgb& power, Rng& rng) {
     const vec3 direction(ray.direction);
+    // Segments side by side often count for one node.
+    std::int64_t last = -1;
+    FixedSums::Steps of_last(0);
     track_lengths_.along(ray, end, [&](std::int64_t node, float length) {
         const Rgb power_length = power * length;
-        sums_.add(node, dvec3(power_length) *
-                            double(henyey_greenstein(glm::dot(direction, toward_eye_[node]), mean_cosine_)));
+        if (node != last) {
+            if (last >= 0)
+                sums_.add_steps(last, of_last);
+            last = node;
+            of_last = FixedSums::Steps(0);
+        }
+        of_last += sums_.steps(dvec3(power_length) *
+                               double(henyey_greenstein(glm::dot(direction, toward_eye_[node]), mean_cosine_)));
         if (list_of_.empty() || list_of_[node] < 0)
             return;
         const float priority = luminance(power_length) / (1.0f - rng.next());
         if (priority > 0.0f)
             keep(list_of_[node], {priority, direction, power_length});
     });
+    if (last >= 0)
+        sums_.add_steps(last, of_last);
 }
 
 void TrackLengthCache::keep(std::size_t list, const Track& track) {

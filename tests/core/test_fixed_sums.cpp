@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/fixed_sums.h"
+#include "core/nearest_whole.h"
 #include "core/parallel.h"
 #include "core/rng.h"
 
@@ -44,6 +45,35 @@ std::vector<dvec3> added(const std::vector<Addend>& list) {
     for (const Addend& a : list)
         sums.add(a.sum, a.value);
     return read_all(sums);
+}
+
+// Of all sizes up to 2^62, and where rounding is hardest: at halves and beside them.
+TEST(NearestWhole, IsThatOfTheStandardLibrary) {
+    Rng rng(Stream::Points, 3);
+    for (int i = 0; i < 300000; ++i) {
+        const double size = std::exp2(std::floor(62.0 * rng.next_double())), x = size * (2.0 * rng.next_double() - 1.0);
+        const double half = std::floor(x) + 0.5;
+        for (const double y : {x, half, std::nextafter(half, x), std::nextafter(half, half + 1.0),
+                               std::nextafter(half, half - 1.0), std::floor(x)})
+            ASSERT_EQ(nearest_whole(y), std::llround(y)) << y;
+    }
+    const double below_half = std::nextafter(0.5, 0.0);
+    EXPECT_EQ(nearest_whole(below_half), 0);
+    EXPECT_EQ(nearest_whole(-below_half), 0);
+    EXPECT_EQ(nearest_whole(0.5), 1);
+    EXPECT_EQ(nearest_whole(-0.5), -1);
+}
+
+// As track lengths are added: several steps of one sum at once.
+TEST(FixedSums, OfStepsAddedBeforeAreTheSame) {
+    const std::vector<Addend> list = addends(20000);
+    FixedSums sums(kSums, 1.0);
+    std::vector<FixedSums::Steps> steps(kSums, FixedSums::Steps(0));
+    for (const Addend& a : list)
+        steps[a.sum] += sums.steps(a.value);
+    for (std::size_t s = 0; s < kSums; ++s)
+        sums.add_steps(s, steps[s]);
+    EXPECT_EQ(read_all(sums), added(list));
 }
 
 TEST(FixedSums, StartAtNothing) {

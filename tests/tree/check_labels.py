@@ -1,5 +1,5 @@
 """Every test that CTest knows has exactly one of the labels `quick` and `slow`, and one that names its folder. Every
-pattern that a folder lists as SLOW is that of some test.
+pattern that a folder lists as SLOW or TOGETHER is that of some test.
 
 Usage: check_labels.py CTEST BUILD_FOLDER TESTS_FOLDER
 """
@@ -26,7 +26,7 @@ def stale_patterns(tests, folder):
                     names[label].append(argument[len(FILTER):])
     for lists in sorted(folder.glob("*/CMakeLists.txt")):
         known = names[lists.parent.name]
-        for patterns in re.findall(r"\bSLOW ([^)]*)\)", lists.read_text(encoding="utf-8")):
+        for patterns in re.findall(r"\b(?:SLOW|TOGETHER) ((?:(?!TOGETHER)[^)])*)", lists.read_text(encoding="utf-8")):
             for pattern in patterns.split():
                 if known and not any(fnmatch.fnmatchcase(name, pattern) for name in known):
                     yield f"{lists}: no test is called {pattern}"

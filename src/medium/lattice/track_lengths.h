@@ -3,6 +3,7 @@
 // around the node.
 #pragma once
 
+#include "core/nearest_whole.h"
 #include "medium/attenuation.h"
 #include "medium/lattice/voxel_walk.h"
 
@@ -44,8 +45,8 @@ void TrackLengths::along(const Ray& ray, double end, const Visit& visit) const {
         const double length = (s.end - s.begin) / kParts;
         for (int part = 0; part < kParts; ++part) {
             const dvec3 position = s.origin + s.direction * (s.begin + (part + 0.5) * length);
-            const std::int64_t node =
-                medium_.lattice.find_node(voxels_.first_node(s.brick) + ivec3(glm::round(position)));
+            const ivec3 nearest(nearest_whole(position.x), nearest_whole(position.y), nearest_whole(position.z));
+            const std::int64_t node = medium_.lattice.find_node(voxels_.first_node(s.brick) + nearest);
             if (node < 0)
                 continue;
             const float tau = medium_.extinction[node] * float(length);
