@@ -102,7 +102,9 @@ void GatheredFlux::build(LightSet& set, const Placement&, const LightSources& so
 
     const BoundingBall ball = ball_around(set.scene());
     LightAccounts accounts(set.lights, set.settings().profile_resolution, emitted_power(set.scene(), ball));
-    report.photons = trace_photons(set.scene(), ball, set.partition, set.settings(), accounts);
+    const std::size_t photons =
+        photons_needed(set.scene(), ball, set.partition, set.settings(), set.lights.size(), sources.camera.samples);
+    report.photons = trace_photons(set.scene(), ball, set.partition, photons, set.settings().seed, accounts);
     report.photon_bytes = accounts.bytes();
     report.photon_seconds = lap.take();
 
