@@ -67,6 +67,7 @@ void finish_lights(LightSet& set, const LightAccounts& accounts) {
             light.flux = set.profiles.exitance(light) * float(light.area);
             light.base_flux = base_flux(light, i, accounts, resolution);
             light.intensity = set.profiles.brightest(light) * light.area;
+            light.held = set.mean_held(light);
         } else {
             light.irradiance = accounts.whole(i) / float(light.area);
             light.flux = light.base_flux = light.irradiance * light.material.base_colour * float(light.area);
