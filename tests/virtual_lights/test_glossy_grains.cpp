@@ -81,8 +81,8 @@ TEST(GlossyGrains, AreNotLeftOnAPlinthUnderABall) {
     EXPECT_NEAR(lights.mean, paths.mean, 0.02 * paths.mean + kSigmas * std::hypot(lights.mean_error, paths.mean_error));
 }
 
-// As the key says: four times the photons for half of the error, no more than the picture has samples but for eight for
-// each light, and never more than a million.
+// As the key says: four times the photons for half of the error, no more than four for each sample of the picture but
+// for eight for each light, and never more than a million.
 TEST(AutomaticPhotons, FollowThePicture) {
     const Room room(coloured_room());
     const auto traced = [&](double error, double samples) {
@@ -94,7 +94,7 @@ TEST(AutomaticPhotons, FollowThePicture) {
         camera.samples = samples;
         return VirtualLights(room.direct, camera, settings).report();
     };
-    const VirtualLightReport coarse = traced(0.04, 1e9), fine = traced(0.02, 1e9), small = traced(0.02, 40000.0),
+    const VirtualLightReport coarse = traced(0.04, 1e9), fine = traced(0.02, 1e9), small = traced(0.02, 10000.0),
                              tiny = traced(0.02, 100.0), exact = traced(1e-4, 1e9);
     EXPECT_NEAR(double(fine.photons.photons) / double(coarse.photons.photons), 4.0, 0.001);
     // Noise of half of the error in 40 lights of a footprint.

@@ -16,6 +16,8 @@ namespace {
 constexpr std::size_t kBlock = 1024;
 // Particles that tell how many photons lights need, and the fewest that are traced for them.
 constexpr std::size_t kPilot = 16384;
+// With one, Veach's door ajar has half more variance than with four.
+constexpr double kArrivalsPerSample = 4.0;
 // The greatest ratio of shading to geometric cosine that a photon's power is multiplied by (Veach 1997, section 5.3):
 // without a bound one photon at a grazing angle may outshine all others. It is biased, and loses light wherever the
 // ratio is greater: 53 % where the shading normal leans by 45 degrees toward a sun 5 degrees above the surface.
@@ -180,7 +182,8 @@ std::size_t photons_needed(const DirectLight& scene, const BoundingBall& ball, c
     const std::uint64_t arrivals = std::accumulate(parts.begin(), parts.end(), std::uint64_t(0));
     const double each = 4.0 / (kLightsOfFootprint * settings.picture_error * settings.picture_error);
     const double lights = double(count);
-    const double wanted = std::min(each * lights, std::max(samples, kLeastPhotons * lights));  // to arrive
+    const double wanted =
+        std::min(each * lights, std::max(kArrivalsPerSample * samples, kLeastPhotons * lights));  // to arrive
     const double needed = wanted * double(kPilot) / double(std::max<std::uint64_t>(arrivals, 1));
     return static_cast<std::size_t>(std::clamp(needed, double(kPilot), double(kMostAutomaticPhotons)));
 }
