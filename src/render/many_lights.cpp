@@ -1,5 +1,7 @@
 #include "render/many_lights.h"
 
+#include <algorithm>
+
 #include "base_lighting/panes.h"
 #include "core/stopwatch.h"
 #include "medium/similar_medium.h"
@@ -13,27 +15,34 @@ std::unique_ptr<VirtualLights> place_virtual_lights(const DrawInput& input, cons
     progress.stage("virtual lights");
     const Stopwatch watch;
     const Camera& camera = input.camera;
-    const PixelCamera pixels{camera.settings().width, camera.settings().height,
-                             [&](double x, double y) { return camera.ray(x, y); }};
-    auto lights = std::make_unique<VirtualLights>(scene, pixels, input.shot.virtual_lights, input.light_positions);
+    const CameraSettings& c = camera.settings();
+    const double per_axis = std::max(1, c.samples_per_axis);
+    const PixelCamera pixels{c.width, c.height, [&](double x, double y) { return camera.ray(x, y); },
+                             double(c.width) * c.height * per_axis * per_axis};
+    VirtualLightSettings settings = input.shot.virtual_lights;
+    settings.picture_error = input.shot.lighting.error;
+    auto lights = std::make_unique<VirtualLights>(scene, pixels, settings, input.light_positions);
     const VirtualLightReport& r = lights->report();
-    statistics.stages.push_back({"virtual lights",
-                                 watch.seconds(),
-                                 r.bytes + r.photon_bytes,
-                                 {{"candidates", r.candidates},
-                                  {"lights", r.lights},
-                                  {"acceptance", r.acceptance},
-                                  {"with_profiles", r.profiles},
-                                  {"reflected_watts", {r.flux.x, r.flux.y, r.flux.z}},
-                                  {"photons", r.photons.photons},
-                                  {"photons_from_fire", r.photons.from_fire},
-                                  {"photons_not_finite", r.photons.not_finite},
-                                  {"unshared_fraction", r.photons.unshared_fraction()},
-                                  {"candidate_seconds", r.candidate_seconds},
-                                  {"elimination_seconds", r.elimination_seconds},
-                                  {"area_seconds", r.area_seconds},
-                                  {"photon_seconds", r.photon_seconds},
-                                  {"profile_seconds", r.profile_seconds}}});
+    statistics.stages.push_back(
+        {"virtual lights",
+         watch.seconds(),
+         r.bytes + r.photon_bytes,
+         {{"candidates", r.candidates},
+          {"lights", r.lights},
+          {"acceptance", r.acceptance},
+          {"with_profiles", r.profiles},
+          {"reflected_watts", {r.flux.x, r.flux.y, r.flux.z}},
+          {"photons", r.photons.photons},
+          {"photons_by", settings.photons == kAutomaticPhotons ? "lighting.error" : "the shot"},
+          {"photons_per_light", double(r.photons.arrivals) / double(std::max<std::uint64_t>(r.lights, 1))},
+          {"photons_from_fire", r.photons.from_fire},
+          {"photons_not_finite", r.photons.not_finite},
+          {"unshared_fraction", r.photons.unshared_fraction()},
+          {"candidate_seconds", r.candidate_seconds},
+          {"elimination_seconds", r.elimination_seconds},
+          {"area_seconds", r.area_seconds},
+          {"photon_seconds", r.photon_seconds},
+          {"profile_seconds", r.profile_seconds}}});
     return lights;
 }
 

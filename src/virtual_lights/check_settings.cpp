@@ -30,7 +30,8 @@ void check(const VirtualLightSettings& s) {
     require_in(R::candidates_per_pixel, s.candidates_per_pixel, "candidates_per_pixel");
     require_in(R::neighbours, s.neighbours, "neighbours");
     require_in(R::radius_factor, s.radius_factor, "radius_factor");
-    require_in(R::photons, s.photons, "photons");
+    if (s.photons != kAutomaticPhotons)
+        require_in(R::photons, s.photons, "photons");
     require_in(R::profile_resolution, s.profile_resolution, "profile_resolution");
     require_in(R::resampling_candidates, s.resampling_candidates, "resampling_candidates");
     require_in(R::importance_floor, s.importance_floor, "importance_floor");

@@ -54,10 +54,21 @@ public:
     // What one of the covering lights adds to the radiance that the ray finds [W/(m^2 sr)].
     Rgb reflected(const CoveredHit& hit, int share) const;
     // The fraction of a path that virtual lights end at this hit, the rest of it continues: by how many of them lie in
-    // the footprint of a ray that was sampled with density `pdf` [1/sr].
-    double termination_probability(const CoveredHit& hit, double pdf) const;
+    // the footprint of a ray that was sampled with density `pdf` [1/sr], and by how many photons their light toward the
+    // ray's origin comes from. And what their radiance is multiplied by, which has the same mean: a light's photons
+    // decide of each of them as if that one had not come (Mecke's formula for Poisson processes), so that how many
+    // there are and what they bring is not counted twice.
+    struct Ending {
+        double path = 0.0, light = 0.0;
+    };
+    Ending ending(const CoveredHit& hit, double pdf) const;
+    // The mean over directions of what the photons of a light allow of that.
+    double mean_held(const VirtualLight& light) const;
 
 private:
+    Ending held(const VirtualLight& light, double cosine) const;
+    double share_by_footprint(const CoveredHit& hit, double pdf) const;
+
     const DirectLight& scene_;
     VirtualLightSettings settings_;
 };

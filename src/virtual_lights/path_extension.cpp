@@ -157,13 +157,13 @@ public:
         if (step.medium.collision || step.sample->delta)
             return true;
         const Seen seen = lights_.seen_by(step.segment);
-        const double held = lights_.termination_probability(seen, step.sample->pdf);
-        const double kept = held * lights_.share_kept(state.vertex, step.segment);
-        const auto ended = static_cast<float>(kept);
-        if (ended > 0.0f)
-            add(next.throughput * ended * lights_.at_end_of_ray(state.vertex, seen, step.sample->pdf));
-        bound_.goes_on(held, kept);
-        next.throughput *= 1.0f - ended;
+        const LightSet::Ending held = lights_.ending(seen, step.sample->pdf);
+        const double share_kept = lights_.share_kept(state.vertex, step.segment), kept = held.path * share_kept;
+        const auto given = static_cast<float>(held.light * share_kept);
+        if (given > 0.0f)
+            add(next.throughput * given * lights_.at_end_of_ray(state.vertex, seen, step.sample->pdf));
+        bound_.goes_on(held.path, kept);
+        next.throughput *= 1.0f - static_cast<float>(kept);
         return true;
     }
 

@@ -29,6 +29,10 @@ enum class BoundCompensation : std::uint8_t {
     ScreenSpace  // it is taken from what pixels show
 };
 
+// As many photons as the lights need (photons_needed), up to kMostAutomaticPhotons.
+inline constexpr int kAutomaticPhotons = -1;
+inline constexpr int kMostAutomaticPhotons = 1000000;
+
 // Placement, flux, kind and sampling are names; choices.h lists them and says which go together.
 struct VirtualLightSettings {
     int count = 12000;  // virtual lights; 0: none, all surface light is found by paths
@@ -45,10 +49,11 @@ struct VirtualLightSettings {
     double candidates_per_pixel = 0.25;  // camera paths; never fewer than eight per light
     double importance_floor = 0.05;      // placements rejection, metropolis: share of lights that no one needs to see
     LightRadius radius = LightRadius::Adaptive;
-    int neighbours = 128;         // candidates from whose distance their density is estimated
-    double radius_factor = 1.1;   // radius over the distance that a light would keep from others
-    int photons = 1000000;        // particles from fire and emitters; 0: no lights
-    int profile_resolution = 16;  // of directions of lights that are not plain Lambert: texels along a side
+    int neighbours = 128;             // candidates from whose distance their density is estimated
+    double radius_factor = 1.1;       // radius over the distance that a light would keep from others
+    int photons = kAutomaticPhotons;  // particles from fire and emitters; 0: no lights
+    double picture_error = 0.02;      // what automatic photons follow: lighting.error of the shot, no key of its own
+    int profile_resolution = 16;      // of directions of lights that are not plain Lambert: texels along a side
     std::string sampling = "combined";
     int light_samples = 1;                 // sampling power, plain_power, uniform, light_tree: lights at every vertex
     int resampling_candidates = 32;        // sampling resampled, resampled_combined: lights to choose from

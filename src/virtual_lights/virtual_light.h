@@ -25,6 +25,7 @@ struct VirtualLight {
     Rgb base_flux{0.0f};        // ... by the Lambert base alone [W]
     double power = 0.0;         // luminance of the flux [W]
     double intensity = 0.0;     // the largest in any direction, luminance [W/sr]
+    double held = 1.0;          // share of paths that end on it, mean over directions (LightSet::held)
 };
 
 // Height above the surface at which the visibility of a light is tested, of its radius, as surfaces are not flat.

@@ -10,7 +10,7 @@ VirtualLights::VirtualLights(const DirectLight& scene, const PixelCamera& camera
     : scene_(scene), set_(std::make_unique<LightSet>(scene, settings)) {
     const Technique technique = technique_of(settings);
     shines_ = scene.lights_surfaces();
-    const bool built = shines_ && settings.count > 0 && settings.photons > 0;
+    const bool built = shines_ && settings.count > 0 && settings.photons != 0;
     if (built)
         technique.build(*set_, *technique.placement, {camera, positions});
     const Stopwatch watch;

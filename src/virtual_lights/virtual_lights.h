@@ -81,9 +81,7 @@ private:
     bool samples_lights() const { return !set_->lights.empty() && gatherer_->samples_lights(); }
     BoundedLight from_lights(const PathVertex& vertex, Rng& rng) const { return gatherer_->from_lights(vertex, rng); }
     Seen seen_by(const RaySegment& segment) const { return set_->covered(segment); }
-    double termination_probability(const Seen& seen, double pdf) const {
-        return set_->termination_probability(seen, pdf);
-    }
+    LightSet::Ending ending(const Seen& seen, double pdf) const { return set_->ending(seen, pdf); }
     // Of the light at the segment's end, the share that virtual lights are not bounded to give less of.
     double share_kept(const PathVertex& vertex, const RaySegment& segment) const;
     Rgb at_end_of_ray(const PathVertex& vertex, const Seen& seen, double pdf) const {

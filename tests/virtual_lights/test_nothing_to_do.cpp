@@ -97,7 +97,7 @@ TEST(Settings, OutOfRangeAreRefused) {
         EXPECT_THROW(room.lights(settings), Error);
     };
     refused([](VirtualLightSettings& s) { s.count = -1; });
-    refused([](VirtualLightSettings& s) { s.photons = -1; });
+    refused([](VirtualLightSettings& s) { s.photons = -2; });
     refused([](VirtualLightSettings& s) { s.candidates_per_pixel = -1.0; });
     refused([](VirtualLightSettings& s) { s.neighbours = 0; });
     refused([](VirtualLightSettings& s) { s.radius_factor = 0.0; });

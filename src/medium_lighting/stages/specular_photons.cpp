@@ -87,7 +87,8 @@ SpecularPhotons::SpecularPhotons(const DirectLight& scene, const VirtualLights* 
         return;
     if (!lights || share > 0.0f || scene.surroundings()->scene().is_glossy() ||
         lights->report().photons.unshared_fraction() > kUnsharedLeft)
-        particles_ = static_cast<std::size_t>(settings.photons);
+        particles_ =
+            static_cast<std::size_t>(settings.photons == kAutomaticPhotons ? kMostAutomaticPhotons : settings.photons);
 }
 
 // Light that the surface at the end of a flight sends on and no virtual light holds. Roulette keeps the powers about

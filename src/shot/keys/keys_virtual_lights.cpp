@@ -114,8 +114,12 @@ void add_placement_keys(std::vector<Key>& keys) {
         "virtual_lights.radius_factor", "a light's radius over the distance that it keeps from others",
         real_in(Ranges::radius_factor), [](Shot & s) -> auto& { return s.virtual_lights.radius_factor; }));
     keys.push_back(make_key(
-        "virtual_lights.photons", "particles from fire and lamps, for flux gathered; 0: no virtual lights",
-        whole_in(Ranges::photons), [](Shot & s) -> auto& { return s.virtual_lights.photons; }));
+        "virtual_lights.photons",
+        "particles from fire and lamps, for flux gathered; 0: no virtual lights; auto: as many as lighting.error asks "
+        "of "
+        "each light, a million at most",
+        or_word(whole_in(Ranges::photons), "auto", kAutomaticPhotons),
+        [](Shot & s) -> auto& { return s.virtual_lights.photons; }));
     keys.push_back(make_key(
         "virtual_lights.profile_resolution", "of directions, where surfaces are glossy: texels along a side",
         whole_in(Ranges::profile_resolution), [](Shot & s) -> auto& { return s.virtual_lights.profile_resolution; }));

@@ -67,6 +67,7 @@ void finish_lights(LightSet& set, const LightAccounts& accounts) {
             light.flux = set.profiles.exitance(light) * float(light.area);
             light.base_flux = base_flux(light, i, accounts, resolution);
             light.intensity = set.profiles.brightest(light) * light.area;
+            light.held = set.mean_held(light);
         } else {
             light.irradiance = accounts.whole(i) / float(light.area);
             light.flux = light.base_flux = light.irradiance * light.material.base_colour * float(light.area);
@@ -102,7 +103,9 @@ void GatheredFlux::build(LightSet& set, const Placement&, const LightSources& so
 
     const BoundingBall ball = ball_around(set.scene());
     LightAccounts accounts(set.lights, set.settings().profile_resolution, emitted_power(set.scene(), ball));
-    report.photons = trace_photons(set.scene(), ball, set.partition, set.settings(), accounts);
+    const std::size_t photons =
+        photons_needed(set.scene(), ball, set.partition, set.settings(), set.lights.size(), sources.camera.samples);
+    report.photons = trace_photons(set.scene(), ball, set.partition, photons, set.settings().seed, accounts);
     report.photon_bytes = accounts.bytes();
     report.photon_seconds = lap.take();
 

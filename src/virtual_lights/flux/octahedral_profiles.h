@@ -1,6 +1,7 @@
 // Directional profiles of rich lights: from light that arrived by direction to light that is reflected by direction.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,15 @@ public:
     // Between texels linear [W/(m^2 sr)]. `toward`: unit, world.
     Rgb radiance(const VirtualLight& light, const dvec3& toward) const;
 
+    // The number of equal photons whose mean would vary as much as the radiance along a direction does: of those that
+    // arrived N E[f]^2 / E[f^2], f the BSDF between the direction and those of photons from everywhere alike. All N for
+    // a Lambert surface, about 12 alpha^2 N for a narrow lobe. `cosine`: of the direction to the light's normal.
+    static constexpr int kCosines = 8;
+    struct Behind {
+        double photons = 0.0, one = 0.0;  // and what one photon of the light adds to them
+    };
+    Behind photons_behind(const VirtualLight& light, double cosine) const;
+
     // Reflected power over area [W/m^2], and the largest radiance.
     Rgb exitance(const VirtualLight& light) const;
     float brightest(const VirtualLight& light) const;
@@ -39,6 +49,13 @@ private:
 
     std::size_t side_ = 0;
     std::vector<Rgb> texels_;
+    using Shares = std::array<float, kCosines>;  // E[f]^2 / E[f^2] by cosine, in even steps
+    std::vector<Shares> shares_;                 // of materials
+    struct Arrived {
+        double photons = 0.0, one = 0.0;
+        std::size_t material = 0;  // of shares_
+    };
+    std::vector<Arrived> arrived_;  // by profile
 };
 
 }  // namespace brisance

@@ -1,7 +1,9 @@
 #include "virtual_lights/flux/photon_splitting.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <numeric>
 
 #include "core/parallel.h"
 #include "transport/particle_walk.h"
@@ -12,6 +14,10 @@ namespace brisance {
 namespace {
 
 constexpr std::size_t kBlock = 1024;
+// Particles that tell how many photons lights need, and the fewest that are traced for them.
+constexpr std::size_t kPilot = 16384;
+// With one, Veach's door ajar has half more variance than with four.
+constexpr double kArrivalsPerSample = 4.0;
 // The greatest ratio of shading to geometric cosine that a photon's power is multiplied by (Veach 1997, section 5.3):
 // without a bound one photon at a grazing angle may outshine all others. It is biased, and loses light wherever the
 // ratio is greater: 53 % where the shading normal leans by 45 degrees toward a sun 5 degrees above the surface.
@@ -76,16 +82,18 @@ void share_out(const DirectLight& scene, const RaySegment& segment, const Rgb& p
     if (!holds_light(point.material))
         return;
     const LightShares shares = partition.shares(point.position, lit_normal(point), material_of(scene, segment));
+    report.arrivals += shares.count > 0;
     (shares.count > 0 ? report.shared : report.unshared) += luminance(power);
     const dvec3 toward_source = -segment.ray.direction;
     const float brighter = brightness_by_shading(point, toward_source);
     for (int i = 0; i < shares.count; ++i)
-        accounts.add(shares.light[i], toward_source, power * (shares.weight[i] * brighter));
+        accounts.add(shares.light[i], toward_source, shares.weight[i], power * (shares.weight[i] * brighter));
 }
 
 void add(PhotonReport& to, const PhotonReport& r) {
     to.photons += r.photons;
     to.from_fire += r.from_fire;
+    to.arrivals += r.arrivals;
     to.not_finite += r.not_finite;
     to.emitted += r.emitted;
     to.shared += r.shared;
@@ -96,7 +104,11 @@ void add(PhotonReport& to, const PhotonReport& r) {
 }  // namespace
 
 LightAccounts::LightAccounts(std::span<const VirtualLight> lights, int profile_resolution, double power)
-    : lights_(lights), resolution_(profile_resolution), sums_(0, power) {
+    : lights_(lights),
+      resolution_(profile_resolution),
+      sums_(0, power),
+      photons_(lights.size()),
+      squares_(lights.size()) {
     std::size_t records = 0;
     for (const VirtualLight& light : lights) {
         first_.push_back(records);
@@ -105,7 +117,13 @@ LightAccounts::LightAccounts(std::span<const VirtualLight> lights, int profile_r
     sums_ = FixedSums(records, power);
 }
 
-void LightAccounts::add(std::size_t light, const dvec3& toward_source, const Rgb& power) {
+void LightAccounts::add(std::size_t light, const dvec3& toward_source, double weight, const Rgb& power) {
+    const auto count = [](std::uint64_t& sum, double value) {
+        std::atomic_ref<std::uint64_t>(sum).fetch_add(std::uint64_t(std::llround(value * kPhoton)),
+                                                      std::memory_order_relaxed);
+    };
+    count(photons_[light], weight);
+    count(squares_[light], weight * weight);
     std::size_t record = first_[light];
     if (lights_[light].profile >= 0)
         record += texel_of(lights_[light].frame.local_from_world(toward_source), resolution_);
@@ -144,10 +162,35 @@ PhotonArrivals photon_arrivals(const DirectLight& scene, std::size_t paths, Stre
     return out;
 }
 
+std::size_t photons_needed(const DirectLight& scene, const BoundingBall& ball, const PartitionOfUnity& partition,
+                           const VirtualLightSettings& settings, std::size_t count, double samples) {
+    if (settings.photons != kAutomaticPhotons)
+        return static_cast<std::size_t>(settings.photons);
+    // Of another seed than the photons that lights keep.
+    const PhotonPaths paths(scene, ball, kPilot, Stream::Photon, ~settings.seed);
+    std::vector<std::uint64_t> parts(kPilot / kBlock);
+    parallel_blocks(kPilot, kBlock, [&](std::size_t begin, std::size_t end) {
+        PhotonReport report;
+        for (std::size_t i = begin; i < end; ++i)
+            paths.trace(i, report, [&](const RaySegment& segment, const Rgb&) {
+                const SurfacePoint& point = *segment.point;
+                if (holds_light(point.material) &&
+                    partition.shares(point.position, lit_normal(point), material_of(scene, segment)).count > 0)
+                    ++parts[begin / kBlock];
+            });
+    });
+    const std::uint64_t arrivals = std::accumulate(parts.begin(), parts.end(), std::uint64_t(0));
+    const double each = 4.0 / (kLightsOfFootprint * settings.picture_error * settings.picture_error);
+    const double lights = double(count);
+    const double wanted =
+        std::min(each * lights, std::max(kArrivalsPerSample * samples, kLeastPhotons * lights));  // to arrive
+    const double needed = wanted * double(kPilot) / double(std::max<std::uint64_t>(arrivals, 1));
+    return static_cast<std::size_t>(std::clamp(needed, double(kPilot), double(kMostAutomaticPhotons)));
+}
+
 PhotonReport trace_photons(const DirectLight& scene, const BoundingBall& ball, const PartitionOfUnity& partition,
-                           const VirtualLightSettings& settings, LightAccounts& accounts) {
-    const auto total = static_cast<std::size_t>(settings.photons);
-    const PhotonPaths paths(scene, ball, total, Stream::Photon, settings.seed);
+                           std::size_t total, std::uint32_t seed, LightAccounts& accounts) {
+    const PhotonPaths paths(scene, ball, total, Stream::Photon, seed);
     std::vector<PhotonReport> parts((total + kBlock - 1) / kBlock);
     parallel_blocks(total, kBlock, [&](std::size_t begin, std::size_t end) {
         PhotonReport& report = parts[begin / kBlock];

@@ -175,7 +175,7 @@ struct Resampled {
                 sum +=
                     kind_.radiance_at(hit, i) / float(density(c, chooser_.probability(vertex.lit(), c.light), vertex));
             }
-            const double ended = set_.termination_probability(hit, sample->pdf);
+            const double ended = set_.ending(hit, sample->pdf).light;
             const double transmittance = set_.scene().lines().transmittance(segment.ray, segment.end, rng);
             return c.scattered.value * sum * float(ended * transmittance);
         }

@@ -22,7 +22,7 @@ void meet_patch(const LightSet& set, const Connection& connection, const PathVer
     for (int i = 0; i < hit.shares.count; ++i) {
         if (hit.shares.light[i] != connection.light)
             continue;
-        if (const double terminated = set.termination_probability(hit, connection.scattered.pdf); terminated > 0.0)
+        if (const double terminated = set.ending(hit, connection.scattered.pdf).light; terminated > 0.0)
             visit(hit, i, terminated);
         return;
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -12,8 +13,9 @@ namespace brisance {
 
 // A camera as the module needs it.
 struct PixelCamera {
-    int width = 0, height = 0;                   // [pixels]
-    std::function<Ray(double x, double y)> ray;  // local; x, y in pixels from the upper left corner
+    int width = 0, height = 0;                                 // [pixels]
+    std::function<Ray(double x, double y)> ray;                // local; x, y in pixels from the upper left corner
+    double samples = std::numeric_limits<double>::infinity();  // of the whole picture, as far as known
 };
 
 // No path can be sent through its picture.

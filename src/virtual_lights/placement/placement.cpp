@@ -57,11 +57,11 @@ PhotonArrivals light_path_flux(const PlacementInput& input) {
 }
 
 double power_per_area(const VirtualLight& light) {
-    return light.share * light.power / light.area;
+    return light.held * light.share * light.power / light.area;
 }
 
 double power_alone(const VirtualLight& light) {
-    return light.power;
+    return light.held * light.power;
 }
 
 double equal_importance(const VirtualLight& light) {
