@@ -14,9 +14,6 @@ namespace brisance {
 
 namespace {
 
-// Anti-aliasing samples along a pixel's side where there are surfaces: their edges are sharp.
-constexpr int kSurfaceSamples = 4;
-
 // What a single pixel may err by for want of rays, in parts of `lighting.error`. Most pixels err by far less.
 constexpr float kShareOfSampling = 0.5f;
 

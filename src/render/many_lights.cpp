@@ -16,7 +16,7 @@ std::unique_ptr<VirtualLights> place_virtual_lights(const DrawInput& input, cons
     const Stopwatch watch;
     const Camera& camera = input.camera;
     const CameraSettings& c = camera.settings();
-    const double per_axis = std::max(1, c.samples_per_axis);
+    const double per_axis = c.samples_per_axis > 0 ? c.samples_per_axis : kSurfaceSamples;
     const PixelCamera pixels{c.width, c.height, [&](double x, double y) { return camera.ray(x, y); },
                              double(c.width) * c.height * per_axis * per_axis};
     VirtualLightSettings settings = input.shot.virtual_lights;
