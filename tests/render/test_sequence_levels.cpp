@@ -38,6 +38,8 @@ TEST(SequenceLevels, AreThoseOfTheGivenFrameAndWhatTheShotStatesStays) {
     shot.scattering.lattice_level = 0;
     EXPECT_TRUE(leaves_levels_open(shot));
     shot.lighting.lattice_level = 0;
+    EXPECT_TRUE(leaves_levels_open(shot));
+    shot.lighting.smoke_lattice_level = 0;
     EXPECT_FALSE(leaves_levels_open(shot));
     shot.scattering.lattice_level = -1;
     shot.method = RenderMethod::Path;
@@ -50,7 +52,7 @@ TEST(SequenceLevels, HoldTheMeanEscapeProbabilityWhereItDecides) {
     Shot shot;
     shot.volume.file = (folder / "a.####.vdb").string();
     shot.lighting.levels = 3;
-    shot.lighting.lattice_level = shot.scattering.lattice_level = 0;
+    shot.lighting.lattice_level = shot.lighting.smoke_lattice_level = shot.scattering.lattice_level = 0;
     EXPECT_FALSE(leaves_levels_open(shot));
     shot.medium.smoke.mean_cosine = 0.5f;
     shot.medium.smoke.extinction_per_metre = 1.0f;

@@ -134,8 +134,12 @@ LightingLevel level_of_smoke(const Medium& medium, float depth, const LightingSe
         return {std::max(settings.smoke_lattice_level, first.level)};
     if (settings.lattice_level >= 0 || settings.interpolation >= 0.0f)
         return {first.level};
+    // Light that is scattered back runs the same short stretch again and again. Depths count (1 - g) / (1 + g) times as
+    // much, which is how much less far a walk gets whose equal steps have the mean cosine g. With 1 - g, as of
+    // exponential ones, a ball of g = -0.999 sent out 4.9 % too much, and 2.3 % on its own lattice.
+    const float g = std::min(0.0f, medium.mean_cosine), counted = depth * (1.0f - g) / std::max(1.0f + g, 1e-3f);
     const float albedo = albedo_met(medium);
-    const auto error_of = [&](int level) { return albedo * error_of_voxels(std::exp2(float(level)) * depth); };
+    const auto error_of = [&](int level) { return albedo * error_of_voxels(std::exp2(float(level)) * counted); };
     // Both as a level and a share of the next in one number.
     const float finest = float(first.level) + first.share_of_coarser, widest = finest + kSmokeWider;
     int allowed = first.level;
