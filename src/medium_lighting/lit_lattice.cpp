@@ -6,7 +6,6 @@
 #include "gathering/escape_probability.h"
 #include "lighting_grid/voxel_lights.h"
 #include "medium/phase.h"
-#include "medium_lighting/levels/coarse_lighting.h"
 #include "medium_lighting/surface_occluders.h"
 #include "scattering/coarse_operator.h"
 
@@ -102,7 +101,7 @@ NodeWeights LitLattice::escape_likelihood_of(const std::vector<Rgb>& intensity) 
     return escape_likelihood(medium(), depths_, intensity, &likelihood_);
 }
 
-std::vector<Rgb> LitLattice::source_function(const Gathered& g) const {
+std::vector<Rgb> LitLattice::source_function(const Gathered& g, Interpolation how) const {
     const std::size_t n = needed_.size();
     std::vector<Rgb> radiance(n, Rgb(0.0f));
     parallel_for(
@@ -115,7 +114,7 @@ std::vector<Rgb> LitLattice::source_function(const Gathered& g) const {
         },
         4096);
     if (level_ > 0)
-        radiance = light_at_fine_nodes(medium().lattice, std::move(radiance), level_, input_.medium.lattice);
+        radiance = light_at_fine_nodes(medium().lattice, std::move(radiance), level_, input_.medium.lattice, how);
     parallel_for(
         radiance.size(), [&](std::size_t i) { radiance[i] *= input_.medium.albedo_at(i); }, 4096);
     return radiance;

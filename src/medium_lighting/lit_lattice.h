@@ -9,6 +9,7 @@
 #include "gathering/point_depths.h"
 #include "lighting_grid/footprint.h"
 #include "medium_lighting/input.h"
+#include "medium_lighting/levels/coarse_lighting.h"
 #include "medium_lighting/levels/lit_levels.h"
 #include "thin_media/thin_medium.h"
 
@@ -56,7 +57,7 @@ public:
     NodeWeights escape_likelihood_of(const std::vector<Rgb>& intensity) const;
 
     // Albedo times the radiance that scatters toward the camera, per node of the input medium [W/(m^2 sr)].
-    std::vector<Rgb> source_function(const Gathered& gathered) const;
+    std::vector<Rgb> source_function(const Gathered& gathered, Interpolation how = Interpolation::EighthRoots) const;
 
 private:
     MediumLightingInput input_;

@@ -59,8 +59,9 @@ TEST(Agreement, FarLightBetweenNodesIsThatOfTheNodes) {
     EXPECT_LT(fewer.back().evaluations * 4, every.back().evaluations);
     const Difference d = difference(interpolated.fluence, at_every_node.fluence);
     std::printf("mean %+.3f %%, rms %.3f %%\n", 100.0 * d.mean, 100.0 * d.rms);
+    // Far below the 2 % that shadow maps may add; nodes are an eighth of a level's radius apart at most.
     EXPECT_LT(std::abs(d.mean), 0.001);
-    EXPECT_LT(d.rms, 0.002);
+    EXPECT_LT(d.rms, 0.004);
 }
 
 TEST(Agreement, PointsAtTheNodesSeeWhatTheNodesSee) {

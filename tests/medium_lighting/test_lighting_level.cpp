@@ -47,7 +47,8 @@ TEST(LightingLevel, ExponentialDecayAlongAnAxisIsInterpolatedAsTheCameraSeesIt) 
         std::vector<Rgb> light(coarse.lattice.node_count());
         for (std::size_t i = 0; i < light.size(); ++i)
             light[i] = light_at(coarse.lattice.node(i) * (1 << level));
-        const std::vector<Rgb> found = light_at_fine_nodes(coarse.lattice, light, level, fine.lattice);
+        const std::vector<Rgb> found =
+            light_at_fine_nodes(coarse.lattice, light, level, fine.lattice, Interpolation::EighthRoots);
         for (std::size_t i = 0; i < found.size(); ++i)
             if (fine.extinction[i] > 0.0f) {
                 const Rgb wanted = light_at(fine.lattice.node(i));
@@ -55,6 +56,21 @@ TEST(LightingLevel, ExponentialDecayAlongAnAxisIsInterpolatedAsTheCameraSeesIt) 
                     ASSERT_NEAR(found[i][c] / wanted[c], 1.0f, 0.005f) << "level " << level << ", colour " << c;
             }
     }
+}
+
+TEST(LightingLevel, LinearLightIsInterpolatedAsItIs) {
+    const Medium fine = smooth_fire(1.0f);
+    const Medium coarse = medium_to_light(fine, 1);
+    const auto light_at = [](const ivec3& node) {
+        return Rgb(100.0f + float(node.x), 100.0f - 2.0f * float(node.y), 5.0f);
+    };
+    std::vector<Rgb> light(coarse.lattice.node_count());
+    for (std::size_t i = 0; i < light.size(); ++i)
+        light[i] = light_at(coarse.lattice.node(i) * 2);
+    const std::vector<Rgb> found = light_at_fine_nodes(coarse.lattice, light, 1, fine.lattice, Interpolation::Linear);
+    for (std::size_t i = 0; i < found.size(); ++i)
+        for (int c = 0; c < 3 && fine.extinction[i] > 0.0f; ++c)
+            ASSERT_NEAR(found[i][c], light_at(fine.lattice.node(i))[c], 1e-3f);
 }
 
 TEST(LightingLevel, TheMeanMediumEmitsAndExtinguishesAsMuch) {

@@ -95,9 +95,11 @@ Medium medium_to_light(const Medium& fine, int level) {
 }
 
 std::vector<Rgb> light_at_fine_nodes(const BrickLattice& coarse, std::vector<Rgb> light, int level,
-                                     const BrickLattice& fine) {
-    parallel_for(
-        light.size(), [&](std::size_t i) { light[i] = eighth_root(light[i]); }, 4096);
+                                     const BrickLattice& fine, Interpolation how) {
+    const bool roots = how == Interpolation::EighthRoots;
+    if (roots)
+        parallel_for(
+            light.size(), [&](std::size_t i) { light[i] = eighth_root(light[i]); }, 4096);
     const std::span<const float> values(reinterpret_cast<const float*>(light.data()), light.size() * 3);
     std::vector<Rgb> out(fine.node_count());
     parallel_for(
@@ -105,8 +107,10 @@ std::vector<Rgb> light_at_fine_nodes(const BrickLattice& coarse, std::vector<Rgb
         [&](std::size_t b) {
             const ivec3 first = fine.first_node(b);
             const Parents parents(coarse, values, first, level);
-            for (int k = 0; k < BrickLattice::kNodes; ++k)
-                out[b * BrickLattice::kNodes + k] = eighth_power(parents.at(first + BrickLattice::node_in_brick(k)));
+            for (int k = 0; k < BrickLattice::kNodes; ++k) {
+                const Rgb value = parents.at(first + BrickLattice::node_in_brick(k));
+                out[b * BrickLattice::kNodes + k] = roots ? eighth_power(value) : value;
+            }
         },
         16);
     return out;

@@ -14,9 +14,14 @@ Medium medium_to_light(const Medium& fine, int level);
 // Luminance of the emission coefficient per node [W/(m^3 sr)].
 std::vector<float> emission_luminance(const Medium& medium);
 
-// Light at the nodes of a lattice from that at the nodes of one 2^level coarser. In smoke light falls almost
-// exponentially: its eighth root is interpolated.
+// How light is interpolated between coarse nodes.
+enum class Interpolation {
+    EighthRoots,  // where light falls almost exponentially from node to node
+    Linear        // as the camera interpolates: the field is that of a medium whose own nodes are as far apart
+};
+
+// Light at the nodes of a lattice from that at the nodes of one 2^level coarser.
 std::vector<Rgb> light_at_fine_nodes(const BrickLattice& coarse, std::vector<Rgb> light, int level,
-                                     const BrickLattice& fine);
+                                     const BrickLattice& fine, Interpolation how);
 
 }  // namespace brisance

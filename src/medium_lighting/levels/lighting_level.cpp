@@ -30,7 +30,7 @@ constexpr float kNearlyAllowed = 1.5f;
 // 2 % where the fire had 18 voxels across, and four times as wide by 11 %. Wider ones are not chosen.
 constexpr int kWidest = 1;
 // Of the smoke's, above those.
-constexpr int kSmokeWider = 1;
+constexpr int kSmokeWider = 2;
 
 // Errors of light on ever coarser lattices.
 class LatticeErrors {
