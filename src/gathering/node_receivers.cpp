@@ -11,9 +11,14 @@ namespace brisance {
 
 namespace {
 
-// The distance between the nodes at which a level's light is gathered, over its blending radius. An interpolant errs as
-// the square of that distance.
+// The distance between the nodes at which a level's light is gathered, over its blending radius. It falls as the power
+// 3/2 of the error: an interpolant errs as the square of the distance where light is smooth, but less than in
+// proportion to it at the rims of dense smoke, where light has kinks.
 constexpr float kShareOfRadius = 0.125f, kErrorOfShare = 0.02f;
+
+float power_of_share(float error) {
+    return std::pow(error, error < 1.0f ? 1.5f : 0.5f);
+}
 
 // The k-th node of a brick, in sub-blocks of 4 x 2 x 2 so that groups of 16 are compact.
 ivec3 node_in_sub_blocks(int k) {
@@ -96,7 +101,7 @@ int coarsening_of(const LightField& field, const GridLevel& level) {
     // at once.
     if (field.settings.shadows != ShadowMethod::Maps || level.level == field.bottom || field.occluders)
         return 0;
-    const float share = kShareOfRadius * std::sqrt(field.settings.error / kErrorOfShare);
+    const float share = kShareOfRadius * power_of_share(field.settings.error / kErrorOfShare);
     const float lengths = share * field.alpha * level.spacing / field.pyramid->medium().spacing;
     return std::clamp(static_cast<int>(std::floor(std::log2(lengths))), 0, std::max(0, level.level - 1));
 }

@@ -2,10 +2,10 @@
 //
 // A level's shadow maps know its light no finer than by about a quarter of the level's own spacing: their texels, and
 // their steps along a ray, are as long. At the least distance of such a light, an interpolant over that length errs by
-// some thousandths. So the light of level l is gathered at every 2^m-th node, with 2^m at most a sixteenth of the
+// some thousandths. So the light of level l is gathered at every 2^m-th node, with 2^m at most an eighth of the
 // level's blending radius, and interpolated to the nodes between, coarsest lattice first. This is for an error of 2 %;
-// where less is asked for, the distance falls as its square root. All light of far levels together then costs less than
-// that of the nearest.
+// where less is asked for, the distance falls as its power 3/2; where more is allowed, it grows as its square root. All
+// light of far levels together then costs less than that of the nearest.
 #pragma once
 
 #include <vector>

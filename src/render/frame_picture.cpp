@@ -15,7 +15,7 @@ namespace brisance {
 namespace {
 
 // What a single pixel may err by for want of rays, in parts of `lighting.error`. Most pixels err by far less.
-constexpr float kShareOfSampling = 0.5f;
+constexpr float kShareOfSampling = 0.35f;
 
 // Standard error of a pixel of surfaces for want of shaded samples, in parts of `lighting.error`.
 constexpr float kShareOfShading = 1.0f;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/parallel.h"
 #include "gathering/settings.h"
@@ -29,8 +30,22 @@ constexpr float kNearlyAllowed = 1.5f;
 // The errors above do not see how light changes around a small fire in thin smoke: voxels twice as wide changed MV by
 // 2 % where the fire had 18 voxels across, and four times as wide by 11 %. Wider ones are not chosen.
 constexpr int kWidest = 1;
-// Of the smoke's, above those.
-constexpr int kSmokeWider = 2;
+// Of the smoke's, above those. Without fire nothing is known of where its light changes.
+constexpr int kSmokeWider = 3, kSmokeWiderWithoutFire = 1;
+// Smoke around a small fire is bright near it: what kErrorOfEmission is to the fire's light. Half of it, as the light
+// that arrives has flown a way.
+constexpr float kErrorOfEmissionInSmoke = 0.05f;
+
+// The mean albedo, as a collision meets it: no larger part of what the picture shows has scattered twice.
+float albedo_met(const Medium& medium) {
+    double sum = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < medium.extinction.size(); ++i) {
+        const double weight = double(medium.extinction[i]) * medium.extinction[i];
+        sum += weight * luminance(medium.albedo_at(i));
+        all += weight;
+    }
+    return all > 0.0 ? float(sum / all) : 0.0f;
+}
 
 // Errors of light on ever coarser lattices.
 class LatticeErrors {
@@ -42,15 +57,29 @@ public:
     }
 
     // Relative, of the picture, on voxels 2^level wide.
-    float of(int level) const {
+    float of_first(int level) const {
         const float voxels = error_of_voxels(std::exp2(float(level)) * depth_) - error_of_voxels(depth_);
-        return std::hypot(voxels, unresolved_emission(level));
+        return std::hypot(voxels, kErrorOfEmission * unresolved_emission(level));
+    }
+    float of_smoke(int level) const {
+        return std::hypot(albedo_met(medium_) * error_of_voxels(std::exp2(float(level)) * depth_of_smoke()),
+                          kErrorOfEmissionInSmoke * unresolved_emission(level));
     }
 
+    float widest_of_smoke() const { return float(emission_.empty() ? kSmokeWiderWithoutFire : kSmokeWider); }
+
 private:
-    // By the emission (root mean square) that an interpolant through the lattice's means lacks.
+    // Light that is scattered back runs the same short stretch again and again. Depths count (1 - g) / (1 + g) times as
+    // much, as a walk of equal steps with the mean cosine g gets less far. With 1 - g, as of exponential steps, a ball
+    // of g = -0.999 sent out 4.9 % too much; 2.3 % on its own lattice.
+    float depth_of_smoke() const {
+        const float g = std::min(0.0f, medium_.mean_cosine);
+        return depth_ * (1.0f - g) / std::max(1.0f + g, 1e-3f);
+    }
+
+    // The square of the emission (relative, root mean square) that an interpolant through the lattice's means lacks.
     float unresolved_emission(int level) const {
-        if (emission_.empty())
+        if (emission_.empty() || level == 0)
             return 0.0f;
         const BrickLattice& nodes = medium_.lattice;
         BrickLattice lattice = nodes;
@@ -78,7 +107,7 @@ private:
             off_sum += off[b];
             sum += all[b];
         }
-        return sum > 0.0 ? kErrorOfEmission * float(off_sum / sum) : 0.0f;
+        return sum > 0.0 ? float(off_sum / sum) : 0.0f;
     }
 
     const Medium& medium_;
@@ -91,23 +120,12 @@ bool stays_on_its_lattice(const MediumLightingInput& input) {
            surfaces_reach_into(input.surroundings->scene(), input.medium);
 }
 
-// The mean albedo, as a collision meets it: no larger part of what the picture shows has scattered twice.
-float albedo_met(const Medium& medium) {
-    double sum = 0.0, all = 0.0;
-    for (std::size_t i = 0; i < medium.extinction.size(); ++i) {
-        const double weight = double(medium.extinction[i]) * medium.extinction[i];
-        sum += weight * luminance(medium.albedo_at(i));
-        all += weight;
-    }
-    return all > 0.0 ? float(sum / all) : 0.0f;
-}
-
 // Light of a lattice and the next coarser one, whose errors are known.
 LightingLevel between(int level, float error, float of_coarser, float allowed) {
     return {level, 1.0f - glm::smoothstep(1.0f, kNearlyAllowed, of_coarser / allowed), error, of_coarser};
 }
 
-LightingLevel level_of_first(const Medium& medium, float depth, const LightingSettings& settings) {
+LightingLevel level_of_first(const Medium& medium, const LatticeErrors& errors, const LightingSettings& settings) {
     if (settings.lattice_level >= 0 || settings.interpolation >= 0.0f)
         return {std::max(0, settings.lattice_level)};
     const std::vector<float>& extinction = medium.extinction;
@@ -115,11 +133,10 @@ LightingLevel level_of_first(const Medium& medium, float depth, const LightingSe
     const float allowed = kTimesInterpolation * tolerated_interpolation(settings, std::size_t(voxels));
     if (!(allowed > 0.0f))
         return {};
-    const LatticeErrors errors(medium, depth);
     int level = 0;
     float error = 0.0f;
     for (;;) {
-        const float next = errors.of(level + 1);
+        const float next = errors.of_first(level + 1);
         if (next > allowed)
             return between(level, error, next, allowed);
         error = next;
@@ -128,27 +145,25 @@ LightingLevel level_of_first(const Medium& medium, float depth, const LightingSe
     }
 }
 
-LightingLevel level_of_smoke(const Medium& medium, float depth, const LightingSettings& settings,
+LightingLevel level_of_smoke(const LatticeErrors& errors, const LightingSettings& settings,
                              const LightingLevel& first) {
     if (settings.smoke_lattice_level >= 0)
         return {std::max(settings.smoke_lattice_level, first.level)};
     if (settings.lattice_level >= 0 || settings.interpolation >= 0.0f)
         return {first.level};
-    // Light that is scattered back runs the same short stretch again and again. Depths count (1 - g) / (1 + g) times as
-    // much, which is how much less far a walk gets whose equal steps have the mean cosine g. With 1 - g, as of
-    // exponential ones, a ball of g = -0.999 sent out 4.9 % too much, and 2.3 % on its own lattice.
-    const float g = std::min(0.0f, medium.mean_cosine), counted = depth * (1.0f - g) / std::max(1.0f + g, 1e-3f);
-    const float albedo = albedo_met(medium);
-    const auto error_of = [&](int level) { return albedo * error_of_voxels(std::exp2(float(level)) * counted); };
     // Both as a level and a share of the next in one number.
-    const float finest = float(first.level) + first.share_of_coarser, widest = finest + kSmokeWider;
+    const float finest = float(first.level) + first.share_of_coarser, widest = finest + errors.widest_of_smoke();
     int allowed = first.level;
-    while (float(allowed) < widest && error_of(allowed + 1) <= settings.error)
+    float error = errors.of_smoke(allowed), next = errors.of_smoke(allowed + 1);
+    while (float(allowed) < widest && next <= settings.error) {
         ++allowed;
-    const LightingLevel by_error = between(allowed, error_of(allowed), error_of(allowed + 1), settings.error);
+        error = std::exchange(next, errors.of_smoke(allowed + 1));
+    }
+    const LightingLevel by_error = between(allowed, error, next, settings.error);
     const float at = std::clamp(float(allowed) + by_error.share_of_coarser, finest, widest);
     const int level = static_cast<int>(at);
-    return {level, at - float(level), error_of(level), error_of(level + 1)};
+    return {level, at - float(level), level == allowed ? error : errors.of_smoke(level),
+            level == allowed ? next : errors.of_smoke(level + 1)};
 }
 
 }  // namespace
@@ -165,8 +180,9 @@ LightingLevels lighting_levels(const MediumLightingInput& input) {
 
 LightingLevels lighting_levels(const Medium& medium, const LightingSettings& settings) {
     const float depth = medium.spacing * float(extinction_met(medium.extinction));
-    const LightingLevel first = level_of_first(medium, depth, settings);
-    return {first, level_of_smoke(medium, depth, settings, first)};
+    const LatticeErrors errors(medium, depth);
+    const LightingLevel first = level_of_first(medium, errors, settings);
+    return {first, level_of_smoke(errors, settings, first)};
 }
 
 }  // namespace brisance
