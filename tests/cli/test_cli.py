@@ -483,7 +483,8 @@ class Rendering(VolumeCase):
             self.expect(0, "render", pattern, *SMALL, "-f", frame, "-o", self.out,
                         says="lattices of all frames, by the largest file, burst_0002.vdb: lighting.levels=")
         done = self.expect(0, "render", pattern, *SMALL, "-f", 1, "-o", self.out, "--set", "lighting.levels=4",
-                           "--set", "scattering.lattice_level=0", "--set", "lighting.lattice_level=0")
+                           "--set", "scattering.lattice_level=0", "--set", "lighting.lattice_level=0",
+                           "--set", "lighting.smoke_lattice_level=0")
         self.assertNotIn("lattices of all frames", done.stderr)
 
     def test_volumes_of_different_ranges(self):

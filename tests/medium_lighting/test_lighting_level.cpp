@@ -124,9 +124,9 @@ TEST(LightingLevel, VoxelsOfTheSmokesLightDoNotDependOnThoseOfTheVolume) {
         r.settings.smoke.albedo = Rgb(0.8f);
         return std::exp2(float(lighting_levels(make_medium(r), {}).smoke.level)) / float(nodes);
     };
-    EXPECT_EQ(width(16, 11.0f), width(32, 11.0f));
-    EXPECT_EQ(width(8, 5.0f), width(16, 5.0f));
-    EXPECT_LT(width(32, 30.0f), width(32, 11.0f));
+    EXPECT_EQ(width(16, 6.0f), width(32, 6.0f));
+    EXPECT_EQ(width(8, 3.0f), width(16, 3.0f));
+    EXPECT_LT(width(32, 30.0f), width(32, 6.0f));
 }
 
 TEST(LightingLevel, LightOfTheSmokeOnAWiderLatticeIsNearlyTheSame) {
