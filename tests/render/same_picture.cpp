@@ -33,9 +33,11 @@ Medium medium_of(const SameScene& scene) {
     return build_medium(parts, silent);
 }
 
-// Stages that read files or only measure what is left.
+// Not stages that read files or only measure what is left, nor the same stages once more on the next coarser lattice,
+// whose share of the light fades in.
 bool lights(const std::string& stage) {
-    return !stage.starts_with("reading") && stage != "medium" && stage != "between the stages";
+    return !stage.ends_with("on the next coarser lattice") && !stage.starts_with("reading") && stage != "medium" &&
+           stage != "between the stages";
 }
 
 std::string listed(const std::vector<std::string>& names) {
