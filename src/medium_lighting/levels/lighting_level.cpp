@@ -150,6 +150,14 @@ LightingLevel level_of_first(const Medium& medium, const LatticeErrors& errors, 
     }
 }
 
+// A hundredth of the light is not worth a lattice of its own: both differ by some percent, so that this leaves steps of
+// less than a thousandth.
+float without_traces(float level) {
+    constexpr float kTrace = 0.01f;
+    const float nearest = std::round(level);
+    return std::abs(level - nearest) < kTrace ? nearest : level;
+}
+
 // What the voxels of the smoke's light may add. Where more than usual is allowed, other errors grow, too.
 float allowed_of_smoke(float error) {
     constexpr float kUsual = 0.02f;
@@ -172,7 +180,7 @@ LightingLevel level_of_smoke(const LatticeErrors& errors, const LightingSettings
         error = std::exchange(next, errors.of_smoke(allowed + 1));
     }
     const LightingLevel by_error = between(allowed, error, next, most);
-    const float at = std::clamp(float(allowed) + by_error.share_of_coarser, finest, widest);
+    const float at = without_traces(std::clamp(float(allowed) + by_error.share_of_coarser, finest, widest));
     const int level = static_cast<int>(at);
     return {level, at - float(level), level == allowed ? error : errors.of_smoke(level),
             level == allowed ? next : errors.of_smoke(level + 1)};
