@@ -22,7 +22,6 @@ constexpr float kBend = 8.0f, kConvergence = 1.5f;
 constexpr float kRounding = 1e-5f;
 
 constexpr std::size_t kPixelsAtOnce = 64;
-constexpr int kSideOfTile = 16;  // pixels
 
 struct Pixel {
     int x, y;
@@ -124,7 +123,7 @@ int samples_at(float bend, const PictureSettings& settings) {
     return static_cast<int>(std::ceil(std::min(float(settings.finest_medium_samples_per_axis), samples)));
 }
 
-// Tile by tile, so that rays of neighbouring pixels meet the medium soon after each other, while it is in the caches.
+// Tile by tile.
 template <class Visit>
 void for_each_pixel_of_tiles(int width, int height, const Visit& visit) {
     for (int top = 0; top < height; top += kSideOfTile)

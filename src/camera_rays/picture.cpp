@@ -12,8 +12,6 @@ namespace brisance {
 
 namespace {
 
-constexpr int kTile = 16;  // pixels along the side of a tile
-
 float luminance_of_medium(const CellSum& cells) {
     float sum = 0.0f;
     for (const Cell cell : {Cell::V, Cell::MV, Cell::MM, Cell::MS, Cell::MA})
@@ -21,8 +19,7 @@ float luminance_of_medium(const CellSum& cells) {
     return sum;
 }
 
-// Rows of a picture together: their surfaces are lit in one call. They are traced in square tiles, so that the rays
-// that one brick of the medium meets come soon after each other, while it is in the caches.
+// Rows of a picture together: their surfaces are lit in one call. They are traced in tiles.
 class Band {
 public:
     Band(const PixelRays& rays, int width, const LightSurfaces& light_surfaces, std::vector<FirstLook>& first)
@@ -30,12 +27,13 @@ public:
 
     void draw(int begin, int end, PictureWriter& writer) {
         sums_.assign(std::size_t(end - begin) * width_, RaySum{});
-        const int columns = (width_ + kTile - 1) / kTile, rows = (end - begin + kTile - 1) / kTile;
+        const int columns = (width_ + kSideOfTile - 1) / kSideOfTile,
+                  rows = (end - begin + kSideOfTile - 1) / kSideOfTile;
         Found found(std::size_t(end - begin) * columns);
         parallel_for(std::size_t(rows) * columns, [&](std::size_t tile) {
             const int column = static_cast<int>(tile) % columns,
-                      first = begin + static_cast<int>(tile) / columns * kTile;
-            for (int y = first; y < std::min(first + kTile, end); ++y)
+                      first = begin + static_cast<int>(tile) / columns * kSideOfTile;
+            for (int y = first; y < std::min(first + kSideOfTile, end); ++y)
                 draw_row_of_tile(begin, y, column, found[std::size_t(y - begin) * columns + column]);
         });
         if (light_surfaces_)
@@ -51,7 +49,7 @@ private:
 
     // `begin`: first row of the band.
     void draw_row_of_tile(int begin, int y, int column, std::vector<FoundSurface>& found) {
-        for (int x = column * kTile; x < std::min((column + 1) * kTile, width_); ++x) {
+        for (int x = column * kSideOfTile; x < std::min((column + 1) * kSideOfTile, width_); ++x) {
             FirstLook* const look = first_.empty() ? nullptr : &first_[std::size_t(y) * width_ + x];
             RaySum& sum = sums_[std::size_t(y - begin) * width_ + x];
             sum = rays_.trace(x, y, &found, look ? &look->glare : nullptr);

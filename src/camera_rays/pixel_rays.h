@@ -14,6 +14,10 @@
 
 namespace brisance {
 
+// Pixels along the side of a tile. Rays of a tile follow each other, so that those that one brick of the medium meets
+// find it in the caches.
+inline constexpr int kSideOfTile = 16;
+
 // A surface that one of a pixel's rays found, with how much of its light arrives.
 struct FoundSurface {
     SurfaceSample sample;

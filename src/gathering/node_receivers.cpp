@@ -11,11 +11,12 @@ namespace brisance {
 
 namespace {
 
-// The distance between the nodes at which a level's light is gathered, over its blending radius. It falls as the power
-// 3/2 of the error: an interpolant errs as the square of the distance where light is smooth, but less than in
-// proportion to it at the rims of dense smoke, where light has kinks.
+// The distance between the nodes at which a level's light is gathered, over its blending radius. An interpolant errs as
+// the square of that distance where light is smooth, and by more at the rims of dense smoke, where it has kinks: below
+// the usual error the distance falls faster than as the square root.
 constexpr float kShareOfRadius = 0.125f, kErrorOfShare = 0.02f;
 
+// `error`: over the usual one.
 float power_of_share(float error) {
     return std::pow(error, error < 1.0f ? 1.5f : 0.5f);
 }

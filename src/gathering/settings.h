@@ -21,8 +21,8 @@ struct LightingSettings {
     float interpolation = -1.0f;
     float alpha = 2.0f;      // blending radius of level l is alpha * spacing of level l; at least 1
     int lattice_level = -1;  // light is gathered on voxels 2^level wide; -1: from `error`
-    int smoke_lattice_level =
-        -1;            // the same for light that smoke scatters on; -1: as the above if stated, or from `error`
+    // The same for light that smoke scatters on, on no finer ones; -1: as the above if that is stated, or from `error`.
+    int smoke_lattice_level = -1;
     int clusters = 0;  // lamps in the place of the fire's lights (light_clusters.h), a baseline; 0: none
     int levels = 0;    // hierarchy levels above the voxels; 0: from the volume's extent
     ShadowMethod shadows = ShadowMethod::Maps;

@@ -30,8 +30,8 @@ float scattered_radiance(const Gathered& g, std::size_t i, std::size_t n) {
 
 class Refinement {
 public:
-    Refinement(const LitLattice& lattice, const LatticeRequest& request, const LevelLights& lights, int finest)
-        : lattice_(lattice), request_(request), lights_(lights), finest_(finest) {}
+    Refinement(const LitLattice& lattice, const LatticeRequest& request, const LevelLights& lights)
+        : lattice_(lattice), request_(request), lights_(lights) {}
 
     AdaptiveLight run(nlohmann::ordered_json& detail) {
         int level = static_cast<int>(lattice_.levels().size());
@@ -40,8 +40,7 @@ public:
         // Of the source functions, from the next coarser level to this one. Of the coarsest, all is new.
         std::vector<float> change = level > 0 ? sources(level, light) : std::vector<float>{};
         for (; level > 0; --level) {
-            const std::vector<float> weight = level > finest_ ? refinement_weights(level, light, change)
-                                                              : std::vector<float>(needed(level).size(), 0.0f);
+            const std::vector<float> weight = refinement_weights(level, light, change);
             light = refine(level - 1, light, weight, change, counts);
         }
         detail["lit_nodes"] = counts;
@@ -330,7 +329,6 @@ private:
     const LitLattice& lattice_;
     LatticeRequest request_;
     const LevelLights& lights_;
-    int finest_;
     GatheredPart gathered_;  // at the level lit last, as of AdaptiveLight
     std::vector<float> conserving_;
 };
@@ -338,8 +336,8 @@ private:
 }  // namespace
 
 AdaptiveLight gather_adaptively(const LitLattice& lattice, const LatticeRequest& request, const LevelLights& lights,
-                                nlohmann::ordered_json& detail, int finest) {
-    return Refinement(lattice, request, lights, finest).run(detail);
+                                nlohmann::ordered_json& detail) {
+    return Refinement(lattice, request, lights).run(detail);
 }
 
 }  // namespace brisance

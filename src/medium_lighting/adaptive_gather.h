@@ -18,9 +18,8 @@
 namespace brisance {
 
 // Light at the needed nodes of the lattice, as `request` says but for its nodes. Adds the number of nodes gathered at
-// each level to `detail`. `finest`: no light is gathered at finer levels, where the lattice has coarser ones
-// (LitLattice::levels).
+// each level to `detail`.
 AdaptiveLight gather_adaptively(const LitLattice& lattice, const LatticeRequest& request, const LevelLights& lights,
-                                nlohmann::ordered_json& detail, int finest = 0);
+                                nlohmann::ordered_json& detail);
 
 }  // namespace brisance

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <utility>
 
 #include "core/parallel.h"
@@ -51,27 +53,26 @@ float albedo_met(const Medium& medium) {
     return all > 0.0 ? float(sum / all) : 0.0f;
 }
 
-// Errors of light on ever coarser lattices.
+// Errors of light on ever coarser lattices. What they need of the medium is looked for when it is asked for, and once.
 class LatticeErrors {
 public:
-    // `depth`: optical depth of a voxel.
-    LatticeErrors(const Medium& medium, float depth) : medium_(medium), depth_(depth) {
-        if (medium.emits())
-            emission_ = emission_luminance(medium);
-    }
+    explicit LatticeErrors(const Medium& medium)
+        : medium_(medium), depth_(medium.spacing * float(extinction_met(medium.extinction))) {}
 
     // Relative, of the picture, on voxels 2^level wide.
-    float of_first(int level) const {
+    float of_first(int level) {
         const float voxels = error_of_voxels(std::exp2(float(level)) * depth_) - error_of_voxels(depth_);
         return std::hypot(voxels, kErrorOfEmission * unresolved_emission(level));
     }
-    float of_smoke(int level) const {
-        const float albedo = albedo_met(medium_), depth = std::exp2(float(level)) * depth_of_smoke();
-        return std::hypot(kErrorOfSmoke * albedo * albedo * depth * depth,
+    float of_smoke(int level) {
+        if (!albedo_)
+            albedo_ = albedo_met(medium_);
+        const float depth = std::exp2(float(level)) * depth_of_smoke();
+        return std::hypot(kErrorOfSmoke * *albedo_ * *albedo_ * depth * depth,
                           kErrorOfEmissionInSmoke * unresolved_emission(level));
     }
 
-    float widest_of_smoke() const { return float(emission_.empty() ? kSmokeWiderWithoutFire : kSmokeWider); }
+    float widest_of_smoke() const { return float(medium_.emits() ? kSmokeWider : kSmokeWiderWithoutFire); }
 
 private:
     // Light that is scattered back runs the same short stretch again and again. Depths count (1 - g) / (1 + g) times as
@@ -83,9 +84,18 @@ private:
     }
 
     // The square of the emission (relative, root mean square) that an interpolant through the lattice's means lacks.
-    float unresolved_emission(int level) const {
-        if (emission_.empty() || level == 0)
+    float unresolved_emission(int level) {
+        if (level == 0 || !medium_.emits())
             return 0.0f;
+        if (emission_.empty())
+            emission_ = emission_luminance(medium_);
+        const auto [known, is_new] = unresolved_.try_emplace(level);
+        if (is_new)
+            known->second = lacking_at(level);
+        return known->second;
+    }
+
+    float lacking_at(int level) const {
         const BrickLattice& nodes = medium_.lattice;
         BrickLattice lattice = nodes;
         std::vector<float> means = emission_;
@@ -116,8 +126,10 @@ private:
     }
 
     const Medium& medium_;
-    float depth_;
-    std::vector<float> emission_;  // luminance per node; empty: none
+    float depth_;  // of a voxel
+    std::optional<float> albedo_;
+    std::vector<float> emission_;  // luminance per node
+    std::map<int, float> unresolved_;
 };
 
 bool stays_on_its_lattice(const MediumLightingInput& input) {
@@ -130,7 +142,7 @@ LightingLevel between(int level, float error, float of_coarser, float allowed) {
     return {level, 1.0f - glm::smoothstep(1.0f, kNearlyAllowed, of_coarser / allowed), error, of_coarser};
 }
 
-LightingLevel level_of_first(const Medium& medium, const LatticeErrors& errors, const LightingSettings& settings) {
+LightingLevel level_of_first(const Medium& medium, LatticeErrors& errors, const LightingSettings& settings) {
     if (settings.lattice_level >= 0 || settings.interpolation >= 0.0f)
         return {std::max(0, settings.lattice_level)};
     const std::vector<float>& extinction = medium.extinction;
@@ -164,8 +176,7 @@ float allowed_of_smoke(float error) {
     return error <= kUsual ? error : std::sqrt(kUsual * error);
 }
 
-LightingLevel level_of_smoke(const LatticeErrors& errors, const LightingSettings& settings,
-                             const LightingLevel& first) {
+LightingLevel level_of_smoke(LatticeErrors& errors, const LightingSettings& settings, const LightingLevel& first) {
     if (settings.smoke_lattice_level >= 0)
         return {std::max(settings.smoke_lattice_level, first.level)};
     if (settings.lattice_level >= 0 || settings.interpolation >= 0.0f)
@@ -199,8 +210,7 @@ LightingLevels lighting_levels(const MediumLightingInput& input) {
 }
 
 LightingLevels lighting_levels(const Medium& medium, const LightingSettings& settings) {
-    const float depth = medium.spacing * float(extinction_met(medium.extinction));
-    const LatticeErrors errors(medium, depth);
+    LatticeErrors errors(medium);
     const LightingLevel first = level_of_first(medium, errors, settings);
     return {first, level_of_smoke(errors, settings, first)};
 }

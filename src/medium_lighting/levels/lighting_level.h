@@ -1,11 +1,11 @@
 // The lattices on which the light of a medium lives: coarser than the medium's own where the error is allowed.
 //
-// A picture errs with the square of the optical depth of the voxels on which light is gathered, with the constant of
-// the believed errors (forecast/expected_errors.cpp).
+// A picture errs with the square of the optical depth of the voxels on which light is gathered, and by the emission
+// that a coarser lattice cannot represent.
 //
-// - Light that has not scattered yet errs as well by the emission that a coarser lattice cannot represent; that
-//   constant was chosen by pictures of one volume. What is allowed is what interpolation may add
-//   (gathering/settings.h): nothing where lighting every node takes no more than a minute.
+// - Of light that has not scattered yet the first constant is that of the believed errors
+//   (forecast/expected_errors.cpp), the second was chosen by pictures of one volume. What is allowed is what
+//   interpolation may add (gathering/settings.h): nothing where lighting every node takes no more than a minute.
 // - Light of the smoke is smooth where smoke is thin, whatever the fire does. Its voxels are the widest whose whole
 //   error lighting.error allows: they depend on the smoke in the world, not on the voxels that it is stored in.
 #pragma once

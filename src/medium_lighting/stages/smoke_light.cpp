@@ -86,9 +86,6 @@ FineBounces plan_fine_bounces(const LitLattice& lattice, ScatteringSettings& set
     return out;
 }
 
-// Where light is gathered adaptively, the finest level of a bounce: what scatters on is smoothed.
-constexpr int kFinestOfBounce = 0;
-
 // The flights on the light's own lattice. The last ends where the light is scattered toward the camera.
 class FineFlights {
 public:
@@ -170,8 +167,7 @@ private:
         request.least_coarsening = flight.scatters_on ? 1 : 0;
         const LevelLights of_levels(lattice_, lights, input.scattering.alpha, costs, progress_,
                                     keeps_maps_ ? &maps_ : nullptr);
-        AdaptiveLight light =
-            gather_adaptively(lattice_, request, of_levels, detail_, flight.scatters_on ? kFinestOfBounce : 0);
+        AdaptiveLight light = gather_adaptively(lattice_, request, of_levels, detail_);
         if (!thin)
             return light;
         LightField of_thin = thin->lights.field(lattice_.pyramid(), input.scattering.alpha, input.lighting, nullptr);
