@@ -10,8 +10,7 @@ namespace brisance {
 
 namespace {
 
-constexpr int kNodesAside = BrickLattice::kSize + 1;
-constexpr int kNodes = kNodesAside * kNodesAside * kNodesAside;
+constexpr int kNodesAside = SourceField::kSide, kNodes = SourceField::kRecords;
 
 std::vector<float> around_brick(const BrickLattice& lattice, std::span<const float> field, int channels,
                                 const ivec3& low) {
@@ -36,21 +35,6 @@ void put_extinction(const Medium& medium, const ivec3& low, Record* records) {
     const std::vector<float> box = around_brick(medium.lattice, medium.extinction, 1, low);
     for (int i = 0; i < kNodes; ++i)
         records[i].value[Record::Extinction] = box[i];
-}
-
-template <class Record>
-Record interpolated(const Record* records, const vec3& p) {
-    const ivec3 base = glm::min(ivec3(p), ivec3(BrickLattice::kSize - 1));
-    const vec3 f = p - vec3(base);
-    const Record* r = records + (base.x * kNodesAside + base.y) * kNodesAside + base.z;
-    Record out{};
-    for (int k = 0; k < 8; ++k) {
-        const float w = (k & 4 ? f.x : 1 - f.x) * (k & 2 ? f.y : 1 - f.y) * (k & 1 ? f.z : 1 - f.z);
-        const Record& corner = r[((k >> 2) * kNodesAside + (k >> 1 & 1)) * kNodesAside + (k & 1)];
-        for (int i = 0; i < Record::Size; ++i)
-            out.value[i] += w * corner.value[i];
-    }
-    return out;
 }
 
 bool light_from_outside(const NodeSources* sources) {
@@ -98,7 +82,7 @@ void SourceField::put_similar(BrickRecords& out, const ivec3& low) const {
     put(*similar_, direct_ ? similar_->emission : similar_->source, low, SimilarRecord::V, out.similar.data());
 }
 
-const SourceField::BrickRecords& SourceField::make(std::size_t brick) const {
+std::unique_ptr<SourceField::BrickRecords> SourceField::new_records(std::size_t brick) const {
     auto out = std::make_unique<BrickRecords>();
     SourceRecord* const own = out->own.data();
     const ivec3 low = bricks_.first_node(brick);
@@ -123,10 +107,39 @@ const SourceField::BrickRecords& SourceField::make(std::size_t brick) const {
         for (int c = 0; similar_ != nullptr && c < 3; ++c)
             out->similar[i].value[SimilarRecord::Forward + c] = forward_ * albedo[c];
     }
+    return out;
+}
+
+const SourceField::BrickRecords& SourceField::make(std::size_t brick) const {
+    std::unique_ptr<BrickRecords> out = new_records(brick);
     const BrickRecords* kept = nullptr;
     if (made_[brick].compare_exchange_strong(kept, out.get(), std::memory_order_acq_rel))
         kept = out.release();
     return *kept;
+}
+
+// Where no ray of the camera has come, all records are made for a moment.
+void SourceField::put_secondary(std::size_t brick, std::array<SecondaryRecord, kRecords>& out) const {
+    std::unique_ptr<const BrickRecords> own;
+    const BrickRecords* all = made_[brick].load(std::memory_order_acquire);
+    if (all == nullptr) {
+        own = new_records(brick);
+        all = own.get();
+    }
+    for (int i = 0; i < kRecords; ++i) {
+        const float* const from = all->own[i].value;
+        float* const to = out[i].value;
+        to[SecondaryRecord::Extinction] = from[SourceRecord::Extinction];
+        to[SecondaryRecord::Size - 1] = 0.0f;
+        for (int c = 0; c < 3; ++c) {
+            to[SecondaryRecord::V + c] = from[SourceRecord::V + c];
+            to[SecondaryRecord::Scattered + c] = from[SourceRecord::MV + c] + from[SourceRecord::MM + c];
+            if (outside_)
+                to[SecondaryRecord::Scattered + c] +=
+                    all->outside[i].value[SurroundingsRecord::MS + c] +
+                    emitters_share() * all->outside[i].value[SurroundingsRecord::MA + c];
+        }
+    }
 }
 
 std::uint64_t SourceField::bytes() const {

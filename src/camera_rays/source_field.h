@@ -8,6 +8,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "medium/medium.h"
@@ -35,8 +36,35 @@ struct SurroundingsRecord {
     float value[Size];
 };
 
+// The same for rays that leave surfaces (secondary_field.h): extinction, V, and the source function of all that is
+// scattered.
+struct alignas(16) SecondaryRecord {
+    enum Slot { Extinction = 0, V = 1, Scattered = 4, Size = 8 };
+    float value[Size];
+};
+
+// Trilinear between the records of a brick at p, in nodes from its first node, each coordinate in [0, 8].
+template <class Record>
+inline Record interpolated(const Record* records, const vec3& p) {
+    constexpr int kAside = BrickLattice::kSize + 1;
+    const ivec3 base = glm::min(ivec3(p), ivec3(BrickLattice::kSize - 1));
+    const vec3 f = p - vec3(base);
+    const Record* r = records + (base.x * kAside + base.y) * kAside + base.z;
+    Record out{};
+    for (int k = 0; k < 8; ++k) {
+        const float w = (k & 4 ? f.x : 1 - f.x) * (k & 2 ? f.y : 1 - f.y) * (k & 1 ? f.z : 1 - f.z);
+        const Record& corner = r[((k >> 2) * kAside + (k >> 1 & 1)) * kAside + (k & 1)];
+        for (int i = 0; i < Record::Size; ++i)
+            out.value[i] += w * corner.value[i];
+    }
+    return out;
+}
+
 class SourceField {
 public:
+    static constexpr int kSide = BrickLattice::kSize + 1;  // nodes along a side of a brick's records
+    static constexpr int kRecords = kSide * kSide * kSide;
+
     // The medium by itself: nothing lights it. Keeps a reference.
     explicit SourceField(const Medium& medium);
     // Keeps references to all. `similar`: the medium of the sources, if it is not the medium itself; `forward`: the
@@ -66,9 +94,10 @@ public:
     SimilarRecord sample_similar(std::size_t brick, const vec3& p) const;
     SurroundingsRecord sample_outside(std::size_t brick, const vec3& p) const;
 
+    // Fills the records of a brick for rays from surfaces. There must be no similar medium.
+    void put_secondary(std::size_t brick, std::array<SecondaryRecord, kRecords>& out) const;
+
 private:
-    static constexpr int kSide = BrickLattice::kSize + 1;
-    static constexpr int kRecords = kSide * kSide * kSide;
     struct BrickRecords {
         std::array<SourceRecord, kRecords> own;
         std::vector<SimilarRecord> similar;       // empty: the medium itself
@@ -83,6 +112,7 @@ private:
         return made != nullptr ? *made : make(brick);
     }
     const BrickRecords& make(std::size_t brick) const;
+    std::unique_ptr<BrickRecords> new_records(std::size_t brick) const;
     void put_similar(BrickRecords& out, const ivec3& low) const;
 
     const Medium* medium_;

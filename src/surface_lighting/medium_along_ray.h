@@ -1,7 +1,10 @@
 // The light of the medium along a ray that leaves a surface.
 #pragma once
 
+#include <memory>
+
 #include "camera_rays/ray_sum.h"
+#include "camera_rays/secondary_field.h"
 #include "camera_rays/source_field.h"
 #include "light_selection/in_scattering.h"
 #include "transport/direct_light.h"
@@ -14,22 +17,24 @@ public:
     // Keeps references. `parts` is that of PictureSettings. `in_scattering` is null where it does not own MM.
     // `emitters_by_rays`: the share of MA that is estimated along the ray, as the field does not hold it.
     MediumAlongRay(const SourceField& field, const DirectLight& scene, int parts, const InScattering* in_scattering,
-                   float emitters_by_rays)
-        : field_(field),
-          scene_(scene),
-          parts_(parts),
-          in_scattering_(in_scattering),
-          emitters_by_rays_(emitters_by_rays) {}
+                   float emitters_by_rays);
 
     // V and the row M up to `end` metres, as for a ray of the camera.
     RaySum look(const Ray& ray, double end, Rng& rng) const;
 
+    // The same for a ray that is one of many samples, by fewer points on it. `of_multiple`: the share that is wanted of
+    // what `in_scattering` holds.
+    SecondaryField::Seen glance(const Ray& ray, double end, float of_multiple, Rng& rng) const;
+
 private:
+    Rgb from_emitters(const Ray& ray, double end, const RayMedium& medium, Rng& rng) const;
+
     const SourceField& field_;
     const DirectLight& scene_;
     int parts_;
     const InScattering* in_scattering_;
     float emitters_by_rays_;
+    std::shared_ptr<const SecondaryField> secondary_;  // null: the field knows a similar medium
 };
 
 // The light of the row M.

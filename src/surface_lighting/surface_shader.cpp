@@ -28,9 +28,6 @@ bool has_specular(const SurfaceMaterial& m) {
     return needs_energy_tables(m);
 }
 
-// Voxels of a segment of a path between surfaces are not cut: the path is one of many.
-constexpr int kPartsForPaths = 1;
-
 // Where smoke scatters sharply, what is known of its light toward the camera says little of other directions. Virtual
 // lights in the smoke have noise of their own along every segment.
 float share_of_walks(const SurfaceLightingInput& input) {
@@ -50,7 +47,7 @@ SurfaceShader::SurfaceShader(const SurfaceLightingInput& input)
       gloss_(input.paths.direct(), medium_, samples_through_panes()),
       mirrors_(input.paths.direct(), medium_, input.needed.contains(Cell::SS), input.seed),
       planar_(input.paths.direct().field().medium()),
-      smoke_of_paths_({input.field, input.paths.direct(), kPartsForPaths, nullptr, input.emitters_by_rays}),
+      smoke_of_paths_(medium_),
       walks_(share_of_walks(input)) {}
 
 // A point to shade and the state of its random numbers.

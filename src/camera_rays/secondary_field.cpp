@@ -1,0 +1,87 @@
+#include "camera_rays/secondary_field.h"
+
+#include <cmath>
+#include <memory>
+
+#include "camera_rays/ray_sum.h"
+
+namespace brisance {
+
+namespace {
+
+// A voxel's extinction is that of its middle up to this optical depth, and that of two Gauss points beyond: then its
+// depth is exact. The middle of such a part stands for the depth from which its light leaves up to the second.
+constexpr float kThinVoxel = 0.1f, kThinPart = 0.2f;
+constexpr double kGauss = 0.21132487;
+
+vec3 position_at(const VoxelSegment& s, double t) {
+    return glm::clamp(vec3(s.origin + s.direction * t), vec3(0.0f), vec3(float(BrickLattice::kSize)));
+}
+
+Rgb colour(const SecondaryRecord& r, int slot) {
+    return {r.value[slot], r.value[slot + 1], r.value[slot + 2]};
+}
+
+}  // namespace
+
+SecondaryField::SecondaryField(const SourceField& field)
+    : field_(field),
+      index_from_local_(glm::inverse(dmat3(field.medium().world_from_index))),
+      made_(field.bricks().brick_count()) {}
+
+SecondaryField::~SecondaryField() {
+    for (const std::atomic<const Records*>& made : made_)
+        delete made.load(std::memory_order_relaxed);
+}
+
+// Threads that make the same records at once make them alike; one of them is kept.
+const SecondaryField::Records& SecondaryField::make(std::size_t brick) const {
+    auto out = std::make_unique<Records>();
+    field_.put_secondary(brick, *out);
+    const Records* kept = nullptr;
+    if (made_[brick].compare_exchange_strong(kept, out.get(), std::memory_order_acq_rel))
+        kept = out.release();
+    return *kept;
+}
+
+SecondaryField::Seen SecondaryField::along(const Ray& ray, double end) const {
+    Seen seen;
+    const float opaque = std::exp(-kOpaqueDepth);
+    const auto see_part = [&](const Records& records, const VoxelSegment& s, SecondaryRecord here) {
+        const auto length = static_cast<float>(s.end - s.begin);
+        const float extinction = here.value[SecondaryRecord::Extinction], tau = extinction * length;
+        if (tau > kThinPart)
+            here = interpolated(records.data(), position_at(s, s.begin + double(mean_depth(tau) / extinction)));
+        const float path = seen.transmittance * length * phi1(tau), opacity = path * extinction;
+        seen.emission += colour(here, SecondaryRecord::V) * (field_.direct_emission() ? path : opacity);
+        seen.scattered += colour(here, SecondaryRecord::Scattered) * opacity;
+        seen.transmittance -= opacity;
+    };
+    const auto see_voxel = [&](const Records& records, const VoxelSegment& s) {
+        const double length = s.end - s.begin, middle = 0.5 * (s.begin + s.end);
+        const SecondaryRecord here = interpolated(records.data(), position_at(s, middle));
+        if (here.value[SecondaryRecord::Extinction] * float(length) <= kThinVoxel) {
+            see_part(records, s, here);
+        } else {
+            VoxelSegment half = s;
+            half.end = middle;
+            see_part(records, half, interpolated(records.data(), position_at(s, s.begin + kGauss * length)));
+            half.begin = middle;
+            half.end = s.end;
+            see_part(records, half, interpolated(records.data(), position_at(s, s.end - kGauss * length)));
+        }
+        return seen.transmittance > opaque;
+    };
+    const BrickLattice& bricks = field_.bricks();
+    const bool leaves =
+        walk_bricks(bricks, lattice_ray(bricks, index_from_local_, field_.medium().reference_node, ray, end),
+                    [&](const VoxelSegment& s) {
+                        const Records& of_brick = records(s.brick);
+                        return walk_cubes<1>(s, [&](const VoxelSegment& voxel) { return see_voxel(of_brick, voxel); });
+                    });
+    if (!leaves)
+        seen.transmittance = 0.0f;
+    return seen;
+}
+
+}  // namespace brisance

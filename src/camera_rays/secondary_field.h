@@ -1,0 +1,45 @@
+// The medium as rays from surfaces see it: its emission, and what it scatters, each as one colour.
+//
+// Such rays come in no order, and each is one of many samples: they cost mainly what they read. A node takes 32 bytes
+// here instead of up to 72 (source_field.h), for cells are not told apart but for the fire's own light, and a voxel one
+// or two samples instead of up to eight.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <vector>
+
+#include "camera_rays/source_field.h"
+
+namespace brisance {
+
+class SecondaryField {
+public:
+    // Keeps a reference. The field must know no similar medium: its rays have two depths.
+    explicit SecondaryField(const SourceField& field);
+    ~SecondaryField();
+    SecondaryField(const SecondaryField&) = delete;
+    SecondaryField& operator=(const SecondaryField&) = delete;
+
+    struct Seen {
+        Rgb emission{0.0f}, scattered{0.0f};  // [W/(m^2 sr)]; light from emitters as far as the field holds it
+        float transmittance = 1.0f;
+    };
+    // Along a ray up to `end` metres. Extinction is constant over a voxel, that of its middle; sources are those of the
+    // mean depth from which light leaves it, so that sources which change linearly along it are exact.
+    Seen along(const Ray& ray, double end) const;
+
+private:
+    using Records = std::array<SecondaryRecord, SourceField::kRecords>;
+    const Records& records(std::size_t brick) const {
+        const Records* const made = made_[brick].load(std::memory_order_acquire);
+        return made != nullptr ? *made : make(brick);
+    }
+    const Records& make(std::size_t brick) const;
+
+    const SourceField& field_;
+    dmat3 index_from_local_;
+    mutable std::vector<std::atomic<const Records*>> made_;
+};
+
+}  // namespace brisance
