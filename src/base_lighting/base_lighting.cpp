@@ -169,6 +169,29 @@ private:
     std::array<std::optional<WeightedTargets>, kLights> targets_;
 };
 
+// The pools of the receivers of a neighbourhood that look alone, of which `first` is the first.
+class BaseLighting::Pools {
+public:
+    // Keeps references. `batches`, `most`: those of TargetPool.
+    Pools(const BaseLighting& lighting, const SurfaceReceiver& first, const BasePoint& at, std::size_t batches,
+          std::size_t most)
+        : lighting_(lighting), first_(first), at_(at), batches_(batches), most_(most) {}
+
+    TargetPool& of(int light) {
+        if (!pools_[light])
+            pools_[light].emplace(*lighting_.ratios_[light], first_, batches_, most_,
+                                  std::pair(at_.pixel | lighting_.seed_, at_.number * kLights + std::uint64_t(light)));
+        return *pools_[light];
+    }
+
+private:
+    const BaseLighting& lighting_;
+    const SurfaceReceiver& first_;
+    const BasePoint& at_;
+    std::size_t batches_, most_;
+    std::array<std::optional<TargetPool>, kLights> pools_;
+};
+
 BaseLighting::BaseLighting(const Medium& medium, const MediumLighting& lighting, const Panes& panes, bool through_panes,
                            int width, float tolerance, std::uint32_t seed)
     : medium_(medium),
@@ -245,8 +268,8 @@ bool BaseLighting::settled(std::span<const Together> all, std::size_t r) const {
 }
 
 // What arrives past other surfaces at the samples of a receiver, each along its own part of the rays.
-void BaseLighting::measure(int light, const SurfaceReceiver& receiver, const LightFront& around, const Bases& bases,
-                           Rng& rng, std::span<BaseLight> out) const {
+void BaseLighting::measure(int light, const SurfaceReceiver& receiver, TargetPool& pool, const Bases& bases, Rng& rng,
+                           std::span<BaseLight> out) const {
     const LitPoint lit{dvec3(receiver.local), dvec3(receiver.normal), LitPoint::Kind::Surface};
     const std::size_t n = bases.size();
     std::vector<Shares> seen(n);
@@ -254,7 +277,9 @@ void BaseLighting::measure(int light, const SurfaceReceiver& receiver, const Lig
     const float darkest = kDarkest * all_arriving(receiver) / std::max(luminance(arriving(receiver, light)), kTiny);
     BatchMean known;
     float all = 0.0f;
-    for (std::size_t b = 0; b < n && ratios_[light]->draw(around, lit, rng, draws); ++b) {
+    const float start = rng.next();
+    for (std::size_t b = 0; b < n; ++b) {
+        ratios_[light]->weigh(lit, pool.batch(start, b), draws);
         float of_batch = 0.0f, seen_of_batch = 0.0f;
         for (std::size_t k = 0; k < draws.size(); ++k) {
             const VisibilityRatio::Draw& d = draws[k];
@@ -289,7 +314,7 @@ void BaseLighting::measure(int light, const SurfaceReceiver& receiver, const Lig
     }
 }
 
-void BaseLighting::light_alone(const SurfaceReceiver& receiver, Fronts& around, std::span<const std::uint32_t> samples,
+void BaseLighting::light_alone(const SurfaceReceiver& receiver, Pools& around, std::span<const std::uint32_t> samples,
                                std::span<const BasePoint> points, std::span<BaseLight> out) const {
     Bases bases;
     for (const std::uint32_t i : samples) {
@@ -302,7 +327,7 @@ void BaseLighting::light_alone(const SurfaceReceiver& receiver, Fronts& around, 
     const BasePoint& first = points[bases.front().sample()];
     Rng rng(kAlone, first.pixel | seed_, first.number);
     for (int light = 0; light < kLights; ++light)
-        if (ratios_[light] && arriving(receiver, light) != Rgb(0.0f))
+        if (ratios_[light] && !ratios_[light]->empty() && arriving(receiver, light) != Rgb(0.0f))
             measure(light, receiver, around.of(light), bases, rng, out);
 }
 
@@ -332,10 +357,13 @@ std::vector<BaseLight> BaseLighting::light(std::span<const BasePoint> points, co
                     unsettled.push_back(r);
             if (unsettled.empty())
                 return;
-            std::size_t drawn = 0;
-            for (const std::uint32_t r : unsettled)
-                drawn += samples.of(r).size() * VisibilityRatio::kDraws;
-            Fronts around(*this, receivers[unsettled.front()], drawn);
+            std::size_t batches = 0, most = 0;
+            for (const std::uint32_t r : unsettled) {
+                batches += samples.of(r).size();
+                most = std::max(most, samples.of(r).size());
+            }
+            const std::uint32_t first = unsettled.front();
+            Pools around(*this, receivers[first], points[samples.of(first)[0]], batches, most);
             for (const std::uint32_t r : unsettled)
                 light_alone(receivers[r], around, samples.of(r), points, out);
         },

@@ -4,8 +4,8 @@
 // arrives is measured by shadow rays toward points of the medium (visibility_ratio.h). The samples of a receiver first
 // test one set of such points together (shared_targets.h), a ray for each sample. Where every ray arrives, or none
 // does, and it is so for its neighbours in the row of pixels, that is the answer. Elsewhere may be a penumbra: every
-// receiver draws points of its own, in batches of sixteen: one for each of its samples, or fewer where the batches
-// agree on the part that arrives.
+// receiver takes points from a pool of its neighbourhood, in batches of sixteen: one for each of its samples, or fewer
+// where the batches agree on the part that arrives.
 //
 // What is missed: with n rays around, a part f of the light that is hidden, or seen, goes unnoticed with probability
 // (1 - f)^n, so that the mean is wrong by at most 1 / (e n). n is 144 for pixels of 16 samples.
@@ -60,6 +60,7 @@ private:
     };
 
     class Fronts;
+    class Pools;
     class Base;
     using Bases = std::deque<Base>;  // of a receiver's samples
     Together light_together(const SurfaceReceiver& receiver, Fronts& around, std::span<const std::uint32_t> samples,
@@ -67,9 +68,9 @@ private:
     bool settled(std::span<const Together> all, std::size_t receiver) const;
     Seen see_together(int light, const SurfaceReceiver& receiver, const WeightedTargets& targets, const Bases& bases,
                       Rng& rng, std::span<BaseLight> out) const;
-    void light_alone(const SurfaceReceiver& receiver, Fronts& around, std::span<const std::uint32_t> samples,
+    void light_alone(const SurfaceReceiver& receiver, Pools& around, std::span<const std::uint32_t> samples,
                      std::span<const BasePoint> points, std::span<BaseLight> out) const;
-    void measure(int light, const SurfaceReceiver& receiver, const LightFront& around, const Bases& bases, Rng& rng,
+    void measure(int light, const SurfaceReceiver& receiver, TargetPool& pool, const Bases& bases, Rng& rng,
                  std::span<BaseLight> out) const;
     Panes::Passage passage(const SurfacePoint& surface, const vec3& light) const;
 

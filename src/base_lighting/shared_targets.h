@@ -7,7 +7,9 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "base_lighting/shared_receivers.h"
@@ -29,6 +31,29 @@ private:
     std::vector<vec3> points_;
     std::vector<float> passed_;  // running sum of weights
     float sum_ = 0.0f;
+};
+
+// Points drawn for a place in batches, of which receivers around take some each, in an order of their own.
+//
+// All batches together are stratified, and so is each by itself. What receivers of one pool err in common falls with
+// the number of all its points.
+class TargetPool {
+public:
+    // For `receivers` that draw so many batches in all, and at most `most` each. Keeps a reference to the ratio. There
+    // must be voxels that glow. `seed`: of its numbers.
+    TargetPool(const VisibilityRatio& ratio, const SurfaceReceiver& first, std::size_t batches, std::size_t most,
+               std::pair<std::uint64_t, std::uint64_t> seed);
+
+    // The batch with this number in the order that begins at `start`, in [0, 1). It is drawn when it is first asked
+    // for.
+    const VisibilityRatio::Targets& batch(float start, std::size_t number);
+
+private:
+    const VisibilityRatio& ratio_;
+    LitPoint first_;
+    std::pair<std::uint64_t, std::uint64_t> seed_;
+    std::vector<std::optional<VisibilityRatio::Targets>> batches_;  // a power of two
+    LightFront around_;
 };
 
 // Receivers in a few pixels of one row of the picture, close together and facing alike.

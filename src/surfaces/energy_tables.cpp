@@ -210,7 +210,8 @@ Albedos EnergyTables::mean(double alpha) const {
     return albedos_of(sum);
 }
 
-const EnergyTables& energy_tables(float ior) {
+// Tables that are kept, or made.
+static const EnergyTables& find_tables(float ior) {
     if (!(ior >= 1.0f && ior <= 10.0f))
         throw Error(ExitCode::BadData, "ior must lie between 1 and 10, got " + std::to_string(ior));
     static std::shared_mutex mutex;
@@ -224,6 +225,14 @@ const EnergyTables& energy_tables(float ior) {
     auto made = std::make_unique<const EnergyTables>(ior);
     const std::unique_lock lock(mutex);
     return *kept.try_emplace(ior, std::move(made)).first->second;
+}
+
+// Every vertex of a path asks, most often for what its thread asked for last: no lock is taken then.
+const EnergyTables& energy_tables(float ior) {
+    thread_local const EnergyTables* last = nullptr;
+    if (last == nullptr || static_cast<float>(last->ior()) != ior)
+        last = &find_tables(ior);
+    return *last;
 }
 
 }  // namespace brisance

@@ -70,23 +70,25 @@ LightFront VisibilityRatio::around(const LitPoint& middle, std::size_t points) c
     return LightFront(tree_, middle, std::clamp<std::size_t>(points / kPointsPerNode, 1, kNodesOfFront));
 }
 
-bool VisibilityRatio::draw(const LightFront& around, const LitPoint& point, Rng& rng,
-                           std::array<Draw, kDraws>& draws) const {
-    if (tree_.empty())
-        return false;
-    std::array<vec3, kDraws> points;
-    std::array<float, kDraws> share{};
-    const double shift = rng.next_double();
+VisibilityRatio::Targets VisibilityRatio::choose(const LightFront& around, const LitPoint& point, double shift,
+                                                 Rng& rng) const {
+    Targets targets;
     for (int k = 0; k < kDraws; ++k) {
         const auto choice = around.choose(point, (k + shift) / kDraws);
-        points[k] = vec3(point.position);
         if (!choice)
             continue;
         const std::size_t voxel = voxel_in(choice->light, rng);
-        points[k] = point_in(voxel, rng);
-        share[k] = clusters_[choice->light].sum * per_weight_[voxel] / float(choice->probability);
+        targets[k] = {point_in(voxel, rng),
+                      clusters_[choice->light].sum * per_weight_[voxel] / float(choice->probability)};
     }
+    return targets;
+}
+
+void VisibilityRatio::weigh(const LitPoint& point, const Targets& targets, std::array<Draw, kDraws>& draws) const {
     const vec3 from(point.position);
+    std::array<vec3, kDraws> points;
+    for (int k = 0; k < kDraws; ++k)
+        points[k] = targets[k].power > 0.0f ? targets[k].point : from;
     std::array<float, kDraws> depth;
     depths_.between(from, points.data(), depth.data());
     for (int k = 0; k < kDraws; ++k) {
@@ -94,8 +96,16 @@ bool VisibilityRatio::draw(const LightFront& around, const LitPoint& point, Rng&
         const float square = std::max(glm::dot(offset, offset), 1e-30f);
         const vec3 direction = offset / std::sqrt(square);
         const float cosine = std::max(0.0f, glm::dot(vec3(point.normal), direction));
-        draws[k] = {points[k], direction, share[k] * cosine / square * std::exp(-depth[k])};
+        draws[k] = {points[k], direction, targets[k].power * cosine / square * std::exp(-depth[k])};
     }
+}
+
+bool VisibilityRatio::draw(const LightFront& around, const LitPoint& point, Rng& rng,
+                           std::array<Draw, kDraws>& draws) const {
+    if (tree_.empty())
+        return false;
+    const double shift = rng.next_double();
+    weigh(point, choose(around, point, shift, rng), draws);
     return true;
 }
 

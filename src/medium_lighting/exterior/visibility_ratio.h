@@ -32,12 +32,24 @@ public:
     // What places close to `middle` draw from, `points` points in all.
     LightFront around(const LitPoint& middle, std::size_t points) const;
 
+    // A point of the volume, for places close to that for which it was chosen.
+    struct Target {
+        vec3 point{0.0f};  // local [m]
+        float power =
+            0.0f;  // luminance of its voxel's intensity over the probability [W/sr]; 0: no light reaches there
+    };
+    using Targets = std::array<Target, kDraws>;
+    // One target in each of kDraws strata, `shift` of the way through it, in [0, 1). There must be voxels that glow.
+    Targets choose(const LightFront& around, const LitPoint& point, double shift, Rng& rng) const;
+
     struct Draw {
         vec3 point;           // local [m]
         vec3 direction;       // unit, from the point
         float weight = 0.0f;  // luminance of the light from there over its pdf, without occlusion by surfaces
     };
-    // Returns false where nothing can be sampled.
+    // How targets count at a place.
+    void weigh(const LitPoint& point, const Targets& targets, std::array<Draw, kDraws>& draws) const;
+    // Both. Returns false where nothing can be sampled.
     bool draw(const LightFront& around, const LitPoint& point, Rng& rng, std::array<Draw, kDraws>& draws) const;
 
     std::uint64_t bytes() const;
