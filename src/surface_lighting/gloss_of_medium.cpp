@@ -21,16 +21,15 @@ bool has_wide_lobes(const SurfaceMaterial& m) {
     return needs_energy_tables(m) && double(m.roughness) * m.roughness >= kSmoothAlpha;
 }
 
-void GlossOfMedium::reflect(const SurfacePoint& point, const dvec3& toward_viewer, const GlossyLobes& lobes, Rng& rng,
-                            Rng& ray_rng, CellSum& light) const {
+void GlossOfMedium::reflect(const SurfacePoint& point, const dvec3& toward_viewer, const GlossyLobes& lobes,
+                            const dvec3& numbers, Rng& ray_rng, CellSum& light) const {
     const PathVertex vertex(point, lobes.bsdf, -toward_viewer);
     const float lines = has_wide_lobes(point.material) ? direct_.fire_lines_on_surface(vertex) : 0.0f;
     if (lines > 0.0f)
         if (const auto line = direct_.line_toward_fire(vertex, lines, ray_rng))
             add(medium_.glance(line->ray, line->end, float(lobes.split.of_rays(line->ray.direction)), ray_rng),
                 line->weight, true, light);
-    const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
-    const std::optional<BsdfSample> drawn = lobes.bsdf.sample(toward_viewer, {x, y, z});
+    const std::optional<BsdfSample> drawn = lobes.bsdf.sample(toward_viewer, numbers);
     if (!drawn || point.leaks(toward_viewer, drawn->wi))
         return;
     const float of_rays = drawn->delta ? 1.0f : float(lobes.split.of_rays(drawn->wi));

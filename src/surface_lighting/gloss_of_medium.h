@@ -29,8 +29,8 @@ public:
     GlossOfMedium(const DirectLight& direct, const MediumAlongRay& medium, bool through_panes)
         : direct_(direct), medium_(medium), through_panes_(through_panes) {}
 
-    // Adds one estimate.
-    void reflect(const SurfacePoint& point, const dvec3& toward_viewer, const GlossyLobes& lobes, Rng& rng,
+    // Adds one estimate. `numbers`: in [0, 1), of which the lobes' direction is made.
+    void reflect(const SurfacePoint& point, const dvec3& toward_viewer, const GlossyLobes& lobes, const dvec3& numbers,
                  Rng& ray_rng, CellSum& light) const;
 
 private:

@@ -2,11 +2,14 @@
 
 #include <cmath>
 
+#include "surface_lighting/lobe_numbers.h"
+
 namespace brisance {
 
 namespace {
 
-constexpr Stream kChoices = stream_of("surface_lighting/emitters");
+constexpr Stream kChoices = stream_of("surface_lighting/emitters"),
+                 kLobes = stream_of("surface_lighting/emitters, lobes");
 
 }  // namespace
 
@@ -33,7 +36,8 @@ LightOfEmitters::Seen LightOfEmitters::at(const SurfaceSample& sample, const Pat
     Seen seen;
     if (!vertex.only_delta())
         choose(sample, vertex, rng, seen);
-    const std::optional<PathVertex::Sample> turn = vertex.sample(rng);
+    const std::optional<PathVertex::Sample> turn =
+        vertex.sample_lobes(lobe_numbers(kLobes, sample, samples_, seed_, rng));
     if (!turn)
         return seen;
     const RaySegment segment = direct_.segment_along(vertex.leaving(turn->wi));

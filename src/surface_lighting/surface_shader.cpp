@@ -7,6 +7,7 @@
 #include "base_lighting/shared_receivers.h"
 #include "core/cpu_clock.h"
 #include "core/parallel.h"
+#include "surface_lighting/lobe_numbers.h"
 #include "surface_lighting/share_light.h"
 #include "surface_lighting/shown_area.h"
 
@@ -15,6 +16,8 @@ namespace brisance {
 namespace {
 
 constexpr std::size_t kSamplesAtOnce = 256;
+
+constexpr Stream kGloss = stream_of("surface_lighting/gloss");
 
 Rng rng_of(Stream stream, const SurfaceSample& sample, std::uint32_t seed) {
     return Rng(stream, sample.pixel | std::uint64_t(seed) << 32, sample.number);
@@ -103,8 +106,9 @@ std::vector<BaseLight> SurfaceShader::light_bases(const std::vector<SurfaceSampl
 }
 
 // Adds the medium's light that the grids of fire and smoke do not hold: lights in the smoke, and glossy reflection.
-void SurfaceShader::reflect_scattered(const SurfacePoint& point, const dvec3& toward_viewer, Rng& rng, Rng& ray_rng,
-                                      CellSum& light) const {
+void SurfaceShader::reflect_scattered(const SurfaceSample& sample, ShadedPoint& at, Rng& rng, CellSum& light) const {
+    const SurfacePoint& point = at.seen.point;
+    const dvec3 toward_viewer = -at.seen.arriving;
     const int light_samples =
         input_.in_scattering && has_wide_lobes(point.material) ? input_.in_scattering->gloss_samples() : 0;
     std::optional<GlossyLobes> gloss;
@@ -115,10 +119,11 @@ void SurfaceShader::reflect_scattered(const SurfacePoint& point, const dvec3& to
         const Bsdf base(point.material, point.frame, Lobes::Base);
         if (shared || has_base(point.material))
             light.at(Cell::SM) += input_.in_scattering->at_surface(
-                point, ReceiverLobes(base, shared ? &gloss->split : nullptr), toward_viewer, ray_rng);
+                point, ReceiverLobes(base, shared ? &gloss->split : nullptr), toward_viewer, at.ray_rng);
     }
     if (gloss)
-        gloss_.reflect(point, toward_viewer, *gloss, rng, ray_rng, light);
+        gloss_.reflect(point, toward_viewer, *gloss, lobe_numbers(kGloss, sample, input_.samples, input_.seed, rng),
+                       at.ray_rng, light);
 }
 
 VirtualLights::Shading SurfaceShader::shading(ShadedPoint& at) const {
@@ -223,11 +228,10 @@ void SurfaceShader::add_base(const BaseLight& base, const ShadedPoint& at, CellS
 // All but what the lighting grids bring to the base.
 void SurfaceShader::shade_point(const SurfaceSample& sample, ShadedPoint& at, CellSum& out) const {
     const SurfacePoint& point = at.seen.point;
-    const dvec3 toward_viewer = -at.seen.arriving;
     Rng rng = rng_of(Stream::Surface, sample, input_.seed);
     if (input_.fire)
         out.at(Cell::SV) += base_from_fire(sample, at);
-    reflect_scattered(point, toward_viewer, rng, at.ray_rng, out);
+    reflect_scattered(sample, at, rng, out);
     const PathVertex vertex(point, at.seen.arriving);
     if (input_.needed.contains(Cell::SA))
         out.at(Cell::SA) += from_emitters(sample, vertex, rng, at);

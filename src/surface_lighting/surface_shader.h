@@ -92,8 +92,7 @@ private:
                    std::vector<CellSum>& light) const;
     ScreenSpaceCompensation::Sample compensated_sample(const SurfaceSample& sample, const ShadedPoint& at,
                                                        const CellSum& light) const;
-    void reflect_scattered(const SurfacePoint& point, const dvec3& toward_viewer, Rng& rng, Rng& ray_rng,
-                           CellSum& light) const;
+    void reflect_scattered(const SurfaceSample& sample, ShadedPoint& at, Rng& rng, CellSum& light) const;
 
     // Whether fire or smoke shines.
     bool medium_shines() const { return input_.medium_lighting || input_.fire; }

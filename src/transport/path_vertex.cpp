@@ -111,7 +111,11 @@ std::optional<PathVertex::Sample> PathVertex::sample(Rng& rng, Transport transpo
         return s;
     }
     const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
-    const std::optional<BsdfSample> drawn = surface_->bsdf.sample(-arriving_, {x, y, z}, transport);
+    return sample_lobes({x, y, z}, transport);
+}
+
+std::optional<PathVertex::Sample> PathVertex::sample_lobes(const dvec3& numbers, Transport transport) const {
+    const std::optional<BsdfSample> drawn = surface_->bsdf.sample(-arriving_, numbers, transport);
     if (!drawn || surface_->point.leaks(-arriving_, drawn->wi))
         return std::nullopt;
     Sample s{drawn->wi, drawn->weight, drawn->pdf, drawn->delta};

@@ -61,6 +61,8 @@ public:
     // None: the path is absorbed. Importance is for particles of light, which carry power along `arriving` and on: the
     // adjoint BSDF, with the factor for shading normals (Veach, Robust Monte Carlo Methods, 1997, sections 5.2, 5.3).
     std::optional<Sample> sample(Rng& rng, Transport transport = Transport::Radiance) const;
+    // The same of a surface, by three numbers in [0, 1).
+    std::optional<Sample> sample_lobes(const dvec3& numbers, Transport transport = Transport::Radiance) const;
 
 private:
     std::optional<float> shading_normal_factor(const dvec3& wi) const;

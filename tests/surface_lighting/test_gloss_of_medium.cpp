@@ -60,7 +60,8 @@ Moments reflected(const Medium& medium, bool lines, int count) {
     for (int i = 0; i < count; ++i) {
         Rng rng(Stream::Surface, i), ray_rng(Stream::RayLightSurface, i);
         CellSum light;
-        gloss.reflect(point, toward_viewer, lobes, rng, ray_rng, light);
+        const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
+        gloss.reflect(point, toward_viewer, lobes, {x, y, z}, ray_rng, light);
         const double value = luminance(light.at(Cell::SM));
         sum += value;
         squares += value * value;
