@@ -62,6 +62,9 @@ template <class R>
 concept PathReader = requires(R& reader, const PathState& state, const PathStep& step, PathState& next, Rng& rng) {
     // Scattered light of the lights that the reader holds itself, for a throughput of 1 [W/(m^2 sr)].
     { reader.own_lights(state, rng) } -> std::same_as<Rgb>;
+    // Of the fire by a line toward it, which the state has lines for, weighted against the sampled direction, for a
+    // throughput of 1 [W/(m^2 sr)].
+    { reader.from_fire(state, rng) } -> std::same_as<Rgb>;
     // Whether the vertex gathers direct light of emitters and background, by either technique.
     { reader.gathers_emitters(state) } -> std::same_as<bool>;
     // `step` has its segment. What else is on the segment, and where it collides.
@@ -84,6 +87,9 @@ public:
     explicit PlainPath(const DirectLight& scene) : scene_(scene) {}
 
     Rgb own_lights(const PathState&, Rng&) const { return Rgb(0.0f); }
+    Rgb from_fire(const PathState& state, Rng& rng) const {
+        return scene_.from_fire(state.vertex, state.fire_lines, rng);
+    }
     bool gathers_emitters(const PathState&) const { return true; }
     SegmentMedium medium_along(const PathState&, const PathStep& step, Rng& rng) const;
     bool continues(const PathState&) const { return true; }
@@ -104,7 +110,7 @@ template <PathReader Reader>
 void sample_lights(const DirectLight& scene, const PathState& state, Reader& reader, Rng& rng, PathStep& step) {
     step.from_own_lights = reader.own_lights(state, rng);
     if (state.fire_lines > 0.0f && (state.fire_lines == 1.0f || rng.next() < state.fire_lines))
-        step.from_fire = scene.from_fire(state.vertex, state.fire_lines, rng);
+        step.from_fire = reader.from_fire(state, rng);
     if (reader.gathers_emitters(state) && scene.has_emitters() && !state.vertex.only_delta())
         step.from_emitters = scene.from_emitters(state.vertex, rng);
 }

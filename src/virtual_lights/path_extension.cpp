@@ -1,7 +1,8 @@
 // Path extension: the light that virtual lights hold where a ray ends, and how the path continues from there.
 //
 // A surface that the path reaches sees smoke that is lit already (lit_smoke.h): a walk through dense smoke beside a
-// fire meets its bright core rarely, and is what most noise of light between surfaces came from.
+// fire meets its bright core rarely, and is what most noise of light between surfaces came from. Lines toward the fire
+// see all of that light, too: by the path's own segments alone, what smoke scatters made most of the rest.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -123,15 +124,21 @@ public:
         return state.order > 1 && !(lamps_along_ && !state.vertex.on_surface());
     }
 
+    // Lit smoke lies around the fire: a line there sees both, as the state's own segment does.
+    Rgb from_fire(const PathState& state, Rng& rng) const {
+        if (!smoke_)
+            return PlainPath::from_fire(state, rng);
+        const auto line = scene_.line_toward_fire(state.vertex, state.fire_lines, rng);
+        return line ? line->weight * seen_along(line->ray, line->end, rng).emission : Rgb(0.0f);
+    }
+
     SegmentMedium medium_along(const PathState& state, const PathStep& step, Rng& rng) {
         receiver_lit_ = state.order == 1 ||
                         (receiver_lit_ && panes_ == Panes::Sampled && goes_straight_on(state.vertex, *step.sample));
         if (receiver_lit_)
             return transmitted_along(state, step.segment, rng);
-        if (smoke_) {
-            const LitSmoke::Light seen = smoke_->along(step.segment.ray, step.segment.end, rng);
-            return {seen.emission, seen.scattered, std::nullopt, seen.transmittance};
-        }
+        if (smoke_)
+            return seen_along(step.segment.ray, step.segment.end, rng);
         const Rgb lamps = lamps_along_ ? lights_.lamps_on(step.segment, rng) : Rgb(0.0f);
         SegmentMedium medium = PlainPath::medium_along(state, step, rng);
         medium.scattered = lamps;
@@ -180,6 +187,12 @@ private:
     void add(const Rgb& light) {
         sum_ += light;
         bound_.light(light);
+    }
+
+    // All light of the smoke counts as emission: the balance heuristic weights it between lines and segments.
+    SegmentMedium seen_along(const Ray& ray, double end, Rng& rng) const {
+        const LitSmoke::Light seen = smoke_->along(ray, end, rng);
+        return {seen.emission + seen.scattered, Rgb(0.0f), std::nullopt, seen.transmittance};
     }
 
     // The receiver has been lit by the medium along this segment already.

@@ -108,5 +108,47 @@ TEST(LitSmoke, OfTheReceiverItselfIsNotAskedFor) {
     EXPECT_EQ(fog.seen, 0);
 }
 
+// A ball that shines alike everywhere and hides nothing, beside the middle of a burning one.
+class Ball : public LitSmoke {
+public:
+    explicit Ball(const Room& room) : centre_(kCentre - room.origin) {}
+    Light along(const Ray& ray, double end, Rng&) const override {
+        const dvec3 offset = centre_ - ray.origin;
+        const double middle = glm::dot(offset, ray.direction), across2 = glm::dot(offset, offset) - middle * middle;
+        const bool met = middle > 0.0 && middle < end && across2 < kRadius * kRadius;
+        return {Rgb(0.0f), Rgb(met ? 1.0f : 0.0f), 1.0f};
+    }
+
+    static constexpr dvec3 kFire{0.0, 0.4, 0.0}, kCentre{0.2, 0.4, 0.0};  // [m]
+    static constexpr double kRadius = 0.1;
+
+private:
+    dvec3 centre_;  // local [m]
+};
+
+// Lines toward the fire and the paths' own segments find the same light, and are weighted against each other. The panel
+// is lit by walls that see the ball, which fills a four-hundredth of their sphere: few segments meet it.
+TEST(LitSmoke, IsFoundByLinesTowardTheFireToo) {
+    const Room room(hall(lambert(Rgb(0.5f))), smoke_ball(Ball::kFire, 0.5f, Rgb(0.5f), 1.0f));
+    const Ball ball(room);
+    Panel p = panel();
+    p.point.position -= room.origin;
+    const PathVertex vertex(p.point, p.arriving);
+    const auto seen = [&](bool lines) {
+        TracingSettings tracing;
+        tracing.light_sampling = lines;
+        const DirectLight direct(room.medium, tracing, &room.surroundings);
+        const VirtualLights lights(direct, room.camera(), none());
+        return estimate(2, lines ? 64 : 512, [&](const dvec3&, Rng& rng, double* out) {
+            out[0] = lights.shade(vertex, rng, {.smoke = &ball}).y;
+            out[1] = out[0] * out[0];
+        });
+    };
+    const Estimate with = seen(true), without = seen(false);
+    EXPECT_GT(without.mean[0], 0.0);
+    EXPECT_NEAR(with.mean[0], without.mean[0], kSigmas * std::hypot(with.error[0], without.error[0]));
+    EXPECT_LT(with.mean[1], 0.3 * without.mean[1]) << "second moments of one path";
+}
+
 }  // namespace
 }  // namespace brisance

@@ -47,7 +47,10 @@ concept VirtualLightKind = requires(const Kind& kind, LightSet& set, std::size_t
 template <class Kind>
 concept Hittable = VirtualLightKind<Kind> &&
     requires(const Kind& kind, const CoveredHit& hit, int share, const Connection& connection, const PathVertex& vertex,
-             Rng& rng) {
+             Rng& rng, void (*visit)(const CoveredHit&, double)) {
+    // Calls visit(hit, share of a path that ends there) if a ray along the connection meets surface that its light
+    // covers, and others may.
+    { kind.meet(connection, vertex, visit) } -> std::same_as<void>;
     // Of one of the lights that cover the hit [W/(m^2 sr)].
     { kind.radiance_at(hit, share) } -> std::same_as<Rgb>;
     // connect() with the factor 1.

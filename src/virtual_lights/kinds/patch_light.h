@@ -2,12 +2,18 @@
 // it meets there, so that nothing is seen through walls.
 #pragma once
 
+#include <functional>
 #include <numbers>
 
 #include "virtual_lights/kinds/kind.h"
 #include "virtual_lights/kinds/sphere_sampling.h"
 
 namespace brisance {
+
+// Calls visit(hit, share of a path that ends there) where the connection's ray meets surface that its light covers, and
+// others may, and where paths end in part at least.
+using VisitPatch = std::function<void(const CoveredHit& hit, double terminated)>;
+void meet_patch(const LightSet& set, const Connection& connection, const PathVertex& vertex, const VisitPatch& visit);
 
 // The part of one light in what the vertex scatters from that direction, if a ray toward the light's sphere meets
 // surface that it covers.
@@ -46,6 +52,10 @@ struct PatchKind {
         }
 
         Rgb radiance_at(const CoveredHit& hit, int share) const { return set_.reflected(hit, share); }
+
+        void meet(const Connection& connection, const PathVertex& vertex, const VisitPatch& visit) const {
+            meet_patch(set_, connection, vertex, visit);
+        }
 
         Rgb incident(const Connection& connection, const PathVertex& vertex, Rng& rng) const {
             return incident_from_patch(set_, connection, vertex, rng);
