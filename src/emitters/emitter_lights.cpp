@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace brisance {
 
@@ -67,6 +68,17 @@ std::optional<EmitterSample> EmitterLights::sample_far(const Far& far, Rng& rng)
     if (s && s->pdf > 0.0)
         s->pdf = emitters_.pdf_of_background(s->direction);
     return s;
+}
+
+// The irradiance of a surface of radiance L is pi L at most, and its intensity L times its area.
+std::vector<double> EmitterLights::least_squared_distances() const {
+    std::vector<double> out;
+    out.reserve(bounds_.size());
+    for (const Emitters::Near& near : emitters_.near_)
+        out.push_back(near.area / std::numbers::pi);
+    for (std::size_t i = out.size(); i < bounds_.size(); ++i)
+        out.push_back(bounds_[i].distance * bounds_[i].distance);
+    return out;
 }
 
 std::uint64_t EmitterLights::bytes() const {

@@ -17,6 +17,9 @@ public:
 
     std::size_t size() const { return bounds_.size(); }
     const std::vector<LightBounds>& bounds() const { return bounds_; }
+    // At which each light counts as being, however near it is: intensity over that is the most that it sends [m^2].
+    // 0: a lamp of no extent.
+    std::vector<double> least_squared_distances() const;
 
     // A point or a direction of that light; none if it contributes nothing. `weight` is not divided by the probability
     // of choosing it. `pdf` is that of Emitters::sample() for the same point or direction, against which rays by BSDF

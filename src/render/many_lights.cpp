@@ -173,9 +173,9 @@ void ManyLights::make_unified(const DrawInput& input, Statistics& statistics, Pr
     progress.stage("lights of all kinds");
     const Stopwatch watch;
     const UnifiedLightSampling& sampling = *input.plan.unified_sampling;
-    unified_ =
-        std::make_unique<UnifiedLights>(*direct(), similar_direct_ ? *similar_direct_ : *direct(), virtual_lights(),
-                                        input.plan.needed, sampling, input.shot.unified_lights);
+    unified_ = std::make_unique<UnifiedLights>(*direct(), similar_direct_ ? *similar_direct_ : *direct(),
+                                               virtual_lights(), input.shot.virtual_lights.point_bound,
+                                               input.plan.needed, sampling, input.shot.unified_lights);
     const LightsOfAllKinds& lights = unified_->lights();
     statistics.stages.push_back({"lights of all kinds",
                                  watch.seconds(),

@@ -31,6 +31,23 @@ double share_by_distances(const NodeBound& left, const NodeBound& right) {
 }
 
 // Children have greater numbers than their parents.
+std::vector<float> least_of_nodes(const LightTree& tree, const std::vector<double>& of_lights) {
+    if (of_lights.empty())
+        return {};
+    // Intensity over squared distance: infinite where a light is not bounded.
+    std::vector<double> most(tree.node_count());
+    std::vector<float> out(tree.node_count());
+    for (auto node = static_cast<std::uint32_t>(out.size()); node-- > 0;) {
+        const double intensity = tree.lights(node).intensity();
+        most[node] = !(intensity > 0.0)   ? 0.0
+                     : tree.is_leaf(node) ? intensity / of_lights[tree.light(node)]
+                                          : most[tree.left(node)] + most[tree.right(node)];
+        out[node] = intensity > 0.0 && most[node] > 0.0 ? static_cast<float>(intensity / most[node]) : 0.0f;
+    }
+    return out;
+}
+
+// Children have greater numbers than their parents.
 std::vector<std::uint32_t> representatives(const LightTree& tree, std::uint32_t seed) {
     std::vector<std::uint32_t> out(tree.node_count());
     for (auto node = static_cast<std::uint32_t>(out.size()); node-- > 0;) {

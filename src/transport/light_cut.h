@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "emitters/light_tree.h"
@@ -23,6 +24,12 @@ struct NodeBound {
     // `scattered` after such a squared distance.
     double dimmed(double distance2) const {
         return extinction > 0.0 ? scattered * guessed_transmittance(extinction * std::sqrt(distance2)) : scattered;
+    }
+
+    // For lights that are bounded nearby as if they were no nearer than that [m^2].
+    void keep_off(double least2) {
+        nearest2 = std::max(nearest2, least2);
+        farthest2 = std::max(farthest2, nearest2);
     }
 
     // Upper bound on what the vertex scatters of them without occlusion [W/(m^2 sr)]. It is finite also inside their
@@ -46,12 +53,15 @@ inline NodeBound bound_in_box(const LightCone& lights, const ScatteringBound& sc
 // The bounds of all nodes for one vertex.
 class VertexBounds {
 public:
-    // Keeps references.
-    VertexBounds(const LightTree& tree, const PathVertex& vertex, double extinction)
-        : tree_(tree), vertex_(vertex), bsdf_(vertex.bound()), extinction_(extinction) {}
+    // Keeps references. `least2`: least_of_nodes(), or empty.
+    VertexBounds(const LightTree& tree, const PathVertex& vertex, double extinction, std::span<const float> least2 = {})
+        : tree_(tree), vertex_(vertex), bsdf_(vertex.bound()), extinction_(extinction), least2_(least2) {}
 
     NodeBound of(std::uint32_t node) const {
-        return bound_in_box(tree_.lights(node), bsdf_, vertex_.position(), dvec3(0.0), extinction_);
+        NodeBound out = bound_in_box(tree_.lights(node), bsdf_, vertex_.position(), dvec3(0.0), extinction_);
+        if (!least2_.empty())
+            out.keep_off(least2_[node]);
+        return out;
     }
 
 private:
@@ -59,6 +69,7 @@ private:
     const PathVertex& vertex_;
     ScatteringBound bsdf_;
     double extinction_;
+    std::span<const float> least2_;
 };
 
 // One node of a cut. A cut is a heap: the node whose lights may err most stands first. Leaves do not err.
@@ -111,6 +122,12 @@ auto sum_of_cut(std::vector<Node>& cut, double error, std::size_t most, const Co
 
 // For every node of the tree a light of it, drawn in proportion to intensity.
 std::vector<std::uint32_t> representatives(const LightTree& tree, std::uint32_t seed);
+
+// For every node the squared distance at which its lights count as being, however near they are [m^2]. `of_lights`:
+// likewise, for every light, which sends its intensity over that at most. Lights of a node together send at most
+//   sum of I / least2 = I of the node / least2 of the node.
+// Empty without `of_lights`.
+std::vector<float> least_of_nodes(const LightTree& tree, const std::vector<double>& of_lights);
 
 // Probability of the left of two nodes; below 0 where neither has any.
 double share_by_distances(const NodeBound& left, const NodeBound& right);

@@ -16,6 +16,17 @@
 
 namespace brisance {
 
+// Of those that know it, least_squared_distances(): at which each light counts as being, however near it is [m^2]. A
+// cut through lights of all kinds needs it: nodes around the vertex have no other bound, and would get all of a small
+// cut.
+template <class Lights>
+std::vector<double> least_squared_distances_of(const Lights& lights) {
+    if constexpr (requires { lights.least_squared_distances(); })
+        return lights.least_squared_distances();
+    else
+        return {};
+}
+
 template <class Estimate>
 using EstimatedLight = std::invoke_result_t<const Estimate&, std::size_t, double>;
 
@@ -91,7 +102,8 @@ class CutOfRepresentatives {
 public:
     template <class Lights, class Settings>
     CutOfRepresentatives(const Lights& lights, const Settings& s)
-        : cut_(LightTree(lights.bounds(LobeBrightness::Peak)), s.seed, s.lightcuts_error, s.lightcuts_most) {}
+        : cut_(LightTree(lights.bounds(LobeBrightness::Peak)), s.seed, s.lightcuts_error, s.lightcuts_most,
+               least_squared_distances_of(lights)) {}
 
     template <class Estimate>
     EstimatedLight<Estimate> at(const PathVertex& vertex, double extinction, Rng&, const Estimate& estimate) const {
@@ -109,7 +121,8 @@ class CutOfRandomLights {
 public:
     template <class Lights, class Settings>
     CutOfRandomLights(const Lights& lights, const Settings& s)
-        : cut_(LightTree(lights.bounds(LobeBrightness::Mean)), s.stochastic_cut_size) {}
+        : cut_(LightTree(lights.bounds(LobeBrightness::Mean)), s.stochastic_cut_size,
+               least_squared_distances_of(lights)) {}
 
     template <class Estimate>
     EstimatedLight<Estimate> at(const PathVertex& vertex, double extinction, Rng& rng, const Estimate& estimate) const {

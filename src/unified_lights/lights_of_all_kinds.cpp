@@ -1,15 +1,21 @@
 #include "unified_lights/lights_of_all_kinds.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include "transport/particles.h"
 #include "virtual_lights/gatherers/light_choosers.h"
 
 namespace brisance {
 
 LightsOfAllKinds::LightsOfAllKinds(const DirectLight& scene, const DirectLight& through,
-                                   const VirtualLights* virtual_lights, const CellSet& wanted)
+                                   const VirtualLights* virtual_lights, double point_bound, const CellSet& wanted)
     : scene_(scene),
       virtual_lights_(virtual_lights && wanted.contains(Cell::SS) && !virtual_lights->lights().empty() ? virtual_lights
                                                                                                        : nullptr),
+      point_bound_(point_bound),
+      voxel_volume_(std::abs(glm::determinant(dmat3(through.field().medium().world_from_index)))),
       fire_(through) {
     if (virtual_lights_) {
         single_ = virtual_lights_->each_light();
@@ -38,6 +44,27 @@ std::vector<double> LightsOfAllKinds::intensity() const {
     out.reserve(size());
     for (const LightBounds& light : bounds(LobeBrightness::Mean))
         out.push_back(light.intensity);
+    return out;
+}
+
+std::vector<double> LightsOfAllKinds::least_squared_distances() const {
+    std::vector<double> out;
+    out.reserve(size());
+    // As for emissive surfaces, with a light's intensity of flux / pi.
+    for (std::size_t i = 0; i < first_voxel_; ++i) {
+        const VirtualLight& light = virtual_lights_->lights()[i];
+        const double r2 = light.radius * light.radius;
+        out.push_back(!(r2 > 0.0)        ? 1.0 / point_bound_
+                      : light.area > 0.0 ? std::min(r2, light.area / std::numbers::pi)
+                                         : r2);
+    }
+    // A ball as large as the voxel: 1 / distance^2 has the mean 3 / a^2 at its middle, a being its radius.
+    const double a = std::cbrt(voxel_volume_ * 0.75 / std::numbers::pi);
+    out.resize(first_emitter_, a * a / 3.0);
+    if (emitters_) {
+        const std::vector<double> of_emitters = emitters_->least_squared_distances();
+        out.insert(out.end(), of_emitters.begin(), of_emitters.end());
+    }
     return out;
 }
 

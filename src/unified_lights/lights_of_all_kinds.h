@@ -27,9 +27,10 @@ struct UnifiedReceiver {
 class LightsOfAllKinds {
 public:
     // Keeps references. `through`: the medium that the fire shines through, and whose fire it is. `virtual_lights`:
-    // null: there are none. Of `wanted` the cells SS, SV and SA count: lights of others are left out.
+    // null: there are none. `point_bound`: of those that are points [1/m^2]. Of `wanted` the cells SS, SV and SA count:
+    // lights of others are left out.
     LightsOfAllKinds(const DirectLight& scene, const DirectLight& through, const VirtualLights* virtual_lights,
-                     const CellSet& wanted);
+                     double point_bound, const CellSet& wanted);
 
     std::size_t size() const { return first_emitter_ + (emitters_ ? emitters_->size() : 0); }
     std::size_t virtual_lights() const { return first_voxel_; }
@@ -38,6 +39,10 @@ public:
 
     std::vector<LightBounds> bounds(LobeBrightness lobes) const;
     std::vector<double> intensity() const;  // largest, luminance [W/sr]
+
+    // At which each light counts as being, however near it is: intensity over that is the most that it sends [m^2]. The
+    // bound of points, the mean over a voxel at its middle, and the radiance of what has a surface limit it.
+    std::vector<double> least_squared_distances() const;
 
     // Of the smoke there, 0 outside [1/m].
     double extinction_at(const dvec3& position) const { return fire_.extinction_at(position); }
@@ -50,7 +55,9 @@ public:
 private:
     const DirectLight& scene_;
     const VirtualLights* virtual_lights_;
+    double point_bound_;
     std::unique_ptr<const SingleLights> single_;  // null: no virtual lights
+    double voxel_volume_;                         // [m^3]
     FireLights fire_;
     std::optional<EmitterLights> emitters_;
     // Virtual lights come first, then voxels, then emitters.

@@ -3,9 +3,9 @@
 namespace brisance {
 
 UnifiedLights::UnifiedLights(const DirectLight& scene, const DirectLight& through, const VirtualLights* virtual_lights,
-                             const CellSet& wanted, const UnifiedLightSampling& sampling,
+                             double point_bound, const CellSet& wanted, const UnifiedLightSampling& sampling,
                              const UnifiedLightSettings& settings)
-    : lights_(scene, through, virtual_lights, wanted),
+    : lights_(scene, through, virtual_lights, point_bound, wanted),
       gatherer_(sampling.make(lights_, settings)),
       seed_(settings.seed) {}
 

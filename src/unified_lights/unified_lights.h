@@ -14,7 +14,8 @@ class UnifiedLights {
 public:
     // As LightsOfAllKinds.
     UnifiedLights(const DirectLight& scene, const DirectLight& through, const VirtualLights* virtual_lights,
-                  const CellSet& wanted, const UnifiedLightSampling& sampling, const UnifiedLightSettings& settings);
+                  double point_bound, const CellSet& wanted, const UnifiedLightSampling& sampling,
+                  const UnifiedLightSettings& settings);
     UnifiedLights(const UnifiedLights&) = delete;
     UnifiedLights& operator=(const UnifiedLights&) = delete;
 

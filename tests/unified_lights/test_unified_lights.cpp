@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "fire_lights/sampled_fire.h"
 #include "fixtures/ray_fixture.h"
 #include "unified_lights/unified_lights.h"
 
@@ -12,6 +13,8 @@ namespace brisance {
 namespace {
 
 using namespace testing;
+
+constexpr double kPointBound = 1.0;  // [1/m^2]
 
 // A floor and a wall beside a fire of some hundred voxels, in thin smoke.
 Recipe small_fire(float brightness) {
@@ -63,7 +66,7 @@ struct LitSet {
         s.placement = "light_paths";
         s.flux = "own";
         s.kind = "point";
-        s.point_bound = 1.0;
+        s.point_bound = kPointBound;
         s.sampling = "all";
         s.path_extension = false;
         s.photons = 4000;
@@ -105,7 +108,8 @@ struct LitSet {
 
     UnifiedLights unified(const std::string& sampling, const UnifiedLightSettings& settings,
                           const CellSet& cells = {Cell::SS, Cell::SV, Cell::SA}) const {
-        return {stage.scene(), stage.scene(), lights.get(), cells, *find_unified_light_sampling(sampling), settings};
+        return {stage.scene(), stage.scene(), lights.get(), kPointBound, cells, *find_unified_light_sampling(sampling),
+                settings};
     }
 
     Estimate together(const UnifiedLights& unified, double relative) const {

@@ -82,9 +82,10 @@ void MomentLights::follow_fire(const DrawInput& input, const ManyLights& lights)
 }
 
 void MomentLights::follow_unified(const DrawInput& input, const ManyLights& lights) {
-    own_unified_ = std::make_unique<UnifiedLights>(*direct_, own_similar_direct_ ? *own_similar_direct_ : *direct_,
-                                                   lights.virtual_lights(), input.plan.needed,
-                                                   *input.plan.unified_sampling, input.shot.unified_lights);
+    own_unified_ =
+        std::make_unique<UnifiedLights>(*direct_, own_similar_direct_ ? *own_similar_direct_ : *direct_,
+                                        lights.virtual_lights(), input.shot.virtual_lights.point_bound,
+                                        input.plan.needed, *input.plan.unified_sampling, input.shot.unified_lights);
     unified_ = own_unified_.get();
 }
 
