@@ -31,20 +31,39 @@ double share_by_distances(const NodeBound& left, const NodeBound& right) {
 }
 
 // Children have greater numbers than their parents.
-std::vector<float> least_of_nodes(const LightTree& tree, const std::vector<double>& of_lights) {
-    if (of_lights.empty())
+std::vector<NodeLimit> limits_of_nodes(const LightTree& tree, const LightLimits& of_lights) {
+    if (of_lights.least2.empty())
         return {};
     // Intensity over squared distance: infinite where a light is not bounded.
     std::vector<double> most(tree.node_count());
-    std::vector<float> out(tree.node_count());
+    std::vector<LightBounds> boxes(tree.node_count());
+    std::vector<NodeLimit> out(tree.node_count());
     for (auto node = static_cast<std::uint32_t>(out.size()); node-- > 0;) {
         const double intensity = tree.lights(node).intensity();
-        most[node] = !(intensity > 0.0)   ? 0.0
-                     : tree.is_leaf(node) ? intensity / of_lights[tree.light(node)]
-                                          : most[tree.left(node)] + most[tree.right(node)];
-        out[node] = intensity > 0.0 && most[node] > 0.0 ? static_cast<float>(intensity / most[node]) : 0.0f;
+        if (tree.is_leaf(node)) {
+            boxes[node] = of_lights.bounds[tree.light(node)];
+            most[node] = intensity > 0.0 ? intensity / of_lights.least2[tree.light(node)] : 0.0;
+        } else {
+            boxes[node] = united(boxes[tree.left(node)], boxes[tree.right(node)]);
+            most[node] = most[tree.left(node)] + most[tree.right(node)];
+        }
+        const LightBounds& box = boxes[node];
+        out[node] = {0.5 * (box.low + box.high), 0.5 * (box.high - box.low),
+                     most[node] > 0.0 ? static_cast<float>(intensity / most[node]) : 0.0f, box.distance > 0.0};
     }
     return out;
+}
+
+// A cosine is at most the height over the plane, over the least distance. The lights of a plane that the vertex lies in
+// keep a little, as rounding may lift them.
+void VertexBounds::limit(const NodeLimit& limit, NodeBound& out) const {
+    constexpr double kLeastCosine = 1e-4;
+    out.keep_off(limit.least2);
+    const LitPoint& point = vertex_.lit();
+    if (limit.far || point.kind != LitPoint::Kind::Surface)
+        return;
+    const double height = limit.height(point.position, point.normal);
+    out.scattered *= height > 0.0 ? std::clamp(height / std::sqrt(out.nearest2), kLeastCosine, 1.0) : 0.0;
 }
 
 // Children have greater numbers than their parents.

@@ -50,26 +50,52 @@ inline NodeBound bound_in_box(const LightCone& lights, const ScatteringBound& sc
     return out;
 }
 
+// Beside a tree, for cuts through lights of all kinds: nodes around a vertex have no other bound, and lights of the
+// surface that it lies on would get all of a small cut.
+struct LightLimits {
+    std::vector<LightBounds> bounds;  // of each light
+    // At which each light counts as being, however near it is: it sends its intensity over that at most [m^2].
+    std::vector<double> least2;
+};
+
+// The same for a node. Its lights together send at most the sum of I / least2, which is its I over its own least2.
+struct NodeLimit {
+    dvec3 middle{0.0}, half{0.0};  // of the box of its lights [m]
+    float least2 = 0.0f;
+    bool far = false;  // lights at infinity are among them
+
+    // How far they reach above a plane at most [m].
+    double height(const dvec3& point, const dvec3& normal) const {
+        return glm::dot(normal, middle - point) + glm::dot(glm::abs(normal), half);
+    }
+};
+
+// For every node; none without limits.
+std::vector<NodeLimit> limits_of_nodes(const LightTree& tree, const LightLimits& of_lights);
+
 // The bounds of all nodes for one vertex.
 class VertexBounds {
 public:
-    // Keeps references. `least2`: least_of_nodes(), or empty.
-    VertexBounds(const LightTree& tree, const PathVertex& vertex, double extinction, std::span<const float> least2 = {})
-        : tree_(tree), vertex_(vertex), bsdf_(vertex.bound()), extinction_(extinction), least2_(least2) {}
+    // Keeps references. `limits`: limits_of_nodes(), or empty.
+    VertexBounds(const LightTree& tree, const PathVertex& vertex, double extinction,
+                 std::span<const NodeLimit> limits = {})
+        : tree_(tree), vertex_(vertex), bsdf_(vertex.bound()), extinction_(extinction), limits_(limits) {}
 
     NodeBound of(std::uint32_t node) const {
         NodeBound out = bound_in_box(tree_.lights(node), bsdf_, vertex_.position(), dvec3(0.0), extinction_);
-        if (!least2_.empty())
-            out.keep_off(least2_[node]);
+        if (!limits_.empty() && out.scattered > 0.0)
+            limit(limits_[node], out);
         return out;
     }
 
 private:
+    void limit(const NodeLimit& limit, NodeBound& out) const;
+
     const LightTree& tree_;
     const PathVertex& vertex_;
     ScatteringBound bsdf_;
     double extinction_;
-    std::span<const float> least2_;
+    std::span<const NodeLimit> limits_;
 };
 
 // One node of a cut. A cut is a heap: the node whose lights may err most stands first. Leaves do not err.
@@ -122,12 +148,6 @@ auto sum_of_cut(std::vector<Node>& cut, double error, std::size_t most, const Co
 
 // For every node of the tree a light of it, drawn in proportion to intensity.
 std::vector<std::uint32_t> representatives(const LightTree& tree, std::uint32_t seed);
-
-// For every node the squared distance at which its lights count as being, however near they are [m^2]. `of_lights`:
-// likewise, for every light, which sends its intensity over that at most. Lights of a node together send at most
-//   sum of I / least2 = I of the node / least2 of the node.
-// Empty without `of_lights`.
-std::vector<float> least_of_nodes(const LightTree& tree, const std::vector<double>& of_lights);
 
 // Probability of the left of two nodes; below 0 where neither has any.
 double share_by_distances(const NodeBound& left, const NodeBound& right);

@@ -16,13 +16,11 @@
 
 namespace brisance {
 
-// Of those that know it, least_squared_distances(): at which each light counts as being, however near it is [m^2]. A
-// cut through lights of all kinds needs it: nodes around the vertex have no other bound, and would get all of a small
-// cut.
+// Of lights that know least_squared_distances() (LightLimits::least2).
 template <class Lights>
-std::vector<double> least_squared_distances_of(const Lights& lights) {
+LightLimits limits_of(const Lights& lights, LobeBrightness lobes) {
     if constexpr (requires { lights.least_squared_distances(); })
-        return lights.least_squared_distances();
+        return {lights.bounds(lobes), lights.least_squared_distances()};
     else
         return {};
 }
@@ -103,7 +101,7 @@ public:
     template <class Lights, class Settings>
     CutOfRepresentatives(const Lights& lights, const Settings& s)
         : cut_(LightTree(lights.bounds(LobeBrightness::Peak)), s.seed, s.lightcuts_error, s.lightcuts_most,
-               least_squared_distances_of(lights)) {}
+               limits_of(lights, LobeBrightness::Peak)) {}
 
     template <class Estimate>
     EstimatedLight<Estimate> at(const PathVertex& vertex, double extinction, Rng&, const Estimate& estimate) const {
@@ -122,7 +120,7 @@ public:
     template <class Lights, class Settings>
     CutOfRandomLights(const Lights& lights, const Settings& s)
         : cut_(LightTree(lights.bounds(LobeBrightness::Mean)), s.stochastic_cut_size,
-               least_squared_distances_of(lights)) {}
+               limits_of(lights, LobeBrightness::Mean)) {}
 
     template <class Estimate>
     EstimatedLight<Estimate> at(const PathVertex& vertex, double extinction, Rng& rng, const Estimate& estimate) const {
