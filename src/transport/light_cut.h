@@ -79,23 +79,27 @@ public:
     // Keeps references. `limits`: limits_of_nodes(), or empty.
     VertexBounds(const LightTree& tree, const PathVertex& vertex, double extinction,
                  std::span<const NodeLimit> limits = {})
-        : tree_(tree), vertex_(vertex), bsdf_(vertex.bound()), extinction_(extinction), limits_(limits) {}
+        : tree_(tree), vertex_(vertex), bsdf_(vertex.bound()), extinction_(extinction), limits_(limits) {
+        if (!limits_.empty())
+            everywhere_ = bsdf_.over({0.0, 0.0, 1.0}, -1.0);
+    }
 
     NodeBound of(std::uint32_t node) const {
         NodeBound out = bound_in_box(tree_.lights(node), bsdf_, vertex_.position(), dvec3(0.0), extinction_);
         if (!limits_.empty() && out.scattered > 0.0)
-            limit(limits_[node], out);
+            limit(node, out);
         return out;
     }
 
 private:
-    void limit(const NodeLimit& limit, NodeBound& out) const;
+    void limit(std::uint32_t node, NodeBound& out) const;
 
     const LightTree& tree_;
     const PathVertex& vertex_;
     ScatteringBound bsdf_;
     double extinction_;
     std::span<const NodeLimit> limits_;
+    double everywhere_ = 0.0;  // bound of the BSDF over all directions
 };
 
 // One node of a cut. A cut is a heap: the node whose lights may err most stands first. Leaves do not err.
