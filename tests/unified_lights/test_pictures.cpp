@@ -127,12 +127,12 @@ TEST_P(UnifiedPictures, HaveTheMeansOfCellsApart) {
     const Surroundings set = set_with_lights();
     static const Image apart = [&] {
         Shot shot = small_shot(kApart);
-        shot.camera.samples_per_axis = 16;
+        shot.camera.samples_per_axis = 8;
         return rendered(shot, medium, &set).image;
     }();
     Shot shot = small_shot(GetParam());
     shot.unified_lights.lightcuts_error = 0.002;
-    constexpr int kSeeds = 8;
+    constexpr int kSeeds = 4;
     for (const char* cell : {"SV", "SS", "SA", "SM"}) {
         double sum = 0.0, square = 0.0;
         for (int seed = 0; seed < kSeeds; ++seed) {
