@@ -75,7 +75,6 @@ Emitters::Emitters(const Scene& scene, const std::vector<LightSettings>& lights,
     for (std::size_t i = 0; i < lights.size(); ++i)
         add_light(lights[i], i < pictures.size() ? pictures[i] : nullptr);
     tree_ = LightTree(bounds_);
-    bounds_ = {};
 }
 
 void Emitters::add_triangles() {
@@ -178,8 +177,17 @@ std::optional<EmitterSample> Emitters::sample_near(const LitPoint& point, double
     const std::optional<LightTree::Choice> chosen = tree_.choose(point, std::min(choice, 1.0 - 0x1p-53));
     if (!chosen)
         return std::nullopt;
-    const Near& near = near_[chosen->light];
     probability *= chosen->probability;
+    std::optional<EmitterSample> s = sample_on(near_[chosen->light], point, rng);
+    if (!s)
+        return std::nullopt;
+    s->pdf *= probability;
+    s->weight /= float(probability);
+    return s;
+}
+
+// A point on that light. None if it contributes nothing.
+std::optional<EmitterSample> Emitters::sample_on(const Near& near, const LitPoint& point, Rng& rng) const {
     std::optional<EmitterSample> s;
     if (near.light) {
         const dvec3 offset = near.position - point.position;
@@ -192,11 +200,7 @@ std::optional<EmitterSample> Emitters::sample_near(const LitPoint& point, double
     } else {
         s = sample_triangle(near, point, rng);
     }
-    if (!s || s->weight == Rgb(0.0f))
-        return std::nullopt;
-    s->pdf *= probability;
-    s->weight /= float(probability);
-    return s;
+    return !s || s->weight == Rgb(0.0f) ? std::nullopt : s;
 }
 
 std::optional<EmitterSample> Emitters::sample_triangle(const Near& near, const LitPoint& point, Rng& rng) const {
@@ -351,7 +355,8 @@ EmittedParticle Emitters::emit_far(const Far& far, const dvec3& centre, double r
 }
 
 std::uint64_t Emitters::bytes() const {
-    std::uint64_t sum = near_.size() * sizeof(Near) + near_power_.size() * sizeof(double) + tree_.bytes();
+    std::uint64_t sum =
+        near_.size() * (sizeof(Near) + sizeof(LightBounds)) + near_power_.size() * sizeof(double) + tree_.bytes();
     for (const auto& lights : light_)
         sum += lights.size() * sizeof(std::int32_t);
     return sum;

@@ -75,6 +75,8 @@ public:
     std::uint64_t bytes() const;
 
 private:
+    friend class EmitterLights;
+
     // A light at a finite distance: a triangle, a point or a spot.
     struct Near {
         std::uint32_t mesh = 0, triangle = 0;
@@ -95,6 +97,7 @@ private:
     void add_light(const LightSettings& light, const Texture* picture);
     double far_probability() const;
     std::optional<EmitterSample> sample_near(const LitPoint& point, double choice, Rng& rng, double probability) const;
+    std::optional<EmitterSample> sample_on(const Near& near, const LitPoint& point, Rng& rng) const;
     std::optional<EmitterSample> sample_triangle(const Near& near, const LitPoint& point, Rng& rng) const;
     std::optional<EmitterSample> sample_far(const Far& far, Rng& rng) const;
     Rgb intensity(const Near& near, const dvec3& direction) const;
@@ -105,7 +108,7 @@ private:
 
     const Scene& scene_;
     std::vector<Near> near_;
-    std::vector<LightBounds> bounds_;   // of near_, until the tree is built
+    std::vector<LightBounds> bounds_;   // of near_
     std::vector<double> near_power_;    // luminance [W], cumulative
     std::vector<PointEmitter> points_;  // of near_
     std::vector<Far> far_;

@@ -21,9 +21,12 @@ public:
     dvec3 sample(double u, double v) const;
     double pdf(const dvec3& direction) const;  // [1/sr]
 
+    // By the picture's coordinates, from 0 to 1: across, a whole turn, and from its top down.
+    dvec3 direction_of(double u, double v) const;
+    const Texture* picture() const { return picture_; }  // or null
+
 private:
     vec2 picture_of(const dvec3& direction) const;
-    dvec3 direction_of(double u, double v) const;
 
     const Texture* picture_;
     Rgb factor_;

@@ -109,6 +109,15 @@ void try_axis(const std::vector<LightBounds>& lights, const std::vector<std::uin
 }  // namespace
 
 LightBounds united(const LightBounds& a, const LightBounds& b) {
+    if ((a.distance > 0.0) != (b.distance > 0.0)) {
+        LightBounds out = a.distance > 0.0 ? b : a;
+        out.spread = pi;
+        out.reach = pi / 2.0;
+        out.intensity = a.intensity + b.intensity;
+        out.distance = std::max(a.distance, b.distance);
+        out.near_too = true;
+        return out;
+    }
     const Cone cone = united(Cone{a.axis, a.spread}, Cone{b.axis, b.spread});
     LightBounds out;
     out.low = glm::min(a.low, b.low);
@@ -118,6 +127,8 @@ LightBounds united(const LightBounds& a, const LightBounds& b) {
     out.reach = std::max(a.reach, b.reach);
     out.intensity = a.intensity + b.intensity;
     out.two_sided = a.two_sided || b.two_sided;
+    out.distance = std::max(a.distance, b.distance);
+    out.near_too = a.near_too || b.near_too;
     return out;
 }
 
@@ -130,9 +141,23 @@ LightCone::LightCone(const LightBounds& b)
       cos_spread_(std::cos(b.spread)),
       sin_spread_(std::sin(b.spread)),
       cos_reach_(std::cos(b.reach)),
-      two_sided_(b.two_sided) {}
+      far2_(b.distance * b.distance),
+      two_sided_(b.two_sided),
+      near_(!(b.distance > 0.0) || b.near_too) {}
+
+double LightCone::importance_of_far(const LitPoint& point) const {
+    double received = 1.0;
+    if (point.kind != LitPoint::Kind::Medium) {
+        const double toward = -glm::dot(point.normal, axis_);
+        const bool both = point.kind == LitPoint::Kind::Transmitting;
+        received = Angle::of_cosine(both ? std::abs(toward) : toward).less({cos_spread_, sin_spread_}).cosine;
+    }
+    return std::max(0.0, intensity_ * received / far2_);
+}
 
 double LightCone::importance(const LitPoint& point) const {
+    if (!near_)
+        return importance_of_far(point);
     const dvec3 from = point.position - middle_;
     const double distance2 = glm::dot(from, from);
     if (!(distance2 > 0.0))
@@ -161,12 +186,19 @@ double LightCone::importance(const LitPoint& point) const {
 // Offsets from a box of points to the lights' box fill a box as large as both together.
 LightsInView LightCone::seen_from(const dvec3& point, const dvec3& around) const {
     LightsInView out;
+    if (!near_)
+        return {intensity_, far2_, far2_, -axis_, cos_spread_};
     const dvec3 offset = middle_ - point, apart = glm::abs(offset), half = dvec3(half_) + around;
     const double radius2 = around == dvec3(0.0) ? radius2_ : glm::dot(half, half);
     const dvec3 near = glm::max(apart - half, dvec3(0.0)), far = apart + half;
     out.nearest2 = glm::dot(near, near);
     out.farthest2 = glm::dot(far, far);
     out.intensity = intensity_;
+    if (far2_ > 0.0) {
+        out.nearest2 = std::min(out.nearest2, far2_);
+        out.farthest2 = std::max(out.farthest2, far2_);
+        return out;
+    }
     const double distance2 = glm::dot(offset, offset);
     if (distance2 <= radius2 || !(distance2 > 0.0))
         return out;
@@ -203,30 +235,41 @@ std::uint32_t LightTree::build(std::vector<std::uint32_t>& order, const std::vec
         return node;
     }
     LightBounds all = lights[order[begin]];
-    dvec3 low = middle(all), high = low;
-    for (std::size_t i = begin + 1; i < end; ++i) {
+    for (std::size_t i = begin + 1; i < end; ++i)
         all = united(all, lights[order[i]]);
-        low = glm::min(low, middle(lights[order[i]]));
-        high = glm::max(high, middle(lights[order[i]]));
-    }
-    Split best;
-    for (int axis = 0; axis < 3; ++axis)
-        try_axis(lights, order, begin, end, all, low, high, axis, best);
-    std::size_t cut = begin + (end - begin) / 2;
-    if (best.axis >= 0) {
-        const auto first = order.begin() + static_cast<std::ptrdiff_t>(begin);
-        const auto last = order.begin() + static_cast<std::ptrdiff_t>(end);
-        const auto there = std::stable_partition(
-            first, last, [&](std::uint32_t i) { return middle(lights[i])[best.axis] < best.position; });
-        if (there != first && there != last)
-            cut = static_cast<std::size_t>(there - order.begin());
-    }
+    const std::size_t cut = divide(order, lights, begin, end, all);
     const std::uint32_t left = build(order, lights, begin, cut, node);
     const std::uint32_t right = build(order, lights, cut, end, node);
     nodes_[node].lights = LightCone(all);
     nodes_[node].left = left;
     nodes_[node].right = right;
     return node;
+}
+
+// Orders the lights from `begin` to `end`, of which there are two or more, and returns where the right half begins.
+std::size_t LightTree::divide(std::vector<std::uint32_t>& order, const std::vector<LightBounds>& lights,
+                              std::size_t begin, std::size_t end, const LightBounds& all) {
+    const auto first = order.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto last = order.begin() + static_cast<std::ptrdiff_t>(end);
+    const auto position_of = [&](auto there) { return static_cast<std::size_t>(there - order.begin()); };
+    if (all.distance > 0.0 && all.near_too)
+        return position_of(
+            std::stable_partition(first, last, [&](std::uint32_t i) { return !(lights[i].distance > 0.0); }));
+    dvec3 low(1e300), high(-1e300);
+    for (auto i = first; i != last; ++i) {
+        low = glm::min(low, middle(lights[*i]));
+        high = glm::max(high, middle(lights[*i]));
+    }
+    Split best;
+    for (int axis = 0; axis < 3; ++axis)
+        try_axis(lights, order, begin, end, all, low, high, axis, best);
+    if (best.axis >= 0) {
+        const auto there = std::stable_partition(
+            first, last, [&](std::uint32_t i) { return middle(lights[i])[best.axis] < best.position; });
+        if (there != first && there != last)
+            return position_of(there);
+    }
+    return begin + (end - begin) / 2;
 }
 
 // Below 0: neither can reach the point.

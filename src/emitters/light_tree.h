@@ -20,7 +20,15 @@ struct LightBounds {
     double reach = 0.0;         // each emits within this angle of its own axis
     double intensity = 0.0;     // sum of the largest of each light, luminance [W/sr]
     bool two_sided = false;     // along both directions of the axis
+    // Above 0: lights at infinity, which shine along their axes alone. They count as if they were so far away from
+    // every point [m]: `intensity` is irradiance times the square of it. All distant lights of a tree have the same.
+    double distance = 0.0;
+    bool near_too = false;  // others are among them, in the box
 };
+
+// Lights that are bright in a narrow lobe have a peak many times their mean. Bounds need the peak; by the peak, most
+// samples would go to lobes that point elsewhere.
+enum class LobeBrightness { Mean, Peak };
 
 // A receiver: a point of a medium, or of a surface that faces `normal` (or both sides, where it transmits light).
 struct LitPoint {
@@ -51,14 +59,18 @@ public:
     double radius2() const { return radius2_; }  // of the ball around the box [m^2]
 
 private:
+    double importance_of_far(const LitPoint& point) const;
+
     dvec3 middle_{0.0}, axis_{0.0, 0.0, 1.0};
     double radius2_ = 0.0;  // of the ball around the box [m^2]
     double intensity_ = 0.0;
     vec3 half_{0.0f};  // size of the box [m]
     double cos_spread_ = 1.0, sin_spread_ = 0.0, cos_reach_ = 1.0;
-    bool two_sided_ = false;
+    double far2_ = 0.0;  // squared distance of lights at infinity; 0: there are none [m^2]
+    bool two_sided_ = false, near_ = true;
 };
 
+// Distant lights and others share no node but the root.
 class LightTree {
 public:
     explicit LightTree(const std::vector<LightBounds>& lights);
@@ -105,6 +117,8 @@ private:
     std::uint32_t build(std::vector<std::uint32_t>& order, const std::vector<LightBounds>& lights, std::size_t begin,
                         std::size_t end, std::uint32_t parent);
     double share_of_left(const Node& node, const LitPoint& point) const;
+    static std::size_t divide(std::vector<std::uint32_t>& order, const std::vector<LightBounds>& lights,
+                              std::size_t begin, std::size_t end, const LightBounds& all);
 
     std::vector<Node> nodes_;
     std::vector<std::uint32_t> leaf_of_;

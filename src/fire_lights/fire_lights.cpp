@@ -86,7 +86,7 @@ Rgb FireLights::glow(std::size_t brick, const vec3& in_brick) const {
     return out;
 }
 
-std::vector<LightBounds> FireLights::bounds() const {
+std::vector<LightBounds> FireLights::bounds(LobeBrightness) const {
     const dvec3 half =
         0.5 * (glm::abs(local_from_index_[0]) + glm::abs(local_from_index_[1]) + glm::abs(local_from_index_[2]));
     std::vector<LightBounds> out(lights_.size());

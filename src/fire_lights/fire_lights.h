@@ -27,8 +27,8 @@ public:
     std::size_t size() const { return lights_.size(); }
     // Luminance of the radiant intensity [W/sr]; above 0. By two Gauss points along each axis, which is exact.
     const std::vector<double>& intensity() const { return intensity_; }
-    // Of all lights, for a tree.
-    std::vector<LightBounds> bounds() const;
+    // Of all lights, for a tree. They shine alike in all directions.
+    std::vector<LightBounds> bounds(LobeBrightness = LobeBrightness::Mean) const;
 
     // Of the smoke there, 0 outside [1/m].
     double extinction_at(const dvec3& position) const;

@@ -18,13 +18,12 @@ std::unique_ptr<FireGatherer> made(const FireLights& lights, const FireLightSett
 
 const std::vector<FireLightSampling>& fire_light_samplings() {
     static const std::vector<FireLightSampling> table = {
-        {"all", "every light, at every point", made<AtEachPoint<AllFireLights>>, true},
-        {"intensity", "a light by intensity", made<AtEachPoint<ChosenFireLights<FireByIntensity>>>},
-        {"light_tree", "a light by a tree of bounds", made<AtEachPoint<ChosenFireLights<FireByTree>>>},
+        {"all", "every light, at every point", made<AtEachPoint<EveryLight>>, true},
+        {"intensity", "a light by intensity", made<AtEachPoint<ChosenLights<ByIntensity>>>},
+        {"light_tree", "a light by a tree of bounds", made<AtEachPoint<ChosenLights<ByTree>>>},
         {"lightcuts", "one light for each node of a cut through a tree, the same for all points",
-         made<AtEachPoint<FireLightcuts>>},
-        {"stochastic_lightcuts", "a random light of each node of a small cut",
-         made<AtEachPoint<FireStochasticLightcuts>>},
+         made<AtEachPoint<CutOfRepresentatives>>},
+        {"stochastic_lightcuts", "a random light of each node of a small cut", made<AtEachPoint<CutOfRandomLights>>},
         {"multidimensional_lightcuts", "one cut for all points of a ray and all lights",
          made<MultidimensionalLightcuts>}};
     return table;

@@ -90,11 +90,30 @@ void skip_without_emission(const Plan& plan, const Shot& shot, const Medium& med
 // Whether the fire's light at nodes or on surfaces comes from hierarchies: those begin MM, mirrors show their smoke,
 // and through panes the light of the fire is theirs.
 bool needs_hierarchies(const Plan& plan, const Surroundings* surroundings) {
-    if (!plan.fire_sampling)
-        return plan.single || plan.needs(Cell::SV);
     const auto transmits = [](const SceneMaterial& m) { return m.surface.transmission > 0.0f; };
-    return plan.multiple || plan.needs(Cell::SM) ||
+    const bool at_nodes = plan.fire_sampling ? plan.multiple || plan.needs(Cell::SM) : plan.single;
+    if (!plan.fire_lights_on_surfaces())
+        return at_nodes || plan.needs(Cell::SV);
+    return at_nodes ||
            (plan.needs(Cell::SS) && surroundings && std::ranges::any_of(surroundings->scene().materials, transmits));
+}
+
+std::string why_no_hierarchies(const Plan& plan) {
+    if (plan.fire_sampling)
+        return std::string("fire_lights.sampling is ") + plan.fire_sampling->name;
+    if (plan.unified_sampling)
+        return std::string("unified_lights.sampling is ") + plan.unified_sampling->name;
+    return "no cell needs them";
+}
+
+// Ways to choose among single lights, where the shot asks for them and there is something to light.
+void choose_samplings(Plan& plan, const Shot& shot) {
+    if (shot.method == RenderMethod::Path)
+        return;
+    if (plan.surfaces && (plan.needs(Cell::SV) || plan.needs(Cell::SS) || plan.needs(Cell::SA)))
+        plan.unified_sampling = find_unified_light_sampling(shot.unified_lights.sampling);
+    if (plan.single || (plan.needs(Cell::SV) && !plan.unified_sampling))
+        plan.fire_sampling = find_fire_light_sampling(shot.fire_lights.sampling);
 }
 
 void skip_with_emission(const Plan& plan, const Shot& shot, const Medium& medium, const Surroundings* surroundings,
@@ -108,9 +127,7 @@ void skip_with_emission(const Plan& plan, const Shot& shot, const Medium& medium
     if (!many_lights)
         skip("lights, hierarchy, shadow maps", "method is path");
     else if (!needs_hierarchies(plan, surroundings))
-        skip("lights, hierarchy, shadow maps", plan.fire_sampling
-                                                   ? std::string("fire_lights.sampling is ") + plan.fire_sampling->name
-                                                   : "no cell needs them");
+        skip("lights, hierarchy, shadow maps", why_no_hierarchies(plan));
     else if (plan.scattering_method && !plan.mixed())
         skip("scattered hierarchies", owner);
     else if (!plan.multiple)
@@ -141,8 +158,7 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
     plan.emission = medium.emits();
     decide(plan, medium.scatters(), plan.emitters && surroundings->emitters().visible(), shot.scattering.bounces);
     const std::string owner = choose_owners(plan, shot, medium, skip);
-    if (shot.method != RenderMethod::Path && (plan.single || plan.needs(Cell::SV)))
-        plan.fire_sampling = find_fire_light_sampling(shot.fire_lights.sampling);
+    choose_samplings(plan, shot);
     if (!plan.surfaces)
         skip("row S, column S", "no surfaces in the shot");
     if (!plan.emitters)

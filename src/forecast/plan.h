@@ -12,6 +12,7 @@
 #include "scattering_methods/methods.h"
 #include "shot/shot.h"
 #include "statistics/statistics.h"
+#include "unified_lights/samplings.h"
 
 namespace brisance {
 
@@ -29,6 +30,8 @@ struct Plan {
     StageCost choice_cost;          // of the choice; no name: there was none to make
     // How MV and, on the base of surfaces, SV are gathered from the fire's single lights; null: from hierarchies.
     const FireLightSampling* fire_sampling = nullptr;
+    // How lights of all kinds are chosen together on surfaces: SV of the base, and SS and SA; null: each by itself.
+    const UnifiedLightSampling* unified_sampling = nullptr;
     // Of MS: what particles carry of the light that virtual lights would hold.
     float reflected_by_particles = 0.0f;
     bool surfaces = false;  // there are some
@@ -37,6 +40,8 @@ struct Plan {
     std::vector<SkippedPart> skipped;
     // Whether MV is gathered along the camera's rays, so that nodes need not hold it.
     bool fire_on_rays() const { return fire_sampling && single; }
+    // Whether single lights of the fire own SV of the base.
+    bool fire_lights_on_surfaces() const { return fire_sampling || unified_sampling; }
     bool needs(Cell cell) const { return needed.contains(cell); }
     // Whether two pictures are made and mixed: one by scattering_method, one by the lighting grid.
     bool mixed() const { return scattering_method && share_of_method < 1.0f; }

@@ -193,7 +193,8 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
     if (lights_.virtual_lights() && input_.plan.needs(Cell::SS) && radius > 0.0)
         shared.emplace(camera.settings().width, camera.settings().height, radius, rays_of_pixel(), asks_for_bound);
     std::optional<SharedBounce> shared_sky;
-    if (radius > 0.0 && input_.plan.needs(Cell::SA) && surroundings->emitters().has_even_background())
+    if (radius > 0.0 && input_.plan.needs(Cell::SA) && !lights.unified() &&
+        surroundings->emitters().has_even_background())
         shared_sky.emplace(camera.settings().width, camera.settings().height, radius, rays_of_pixel());
     std::optional<LightReuse> reuse = light_reuse(camera, shared ? &*shared : nullptr, bound ? &*bound : nullptr);
     std::optional<ScreenSpaceCompensation> compensated = compensation(camera);
@@ -216,6 +217,7 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
                           reuse ? &*reuse : nullptr,
                           compensated ? &*compensated : nullptr,
                           lights.fire_on_surfaces(),
+                          lights.unified(),
                           bound ? &*bound : nullptr,
                           input_.shot.virtual_lights.seed});
     Image image = render_picture(lights.field(), camera, settings_, progress_,

@@ -133,8 +133,10 @@ ManyLights::ManyLights(const DrawInput& input, Statistics& statistics, Progress&
     if (plan.fire_sampling)
         make_fire_lights(input, statistics, progress);
     light_medium(input, statistics, progress);
-    if (plan.fire_sampling && plan.needs(Cell::SV) && takes_peaks_for_straight(input))
+    if (plan.fire_lights_on_surfaces() && plan.needs(Cell::SV) && takes_peaks_for_straight(input))
         make_fire_in_similar(input, statistics);
+    if (plan.unified_sampling)
+        make_unified(input, statistics, progress);
     if (wants_single_scattering_apart(input))
         light_medium_once(input, statistics, progress);
 }
@@ -145,7 +147,7 @@ void ManyLights::make_fire_lights(const DrawInput& input, Statistics& statistics
     fire_.emplace(*direct(), *input.plan.fire_sampling, input.shot.fire_lights);
     std::vector<std::string> cells;
     for (const Cell cell : {Cell::MV, Cell::SV})
-        if (input.plan.needs(cell))
+        if (input.plan.needs(cell) && !(cell == Cell::SV && input.plan.unified_sampling))
             cells.emplace_back(name_of(cell));
     statistics.stages.push_back(
         {"lights of the fire",
@@ -158,6 +160,8 @@ void ManyLights::make_fire_lights(const DrawInput& input, Statistics& statistics
 void ManyLights::make_fire_in_similar(const DrawInput& input, Statistics& statistics) {
     const Stopwatch watch;
     similar_direct_.emplace(*medium_->similar(), input.shot.tracing, input.surroundings);
+    if (input.plan.unified_sampling)
+        return;
     fire_in_similar_.emplace(*similar_direct_, *input.plan.fire_sampling, input.shot.fire_lights);
     statistics.stages.push_back({"lights of the fire, through smoke without peaks",
                                  watch.seconds(),
@@ -165,11 +169,28 @@ void ManyLights::make_fire_in_similar(const DrawInput& input, Statistics& statis
                                  {{"sampling", input.plan.fire_sampling->name}}});
 }
 
+void ManyLights::make_unified(const DrawInput& input, Statistics& statistics, Progress& progress) {
+    progress.stage("lights of all kinds");
+    const Stopwatch watch;
+    const UnifiedLightSampling& sampling = *input.plan.unified_sampling;
+    unified_ = std::make_unique<UnifiedLights>(*direct(), similar_direct_ ? *similar_direct_ : *direct(),
+                                               virtual_lights(), input.shot.virtual_lights.point_bound,
+                                               input.plan.needed, sampling, input.shot.unified_lights);
+    const LightsOfAllKinds& lights = unified_->lights();
+    statistics.stages.push_back({"lights of all kinds",
+                                 watch.seconds(),
+                                 unified_->bytes() + (similar_direct_ ? similar_direct_->bytes() : 0),
+                                 {{"sampling", sampling.name},
+                                  {"virtual_lights", lights.virtual_lights()},
+                                  {"voxels", lights.voxels()},
+                                  {"emitters", lights.emitters()}}});
+}
+
 // Whether surfaces need the fire's light from hierarchies: for SV, or for SS through panes, which is theirs however the
 // fire's single lights are chosen (SurfaceShader).
 bool ManyLights::grid_lights_surfaces_by_fire(const DrawInput& input) const {
     const Plan& plan = input.plan;
-    if (!plan.needs(Cell::SV) || !plan.fire_sampling)
+    if (!plan.needs(Cell::SV) || !plan.fire_lights_on_surfaces())
         return plan.needs(Cell::SV);
     return plan.needs(Cell::SS) && virtual_lights_ && !plan.scattering_method && Panes(*input.surroundings).any();
 }

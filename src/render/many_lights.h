@@ -10,6 +10,7 @@
 #include "medium_lighting/medium_lighting.h"
 #include "reference/path_tracer.h"
 #include "render/draw.h"
+#include "unified_lights/unified_lights.h"
 #include "virtual_lights/virtual_lights.h"
 
 namespace brisance {
@@ -62,15 +63,20 @@ public:
     // The fire's single lights, where they own MV or SV; else null.
     const SampledFire* fire() const { return fire_ ? &*fire_ : nullptr; }
     // Those that own SV on the base of surfaces; null: none do.
-    const SampledFire* fire_on_surfaces() const { return fire_in_similar_ ? &*fire_in_similar_ : fire(); }
+    const SampledFire* fire_on_surfaces() const {
+        return unified_ ? nullptr : fire_in_similar_ ? &*fire_in_similar_ : fire();
+    }
+    // Lights of all kinds together, which own SV on the base of surfaces, and SS and SA; null: each kind by itself.
+    const UnifiedLights* unified() const { return unified_.get(); }
     // Whether the latter shine through the medium in which medium() is lit, and not through the medium itself.
-    bool surfaces_see_similar() const { return fire_in_similar_.has_value(); }
+    bool surfaces_see_similar() const { return similar_direct_.has_value(); }
     // Field of single scattering, where MV and MA of medium() hold more (PictureSettings::once); else null.
     const LitMedium* once() const { return once_.get(); }
 
 private:
     void make_fire_lights(const DrawInput& input, Statistics& statistics, Progress& progress);
     void make_fire_in_similar(const DrawInput& input, Statistics& statistics);
+    void make_unified(const DrawInput& input, Statistics& statistics, Progress& progress);
     bool grid_lights_surfaces_by_fire(const DrawInput& input) const;
     void light_medium(const DrawInput& input, Statistics& statistics, Progress& progress);
     void light_medium_once(const DrawInput& input, Statistics& statistics, Progress& progress);
@@ -84,6 +90,7 @@ private:
     std::unique_ptr<LitMedium> medium_, once_;
     std::optional<DirectLight> similar_direct_;
     std::optional<SampledFire> fire_in_similar_;
+    std::unique_ptr<UnifiedLights> unified_;
 };
 
 }  // namespace brisance

@@ -70,6 +70,27 @@ void check_fire_lights(const Given& given, const Shot& shot) {
                    shot.fire_lights.sampling);
 }
 
+// Of choices that do not go with lights of all kinds together, and what would do; empty: all do.
+std::string why_not_unified(const Shot& shot, const std::string& key) {
+    if (key == "lighting.clusters" && shot.lighting.clusters > 0)
+        return "lamps in the place of the fire need lighting.clusters=0";
+    if (key == "virtual_lights.resampling_neighbours" && shot.virtual_lights.resampling_neighbours > 0)
+        return "pixels reuse what virtual lights alone have chosen: resampling_neighbours=0";
+    if (key == "output.layers.bound" && shot.output.bound_layers)
+        return "what the bound takes is not told apart in one sum of all lights: output.layers.bound=false";
+    return {};
+}
+
+void check_unified_lights(const Given& given, const Shot& shot) {
+    if (shot.unified_lights.sampling == kLightsApart)
+        return;
+    for (const char* key : {"lighting.clusters", "virtual_lights.resampling_neighbours", "output.layers.bound"})
+        if (const std::string why = why_not_unified(shot, key); !why.empty())
+            reject(given, given.contains(key) ? key : "unified_lights.sampling",
+                   fmt::format("does not go with unified_lights.sampling={}: {}; or unified_lights.sampling={}",
+                               shot.unified_lights.sampling, why, kLightsApart));
+}
+
 void check_tracing(const Given& given, const Shot& shot) {
     const TracingSettings& t = shot.tracing;
     if (shot.method == RenderMethod::Path && shot.seconds <= 0.0 && t.samples == 0 && t.seconds <= 0.0 &&
@@ -151,6 +172,7 @@ void check_shot(const Shot& shot, const Given& given, const std::string& source)
         check_look_at(given, shot.camera);
     check_fire(given, shot.medium.fire);
     check_fire_lights(given, shot);
+    check_unified_lights(given, shot);
     check_tracing(given, shot);
     check_scattering(given, shot.scattering);
     check_layers(given, shot);

@@ -18,6 +18,7 @@
 #include "scene/settings.h"
 #include "time_mapping/settings.h"
 #include "tracking/settings.h"
+#include "unified_lights/settings.h"
 #include "virtual_lights/settings.h"
 #include "volume/settings.h"
 
@@ -54,6 +55,7 @@ struct Shot {
     double seconds = 0.0;  // of wall time for a frame, from which settings of least error follow; 0: as they are
     LightingSettings lighting;
     FireLightSettings fire_lights;
+    UnifiedLightSettings unified_lights;
     ScatteringSettings scattering;
     ScatteringMethodSettings scattering_methods;
     VirtualLightSettings virtual_lights;

@@ -36,17 +36,21 @@ LightOfEmitters::Seen LightOfEmitters::at(const SurfaceSample& sample, const Pat
     Seen seen;
     if (!vertex.only_delta())
         choose(sample, vertex, rng, seen);
+    follow_ray(sample, vertex, rng, seen);
+    return seen;
+}
+
+void LightOfEmitters::follow_ray(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng, Seen& seen) const {
     const std::optional<PathVertex::Sample> turn =
         vertex.sample_lobes(lobe_numbers(kLobes, sample, samples_, seed_, rng));
     if (!turn)
-        return seen;
+        return;
     const RaySegment segment = direct_.segment_along(vertex.leaving(turn->wi));
     seen.distance = segment.end;
     const Rgb light = direct_.at_end(segment, turn->pdf, turn->delta, &vertex);
     if (light != Rgb(0.0f))
         seen.add(turn->weight * light * float(direct_.lines().transmittance(segment.ray, segment.end, rng)),
                  segment.hit ? 0.0f : even_share(turn->wi));
-    return seen;
 }
 
 }  // namespace brisance

@@ -30,8 +30,15 @@ public:
         }
     };
     Seen at(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng) const;
+    // What a ray by BSDF alone brings of that, weighted against the other.
+    Seen by_ray(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng) const {
+        Seen seen;
+        follow_ray(sample, vertex, rng, seen);
+        return seen;
+    }
 
 private:
+    void follow_ray(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng, Seen& seen) const;
     void choose(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng, Seen& seen) const;
     float even_share(const dvec3& direction) const { return direct_.surroundings()->emitters().even_share(direction); }
 

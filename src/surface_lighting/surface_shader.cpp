@@ -133,7 +133,8 @@ VirtualLights::Shading SurfaceShader::shading(ShadedPoint& at) const {
             &at.vertices,
             nullptr,
             nullptr,
-            input_.bound ? &at.bound : nullptr};
+            input_.bound ? &at.bound : nullptr,
+            input_.unified != nullptr};
 }
 
 // What the sample itself shows; the rest is left to all pixels, where they share it.
@@ -190,6 +191,8 @@ SharedBounce::Sample SurfaceShader::shared_sample(const SurfaceSample& sample, c
 // Even light from infinity that the base reflects is left to all pixels, where they share it.
 Rgb SurfaceShader::from_emitters(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng,
                                  ShadedPoint& at) const {
+    if (input_.unified)
+        return emitters_.by_ray(sample, vertex, rng).all();
     const SurfacePoint& point = at.seen.point;
     const Bsdf base(point.material, point.frame, Lobes::Base);
     const Rgb albedo = input_.shared_sky && at.seen.mirrors == 0 ? base.base_albedo(-at.seen.arriving) : Rgb(0.0f);
@@ -204,18 +207,34 @@ Rgb SurfaceShader::from_emitters(const SurfaceSample& sample, const PathVertex& 
     return of_base.other + emitters_.at(sample, PathVertex(point, others, at.seen.arriving), rng).all();
 }
 
-// By the fire's single lights. What the grid holds of the fire then serves panes alone.
-Rgb SurfaceShader::base_from_fire(const SurfaceSample& sample, const ShadedPoint& at) const {
+std::optional<PathVertex> SurfaceShader::base_of(const ShadedPoint& at) const {
     const SurfacePoint& point = at.seen.point;
     if (!has_base(point.material))
+        return std::nullopt;
+    return PathVertex(point, Bsdf(point.material, point.frame, Lobes::Base), at.seen.arriving);
+}
+
+// By the fire's single lights. What the grid holds of the fire then serves panes alone.
+Rgb SurfaceShader::base_from_fire(const SurfaceSample& sample, const ShadedPoint& at) const {
+    const std::optional<PathVertex> vertex = base_of(at);
+    if (!vertex)
         return Rgb(0.0f);
-    const PathVertex vertex(point, Bsdf(point.material, point.frame, Lobes::Base), at.seen.arriving);
     Rng rng = input_.fire->surface_rng(sample.pixel, sample.number);
-    return input_.fire->on_surface(vertex, rng);
+    return input_.fire->on_surface(*vertex, rng);
+}
+
+void SurfaceShader::add_unified(const SurfaceSample& sample, const PathVertex& vertex, const ShadedPoint& at,
+                                CellSum& out) const {
+    const std::optional<PathVertex> base = base_of(at);
+    Rng rng = input_.unified->rng(sample.pixel, sample.number);
+    const LightBySender light = input_.unified->at({vertex, base ? &*base : nullptr}, rng);
+    out.at(Cell::SV) += light.fire;
+    out.at(Cell::SS) += light.surfaces;
+    out.at(Cell::SA) += light.emitters;
 }
 
 void SurfaceShader::add_base(const BaseLight& base, const ShadedPoint& at, CellSum& out) const {
-    const Rgb fire = input_.fire ? Rgb(0.0f) : base.from_fire;  // else the single lights' (base_from_fire)
+    const Rgb fire = sampled_fire() ? Rgb(0.0f) : base.from_fire;  // else the single lights'
     if (at.seen.mirrors > 0) {
         out.at(Cell::SS) += at.seen.throughput * (fire + base.from_smoke + base.through_panes);
         return;
@@ -233,6 +252,8 @@ void SurfaceShader::shade_point(const SurfaceSample& sample, ShadedPoint& at, Ce
         out.at(Cell::SV) += base_from_fire(sample, at);
     reflect_scattered(sample, at, rng, out);
     const PathVertex vertex(point, at.seen.arriving);
+    if (input_.unified)
+        add_unified(sample, vertex, at, out);
     if (input_.needed.contains(Cell::SA))
         out.at(Cell::SA) += from_emitters(sample, vertex, rng, at);
     if (!input_.needed.contains(Cell::SS))

@@ -7,10 +7,10 @@
 // base and also shine along those rays; ray lights and rays share the glossy reflection of multiple scattering
 // (gloss_split.h). The grid gives the glossy reflection of single scattering without noise.
 //
-// SA: light_of_emitters.h. SS: the virtual lights or, without them, paths.
-// Behind mirrors and clear glass the same estimators are used at the first surface that scatters (mirrors.h), and all
-// of that light is SS. Light of fire and smoke that comes straight through panes (panes.h) is SS, too; base and other
-// lobes sample it by the same two techniques.
+// SA: light_of_emitters.h. Lights of all kinds may be chosen together instead (unified_lights.h), for SV of the base,
+// SS and SA. SS: the virtual lights or, without them, paths. Behind mirrors and clear glass the same estimators are
+// used at the first surface that scatters (mirrors.h), and all of that light is SS. Light of fire and smoke that comes
+// straight through panes (panes.h) is SS, too; base and other lobes sample it by the same two techniques.
 #pragma once
 
 #include <span>
@@ -34,6 +34,7 @@
 #include "surface_lighting/screen_space_compensation.h"
 #include "surface_lighting/shared_bounce.h"
 #include "surface_lighting/surface_rounds.h"
+#include "unified_lights/unified_lights.h"
 #include "virtual_lights/virtual_lights.h"
 
 namespace brisance {
@@ -59,9 +60,10 @@ struct SurfaceLightingInput {
     LightReuse* reuse = nullptr;                      // gets what samples chose of the lights; null: they keep it
     // Gets what all samples show; null: the bound's loss is not looked for on the screen. Not beside `reuse`.
     ScreenSpaceCompensation* compensation = nullptr;
-    const SampledFire* fire = nullptr;  // owns SV of the base; null: the lighting grid does
-    BoundAccount* bound = nullptr;      // gets what the bound of point lights does to SS; null: nobody asks
-    std::uint32_t seed = 0;             // pictures of different seeds share no random numbers
+    const SampledFire* fire = nullptr;       // owns SV of the base; null: the lighting grid does, or these:
+    const UnifiedLights* unified = nullptr;  // own SV of the base, SS and SA; null: each kind of light by itself
+    BoundAccount* bound = nullptr;           // gets what the bound of point lights does to SS; null: nobody asks
+    std::uint32_t seed = 0;                  // pictures of different seeds share no random numbers
 };
 
 class SurfaceShader {
@@ -81,7 +83,9 @@ private:
     void shade_sample(const SurfaceSample& sample, ShadedPoint& at, CellSum& light) const;
     void shade_point(const SurfaceSample& sample, ShadedPoint& at, CellSum& light) const;
     Rgb from_emitters(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng, ShadedPoint& at) const;
+    std::optional<PathVertex> base_of(const ShadedPoint& at) const;
     Rgb base_from_fire(const SurfaceSample& sample, const ShadedPoint& at) const;
+    void add_unified(const SurfaceSample& sample, const PathVertex& vertex, const ShadedPoint& at, CellSum& out) const;
     Rgb from_virtual_lights(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng, ShadedPoint& at) const;
     SharedBounce::Sample shared_sample(const SurfaceSample& sample, const Bsdf& lobes, Lobes which, const Rgb& colour,
                                        float lobe, Rng& rng, ShadedPoint& at) const;
@@ -95,7 +99,9 @@ private:
     void reflect_scattered(const SurfaceSample& sample, ShadedPoint& at, Rng& rng, CellSum& light) const;
 
     // Whether fire or smoke shines.
-    bool medium_shines() const { return input_.medium_lighting || input_.fire; }
+    bool medium_shines() const { return input_.medium_lighting || sampled_fire(); }
+    // Whether single lights of the fire light the base.
+    bool sampled_fire() const { return input_.fire || input_.unified; }
 
     // Virtual lights in the smoke do not account for panes, nor do paths without virtual lights.
     bool samples_through_panes() const {

@@ -70,21 +70,24 @@ float DirectLight::weight_of_sample(float fire_lines, const Ray& ray, double pdf
 
 Rgb DirectLight::from_emitters(const PathVertex& vertex, double choice, Rng& rng, ChosenEmitter* chosen) const {
     const std::optional<EmitterSample> light = surroundings_->emitters().sample(vertex.lit(), choice, rng);
-    if (!light)
-        return Rgb(0.0f);
-    const PathVertex::Value scattered = vertex.at(light->direction);
+    return light ? from_sample(vertex, *light, rng, chosen) : Rgb(0.0f);
+}
+
+Rgb DirectLight::from_sample(const PathVertex& vertex, const EmitterSample& light, Rng& rng,
+                             ChosenEmitter* chosen) const {
+    const PathVertex::Value scattered = vertex.at(light.direction);
     if (scattered.value == Rgb(0.0f))
         return Rgb(0.0f);
-    double end = light->distance;
+    double end = light.distance;
     const bool near = std::isfinite(end);
-    const Ray ray = near ? vertex.toward(light->end, end) : vertex.leaving(light->direction);
+    const Ray ray = near ? vertex.toward(light.end, end) : vertex.leaving(light.direction);
     if (surroundings_->intersector().occluded(ray, end))
         return Rgb(0.0f);
     if (chosen)
-        *chosen = {!near && light->pdf > 0.0, light->direction};
+        *chosen = {!near && light.pdf > 0.0, light.direction};
     const double seen = lines_.transmittance(ray, end, rng);
-    const double weight = light->pdf > 0.0 ? light->pdf / (light->pdf + scattered.pdf) : 1.0;
-    return scattered.value * light->weight * float(seen * weight);
+    const double weight = light.pdf > 0.0 ? light.pdf / (light.pdf + scattered.pdf) : 1.0;
+    return scattered.value * light.weight * float(seen * weight);
 }
 
 Rgb DirectLight::at_end(const RaySegment& segment, double pdf, bool delta, const PathVertex* from) const {

@@ -63,6 +63,9 @@ public:
         dvec3 direction{0.0};        // unit, toward it
     };
     Rgb from_emitters(const PathVertex& vertex, double choice, Rng& rng, ChosenEmitter* chosen = nullptr) const;
+    // Of one sample of an emitter, however it was chosen.
+    Rgb from_sample(const PathVertex& vertex, const EmitterSample& light, Rng& rng,
+                    ChosenEmitter* chosen = nullptr) const;
     // Radiance [W/(m^2 sr)] that the surface at the segment's end, or the background, emits, weighted against
     // from_emitters(). `pdf` and `delta`: of the direction; `from`: the vertex that sampled it, null: the camera.
     Rgb at_end(const RaySegment& segment, double pdf, bool delta, const PathVertex* from) const;

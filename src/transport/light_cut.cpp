@@ -31,6 +31,51 @@ double share_by_distances(const NodeBound& left, const NodeBound& right) {
 }
 
 // Children have greater numbers than their parents.
+std::vector<NodeLimit> limits_of_nodes(const LightTree& tree, const LightLimits& of_lights) {
+    if (of_lights.least2.empty())
+        return {};
+    // Intensity over squared distance: infinite where a light is not bounded.
+    std::vector<double> most(tree.node_count());
+    std::vector<LightBounds> boxes(tree.node_count());
+    std::vector<NodeLimit> out(tree.node_count());
+    for (auto node = static_cast<std::uint32_t>(out.size()); node-- > 0;) {
+        const double intensity = tree.lights(node).intensity();
+        if (tree.is_leaf(node)) {
+            boxes[node] = of_lights.bounds[tree.light(node)];
+            most[node] = intensity > 0.0 ? intensity / of_lights.least2[tree.light(node)] : 0.0;
+        } else {
+            boxes[node] = united(boxes[tree.left(node)], boxes[tree.right(node)]);
+            most[node] = most[tree.left(node)] + most[tree.right(node)];
+        }
+        const LightBounds& box = boxes[node];
+        out[node] = {0.5 * (box.low + box.high), 0.5 * (box.high - box.low),
+                     most[node] > 0.0 ? static_cast<float>(intensity / most[node]) : 0.0f, box.distance > 0.0};
+    }
+    return out;
+}
+
+// A cosine is at most the height over the plane, over the least distance: a second bound beside that by the cone of
+// directions, which is all of them where the vertex lies among the lights. Rounding lifts lights of the plane that it
+// lies in: they keep a little, since a random choice must not lose them.
+void VertexBounds::limit(std::uint32_t node, NodeBound& out) const {
+    constexpr double kLeastCosine = 1e-4, kRounding = 1e-6;
+    const NodeLimit& limit = limits_[node];
+    const LitPoint& point = vertex_.lit();
+    if (!limit.far && point.kind == LitPoint::Kind::Surface) {
+        const double height = limit.height(point.position, point.normal), nearest = std::sqrt(out.nearest2);
+        double cosine = 1.0;
+        if (height <= 0.0)
+            cosine = 0.0;
+        else if (height < kRounding * std::sqrt(out.farthest2))
+            cosine = kLeastCosine;
+        else if (height < nearest)
+            cosine = height / nearest;
+        out.scattered = std::min(out.scattered, tree_.lights(node).intensity() * everywhere_ * cosine);
+    }
+    out.keep_off(limit.least2);
+}
+
+// Children have greater numbers than their parents.
 std::vector<std::uint32_t> representatives(const LightTree& tree, std::uint32_t seed) {
     std::vector<std::uint32_t> out(tree.node_count());
     for (auto node = static_cast<std::uint32_t>(out.size()); node-- > 0;) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "emitters/light_tree.h"
@@ -25,6 +26,12 @@ struct NodeBound {
         return extinction > 0.0 ? scattered * guessed_transmittance(extinction * std::sqrt(distance2)) : scattered;
     }
 
+    // For lights that are bounded nearby as if they were no nearer than that [m^2].
+    void keep_off(double least2) {
+        nearest2 = std::max(nearest2, least2);
+        farthest2 = std::max(farthest2, nearest2);
+    }
+
     // Upper bound on what the vertex scatters of them without occlusion [W/(m^2 sr)]. It is finite also inside their
     // box: lights count as no nearer than a thousandth of the farthest distance.
     double largest() const {
@@ -43,22 +50,56 @@ inline NodeBound bound_in_box(const LightCone& lights, const ScatteringBound& sc
     return out;
 }
 
+// Beside a tree, for cuts through lights of all kinds: nodes around a vertex have no other bound, and lights of the
+// surface that it lies on would get all of a small cut.
+struct LightLimits {
+    std::vector<LightBounds> bounds;  // of each light
+    // At which each light counts as being, however near it is: it sends its intensity over that at most [m^2].
+    std::vector<double> least2;
+};
+
+// The same for a node. Its lights together send at most the sum of I / least2, which is its I over its own least2.
+struct NodeLimit {
+    dvec3 middle{0.0}, half{0.0};  // of the box of its lights [m]
+    float least2 = 0.0f;
+    bool far = false;  // lights at infinity are among them
+
+    // How far they reach above a plane at most [m].
+    double height(const dvec3& point, const dvec3& normal) const {
+        return glm::dot(normal, middle - point) + glm::dot(glm::abs(normal), half);
+    }
+};
+
+// For every node; none without limits.
+std::vector<NodeLimit> limits_of_nodes(const LightTree& tree, const LightLimits& of_lights);
+
 // The bounds of all nodes for one vertex.
 class VertexBounds {
 public:
-    // Keeps references.
-    VertexBounds(const LightTree& tree, const PathVertex& vertex, double extinction)
-        : tree_(tree), vertex_(vertex), bsdf_(vertex.bound()), extinction_(extinction) {}
+    // Keeps references. `limits`: limits_of_nodes(), or empty.
+    VertexBounds(const LightTree& tree, const PathVertex& vertex, double extinction,
+                 std::span<const NodeLimit> limits = {})
+        : tree_(tree), vertex_(vertex), bsdf_(vertex.bound()), extinction_(extinction), limits_(limits) {
+        if (!limits_.empty())
+            everywhere_ = bsdf_.over({0.0, 0.0, 1.0}, -1.0);
+    }
 
     NodeBound of(std::uint32_t node) const {
-        return bound_in_box(tree_.lights(node), bsdf_, vertex_.position(), dvec3(0.0), extinction_);
+        NodeBound out = bound_in_box(tree_.lights(node), bsdf_, vertex_.position(), dvec3(0.0), extinction_);
+        if (!limits_.empty() && out.scattered > 0.0)
+            limit(node, out);
+        return out;
     }
 
 private:
+    void limit(std::uint32_t node, NodeBound& out) const;
+
     const LightTree& tree_;
     const PathVertex& vertex_;
     ScatteringBound bsdf_;
     double extinction_;
+    std::span<const NodeLimit> limits_;
+    double everywhere_ = 0.0;  // bound of the BSDF over all directions
 };
 
 // One node of a cut. A cut is a heap: the node whose lights may err most stands first. Leaves do not err.

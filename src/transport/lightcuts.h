@@ -23,8 +23,9 @@ namespace brisance {
 
 class Lightcut {
 public:
-    Lightcut(LightTree tree, std::uint32_t seed, double error, int most)
+    Lightcut(LightTree tree, std::uint32_t seed, double error, int most, const LightLimits& limits = {})
         : tree_(std::move(tree)),
+          limits_(limits_of_nodes(tree_, limits)),
           representatives_(brisance::representatives(tree_, seed)),
           error_(error),
           most_(static_cast<std::size_t>(most)) {}
@@ -36,7 +37,7 @@ public:
     Light at(const PathVertex& vertex, const LightOf& light_of, double extinction = 0.0) const {
         if (tree_.empty())
             return Light(Rgb(0.0f));
-        const VertexBounds bounds(tree_, vertex, extinction);
+        const VertexBounds bounds(tree_, vertex, extinction, limits_);
         using Node = Represented<Light>;
         thread_local std::vector<Node> cut;
         cut.clear();
@@ -68,7 +69,9 @@ public:
     double error() const { return error_; }
     std::size_t most() const { return most_; }
 
-    std::uint64_t bytes() const { return tree_.bytes() + representatives_.size() * sizeof(std::uint32_t); }
+    std::uint64_t bytes() const {
+        return tree_.bytes() + representatives_.size() * sizeof(std::uint32_t) + limits_.size() * sizeof(NodeLimit);
+    }
 
 private:
     template <class Light>
@@ -77,6 +80,7 @@ private:
     };
 
     LightTree tree_;
+    std::vector<NodeLimit> limits_;
     std::vector<std::uint32_t> representatives_;
     double error_;
     std::size_t most_;

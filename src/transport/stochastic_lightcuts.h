@@ -23,7 +23,8 @@ namespace brisance {
 class StochasticLightcut {
 public:
     // `size`: nodes of a cut.
-    StochasticLightcut(LightTree tree, int size) : tree_(std::move(tree)), size_(size) {}
+    StochasticLightcut(LightTree tree, int size, const LightLimits& limits = {})
+        : tree_(std::move(tree)), limits_(limits_of_nodes(tree_, limits)), size_(size) {}
 
     // What the vertex scatters of all lights. estimate(light, probability): of one that is chosen so, weighted;
     // Rgb or what adds up likewise. `extinction`: of smoke that is taken to be all around the vertex [1/m].
@@ -31,7 +32,7 @@ public:
     Light at(const PathVertex& vertex, Rng& rng, const Estimate& estimate, double extinction = 0.0) const {
         if (tree_.empty())
             return Light(Rgb(0.0f));
-        const VertexBounds bounds(tree_, vertex, extinction);
+        const VertexBounds bounds(tree_, vertex, extinction, limits_);
         thread_local std::vector<CutNode> cut;
         cut.assign(1, {0, tree_.is_leaf(0) ? 0.0 : bounds.of(0).largest()});
         refine_cut(
@@ -53,10 +54,11 @@ public:
         return sum;
     }
 
-    std::uint64_t bytes() const { return tree_.bytes(); }
+    std::uint64_t bytes() const { return tree_.bytes() + limits_.size() * sizeof(NodeLimit); }
 
 private:
     LightTree tree_;
+    std::vector<NodeLimit> limits_;
     int size_;
 };
 

@@ -102,11 +102,12 @@ public:
           panes_(how.panes),
           smoke_(smoke),
           reservoir_(how.reservoir),
+          lights_apart_(how.lights_apart),
           bound_(how.bound),
           lamps_along_(scene_.has_emitters() && aims_at_lamps(scene_) && !scene_.field().bricks().empty()) {}
 
     Rgb own_lights(const PathState& state, Rng& rng) {
-        if (!lights_.samples_lights() || state.vertex.only_delta())
+        if (!lights_.samples_lights() || state.vertex.only_delta() || apart(state))
             return Rgb(0.0f);
         return bound_
             .lights(state.order == 1,
@@ -167,7 +168,7 @@ public:
         const LightSet::Ending held = lights_.ending(seen, step.sample->pdf);
         const double share_kept = lights_.share_kept(state.vertex, step.segment), kept = held.path * share_kept;
         const auto given = static_cast<float>(held.light * share_kept);
-        if (given > 0.0f)
+        if (given > 0.0f && !apart(state))
             add(next.throughput * given * lights_.at_end_of_ray(state.vertex, seen, step.sample->pdf));
         bound_.goes_on(held.path, kept);
         next.throughput *= 1.0f - static_cast<float>(kept);
@@ -184,6 +185,9 @@ public:
     const std::optional<double>& first_end() const { return first_end_; }  // of the first ray, on a surface [m]
 
 private:
+    // Whether others light that vertex by the lights.
+    bool apart(const PathState& state) const { return lights_apart_ && state.order == 1; }
+
     void add(const Rgb& light) {
         sum_ += light;
         bound_.light(light);
@@ -207,6 +211,7 @@ private:
     Panes panes_;
     const LitSmoke* smoke_;      // null: paths walk through the smoke
     LightReservoir* reservoir_;  // of the receiver; null: it gathers its light at once
+    bool lights_apart_;          // from the receiver
     BoundWatch bound_;
     bool lamps_along_;          // estimate lamps along segments, not at vertices in the medium
     bool receiver_lit_ = true;  // by the medium along the current segment

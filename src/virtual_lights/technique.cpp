@@ -149,6 +149,7 @@ constexpr std::size_t kGathererCount = std::tuple_size_v<decltype(kGatherers)>;
 // A kind of light with a flux: whether there is such a thing, and what gatherers need to know of it.
 struct KindWithFlux {
     void (*fit)(LightSet&) = nullptr;  // null: the kind needs what the flux does not have
+    decltype(Technique::single) single = nullptr;
     bool hittable = false, bounded = false;
     std::array<decltype(Technique::gather), kGathererCount> gather{};  // null: the gatherer needs what the kind lacks
 };
@@ -168,7 +169,7 @@ constexpr KindWithFlux kind_with_flux() {
     if constexpr (requires { typename Family::template Of<Flux>; }) {
         using Kind = typename Family::template Of<Flux>;
         static_assert(VirtualLightKind<Kind>);
-        return {Kind::fit, Hittable<Kind>, Bounded<Kind>,
+        return {Kind::fit, single_lights_of<Kind>, Hittable<Kind>, Bounded<Kind>,
                 std::apply(
                     [](const auto&... row) {
                         return std::array{gather_from<typename std::decay_t<decltype(row)>::Type, Kind>()...};
@@ -388,7 +389,8 @@ Technique technique_of(const VirtualLightSettings& settings) {
     const Chosen c = chosen(settings);
     constexpr auto kBuild = std::apply(
         [](const auto&... row) { return std::array{&std::decay_t<decltype(row)>::Type::build...}; }, kFluxes);
-    return {&kPlacements[c.placement], kBuild[c.flux], c.with_flux().fit, c.with_flux().gather[c.gatherer]};
+    return {&kPlacements[c.placement], kBuild[c.flux], c.with_flux().fit, c.with_flux().gather[c.gatherer],
+            c.with_flux().single};
 }
 
 bool has_positions(const VirtualLightSettings& settings) {

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "virtual_lights/gatherers/gatherer.h"
+#include "virtual_lights/gatherers/single_lights.h"
 #include "virtual_lights/placement/placement.h"
 
 namespace brisance {
@@ -16,6 +17,8 @@ struct Technique {
     void (*fit)(LightSet& set);
     // Of a set that outlives it.
     std::unique_ptr<Gatherer> (*gather)(const LightSet& set, LightImportance importance);
+    // The same lights one by one.
+    std::unique_ptr<SingleLights> (*single)(const LightSet& set);
 };
 
 // Throws Error Usage for settings that check() refuses.

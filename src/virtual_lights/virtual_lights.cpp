@@ -17,6 +17,7 @@ VirtualLights::VirtualLights(const DirectLight& scene, const PixelCamera& camera
     if (!set_->lights.empty())
         technique.fit(*set_);
     gatherer_ = technique.gather(*set_, technique.placement->importance);
+    single_ = technique.single;
     if (!built)
         return;
     VirtualLightReport& report = set_->report;

@@ -19,6 +19,7 @@
 #include <memory>
 
 #include "virtual_lights/gatherers/gatherer.h"
+#include "virtual_lights/gatherers/single_lights.h"
 #include "virtual_lights/light_set.h"
 #include "virtual_lights/lit_smoke.h"
 
@@ -44,6 +45,7 @@ public:
     // surface which the first ray of the path meets [m], or stays as it is.
     // `reservoir`: becomes what the vertex itself has chosen of the lights, where reservoirs() is not null; that light
     // is missing in the sum then.
+    // `lights_apart`: the caller lights the vertex by each_light(); the lights' share is missing in the sum then.
     // `bound`: gets what the bound of point lights and its compensation do to the sum; processor time is taken for it.
     enum class Panes { Followed, Sampled };
     struct Shading {
@@ -54,6 +56,7 @@ public:
         double* distance = nullptr;
         LightReservoir* reservoir = nullptr;
         BoundTally* bound = nullptr;
+        bool lights_apart = false;
     };
     Rgb shade(const PathVertex& vertex, Rng& rng, const Shading& how) const;
     Rgb shade(const PathVertex& vertex, Rng& rng) const { return shade(vertex, rng, Shading{}); }
@@ -62,6 +65,8 @@ public:
     const ReservoirLights* reservoirs() const { return set_->lights.empty() ? nullptr : gatherer_->reservoirs(); }
 
     const std::vector<VirtualLight>& lights() const { return set_->lights; }
+    // One by one, for those who choose among them together with other lights. May not outlive these.
+    std::unique_ptr<const SingleLights> each_light() const { return single_(*set_); }
     // Radiance of a light of its own surface's colour [W/(m^2 sr)]. `toward`: unit, world.
     Rgb radiance(const VirtualLight& light, const dvec3& toward) const { return set_->radiance(light, toward); }
     // How many lights cover a point where a ray has met a surface, up to LightShares::kMost; 0: paths continue there.
@@ -93,6 +98,7 @@ private:
     bool shines_ = false;
     std::unique_ptr<LightSet> set_;  // outlives the gatherer, which refers to it
     std::unique_ptr<const Gatherer> gatherer_;
+    std::unique_ptr<SingleLights> (*single_)(const LightSet&);
 };
 
 }  // namespace brisance

@@ -1,9 +1,11 @@
 #include "built_in_methods.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "fire_lights/samplings.h"
 #include "scattering_methods/methods.h"
+#include "unified_lights/samplings.h"
 #include "virtual_lights/choices.h"
 
 namespace brisance {
@@ -36,6 +38,23 @@ void add_fire_lights(std::vector<BuiltIn>& methods) {
                                 std::string("fire_lights.sampling=") + row.name},
                                StepsOf::Samples,
                                {Cell::MV, Cell::SV}});
+}
+
+// Every way to choose among lights of all kinds together that a suite can wait for, with the lights of instant
+// radiosity.
+void add_unified_lights(std::vector<BuiltIn>& methods) {
+    const auto& presets = light_presets();
+    const auto lights = std::find_if(presets.begin(), presets.end(), [](const auto& p) { return p.name == "vpl"; });
+    for (const UnifiedLightSampling& row : unified_light_samplings()) {
+        if (row.asks_every_light)
+            continue;
+        BuiltIn method = by_virtual_lights(*lights);
+        method.name = std::string("unified_") + row.name;
+        method.settings.insert(method.settings.end(),
+                               {"scattering.method=lighting_grid", std::string("unified_lights.sampling=") + row.name});
+        method.cells = {Cell::SV, Cell::SS, Cell::SA};
+        methods.push_back(std::move(method));
+    }
 }
 
 // The presets of all scattering methods.
@@ -84,6 +103,7 @@ std::vector<BuiltIn> make_built_ins() {
          false,
          true}};
     add_fire_lights(methods);
+    add_unified_lights(methods);
     add_scattering_methods(methods);
     return methods;
 }

@@ -27,7 +27,8 @@ MomentLights::MomentLights(const ManyLights& lights)
       paths_(lights.paths()),
       direct_(lights.direct()),
       fire_(lights.fire()),
-      fire_on_surfaces_(lights.fire_on_surfaces()) {}
+      fire_on_surfaces_(lights.fire_on_surfaces()),
+      unified_(lights.unified()) {}
 
 MomentLights::MomentLights(const DrawInput& input, const ManyLights& lights, const OpenShutter& shutter,
                            const Instant& lit, const Instant& moment)
@@ -43,8 +44,16 @@ MomentLights::MomentLights(const DrawInput& input, const ManyLights& lights, con
     }
     if (moment.medium != lit.medium || moment.surroundings != lit.surroundings)
         follow_paths(input, lights, moment);
-    if (lights.fire() && direct_ != lights.direct())
-        follow_fire(input, lights, moment);
+    if (direct_ == lights.direct())
+        return;
+    if (lights.surfaces_see_similar()) {
+        const Medium& similar = *(moved_ ? moved_->similar() : lights.medium().similar());
+        own_similar_direct_.emplace(similar, input.shot.tracing, moment.surroundings);
+    }
+    if (lights.fire())
+        follow_fire(input, lights);
+    if (lights.unified())
+        follow_unified(input, lights);
 }
 
 void MomentLights::follow_paths(const DrawInput& input, const ManyLights& lights, const Instant& moment) {
@@ -59,16 +68,25 @@ void MomentLights::follow_paths(const DrawInput& input, const ManyLights& lights
     }
 }
 
-void MomentLights::follow_fire(const DrawInput& input, const ManyLights& lights, const Instant& moment) {
+void MomentLights::follow_fire(const DrawInput& input, const ManyLights& lights) {
     const FireLightSampling& sampling = *input.plan.fire_sampling;
     own_fire_.emplace(*direct_, sampling, input.shot.fire_lights);
-    fire_ = fire_on_surfaces_ = &*own_fire_;
-    if (!lights.surfaces_see_similar())
+    fire_ = &*own_fire_;
+    if (!lights.fire_on_surfaces())
         return;
-    const Medium& similar = *(moved_ ? moved_->similar() : lights.medium().similar());
-    own_similar_direct_.emplace(similar, input.shot.tracing, moment.surroundings);
+    fire_on_surfaces_ = fire_;
+    if (!own_similar_direct_)
+        return;
     own_fire_in_similar_.emplace(*own_similar_direct_, sampling, input.shot.fire_lights);
     fire_on_surfaces_ = &*own_fire_in_similar_;
+}
+
+void MomentLights::follow_unified(const DrawInput& input, const ManyLights& lights) {
+    own_unified_ =
+        std::make_unique<UnifiedLights>(*direct_, own_similar_direct_ ? *own_similar_direct_ : *direct_,
+                                        lights.virtual_lights(), input.shot.virtual_lights.point_bound,
+                                        input.plan.needed, *input.plan.unified_sampling, input.shot.unified_lights);
+    unified_ = own_unified_.get();
 }
 
 }  // namespace brisance

@@ -41,10 +41,12 @@ public:
     // Of this moment, as those of ManyLights.
     const SampledFire* fire() const { return fire_; }
     const SampledFire* fire_on_surfaces() const { return fire_on_surfaces_; }
+    const UnifiedLights* unified() const { return unified_; }
 
 private:
     void follow_paths(const DrawInput& input, const ManyLights& lights, const Instant& moment);
-    void follow_fire(const DrawInput& input, const ManyLights& lights, const Instant& moment);
+    void follow_fire(const DrawInput& input, const ManyLights& lights);
+    void follow_unified(const DrawInput& input, const ManyLights& lights);
 
     std::unique_ptr<MovedField> moved_, moved_once_;
     std::optional<PathTracer> own_paths_;
@@ -56,6 +58,8 @@ private:
     std::optional<DirectLight> own_similar_direct_;
     std::optional<SampledFire> own_fire_, own_fire_in_similar_;
     const SampledFire *fire_, *fire_on_surfaces_;
+    std::unique_ptr<UnifiedLights> own_unified_;
+    const UnifiedLights* unified_;
 };
 
 }  // namespace brisance

@@ -28,6 +28,7 @@ std::vector<Key> all_keys() {
     add_lighting_keys(keys);
     add_fire_light_keys(keys);
     add_virtual_light_keys(keys);
+    add_unified_light_keys(keys);
     add_tracing_keys(keys);
     add_certify_keys(keys);
     add_output_keys(keys);
@@ -55,11 +56,13 @@ Sections all_sections() {
         {"scattering", "light scattered more than once"}};
     for (const ScatteringMethod& method : scattering_methods())
         sections.emplace_back(method.name, method.product + ", of scattering.method " + method.name);
-    const Sections rest = {{"virtual_lights", "light that surfaces reflect onto surfaces and smoke"},
-                           {"tracing", "the reference path tracer (method path)"},
-                           {"certify", "how far the finished frame is from the truth"},
-                           {"output", "what is written"},
-                           {"output.layers", "layers of the EXR besides the beauty"}};
+    const Sections rest = {
+        {"virtual_lights", "light that surfaces reflect onto surfaces and smoke"},
+        {"unified_lights", "light on surfaces, from all of virtual lights, fire and emitters chosen together"},
+        {"tracing", "the reference path tracer (method path)"},
+        {"certify", "how far the finished frame is from the truth"},
+        {"output", "what is written"},
+        {"output.layers", "layers of the EXR besides the beauty"}};
     sections.insert(sections.end(), rest.begin(), rest.end());
     return sections;
 }
@@ -70,8 +73,8 @@ Affects affected_by(const std::string& path) {
     // Leaving out orders of scattering changes what is true.
     if (path == "scattering.bounces")
         return Affects::Picture;
-    for (const char* section :
-         {"lighting.", "fire_lights.", "scattering.", "virtual_lights.", "tracing.", "certify.", "output."})
+    for (const char* section : {"lighting.", "fire_lights.", "scattering.", "virtual_lights.", "unified_lights.",
+                                "tracing.", "certify.", "output."})
         if (path.starts_with(section))
             return Affects::Method;
     for (const ScatteringMethod& method : scattering_methods())

@@ -73,6 +73,7 @@ void add_camera_keys(std::vector<Key>& keys);
 void add_shutter_keys(std::vector<Key>& keys);
 void add_lighting_keys(std::vector<Key>& keys);
 void add_fire_light_keys(std::vector<Key>& keys);
+void add_unified_light_keys(std::vector<Key>& keys);
 void add_scattering_method_keys(std::vector<Key>& keys);
 void add_virtual_light_keys(std::vector<Key>& keys);
 void add_tracing_keys(std::vector<Key>& keys);

@@ -12,9 +12,6 @@
 
 namespace brisance {
 
-// Glossy lights without a profile have a lobe that is many times brighter than their mean. Bounds need its peak; by the
-// peak, most samples would go to lobes that point elsewhere.
-enum class LobeBrightness { Mean, Peak };
 // Virtual lights as a light tree sees them: the boxes of their spheres, their cones, and their largest intensities.
 std::vector<LightBounds> bounds_of(const std::vector<VirtualLight>& lights, LobeBrightness lobes);
 

@@ -1,0 +1,85 @@
+#include "unified_lights/lights_of_all_kinds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "transport/particles.h"
+#include "virtual_lights/gatherers/light_choosers.h"
+
+namespace brisance {
+
+LightsOfAllKinds::LightsOfAllKinds(const DirectLight& scene, const DirectLight& through,
+                                   const VirtualLights* virtual_lights, double point_bound, const CellSet& wanted)
+    : scene_(scene),
+      virtual_lights_(virtual_lights && wanted.contains(Cell::SS) && !virtual_lights->lights().empty() ? virtual_lights
+                                                                                                       : nullptr),
+      point_bound_(point_bound),
+      voxel_volume_(std::abs(glm::determinant(dmat3(through.field().medium().world_from_index)))),
+      fire_(through) {
+    if (virtual_lights_) {
+        single_ = virtual_lights_->each_light();
+        first_voxel_ = virtual_lights_->lights().size();
+    }
+    first_emitter_ = first_voxel_ + (wanted.contains(Cell::SV) ? fire_.size() : 0);
+    if (wanted.contains(Cell::SA) && scene.has_emitters())
+        emitters_.emplace(scene.surroundings()->emitters(), ball_around(scene).radius);
+}
+
+std::vector<LightBounds> LightsOfAllKinds::bounds(LobeBrightness lobes) const {
+    std::vector<LightBounds> out;
+    out.reserve(size());
+    const auto add = [&](const std::vector<LightBounds>& some) { out.insert(out.end(), some.begin(), some.end()); };
+    if (virtual_lights_)
+        add(bounds_of(virtual_lights_->lights(), lobes));
+    if (voxels() > 0)
+        add(fire_.bounds(lobes));
+    if (emitters_)
+        add(emitters_->bounds());
+    return out;
+}
+
+std::vector<double> LightsOfAllKinds::intensity() const {
+    std::vector<double> out;
+    out.reserve(size());
+    for (const LightBounds& light : bounds(LobeBrightness::Mean))
+        out.push_back(light.intensity);
+    return out;
+}
+
+std::vector<double> LightsOfAllKinds::least_squared_distances() const {
+    std::vector<double> out;
+    out.reserve(size());
+    // As for emissive surfaces, with a light's intensity of flux / pi.
+    for (std::size_t i = 0; i < first_voxel_; ++i) {
+        const VirtualLight& light = virtual_lights_->lights()[i];
+        const double r2 = light.radius * light.radius;
+        out.push_back(!(r2 > 0.0)        ? 1.0 / point_bound_
+                      : light.area > 0.0 ? std::min(r2, light.area / std::numbers::pi)
+                                         : r2);
+    }
+    // A ball as large as the voxel: 1 / distance^2 has the mean 3 / a^2 at its middle, a being its radius.
+    const double a = std::cbrt(voxel_volume_ * 0.75 / std::numbers::pi);
+    out.resize(first_emitter_, a * a / 3.0);
+    if (emitters_) {
+        const std::vector<double> of_emitters = emitters_->least_squared_distances();
+        out.insert(out.end(), of_emitters.begin(), of_emitters.end());
+    }
+    return out;
+}
+
+LightBySender LightsOfAllKinds::estimate(std::size_t light, double probability, const UnifiedReceiver& receiver,
+                                         Rng& rng) const {
+    LightBySender out;
+    if (light < first_voxel_) {
+        out.surfaces = single_->estimate(light, probability, receiver.vertex, rng).light;
+    } else if (light < first_emitter_) {
+        if (receiver.base)
+            out.fire = fire_.estimate(light - first_voxel_, probability, *receiver.base, rng);
+    } else if (const auto sample = emitters_->sample(light - first_emitter_, receiver.vertex.lit(), rng)) {
+        out.emitters = scene_.from_sample(receiver.vertex, *sample, rng) / float(probability);
+    }
+    return out;
+}
+
+}  // namespace brisance

@@ -1,0 +1,169 @@
+// Pictures whose SV, SS and SA come from lights of all kinds together: layers add up, other cells stay, and what does
+// not go together is refused.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "fixtures/media.h"
+#include "fixtures/sets.h"
+#include "forecast/plan.h"
+#include "render/render_frame.h"
+#include "shot/read_shot.h"
+
+namespace brisance {
+namespace {
+
+using namespace testing;
+
+constexpr const char* kApart = "none";
+
+Shot small_shot(const std::string& sampling) {
+    Shot shot;
+    shot.camera_given = true;
+    shot.camera.eye = {0.3, -5.0, 1.5};
+    shot.camera.target = {0.0, 0.0, -0.2};
+    shot.camera.vertical_fov_degrees = 40.0;
+    shot.camera.width = shot.camera.height = 8;
+    shot.camera.samples_per_axis = 2;
+    shot.certify.belief = 0.0;
+    shot.scattering_methods.method = kLightingGridMethod;
+    VirtualLightSettings& v = shot.virtual_lights;
+    v.count = 200;
+    v.placement = "light_paths";
+    v.flux = "own";
+    v.kind = "point";
+    v.sampling = "power";
+    v.path_extension = false;
+    v.sharing_radius = 0.0;
+    v.photons = 5000;
+    shot.unified_lights.sampling = sampling;
+    shot.unified_lights.samples = 8;
+    return shot;
+}
+
+Medium smoke() {
+    Recipe r = glowing_ball(4, 2.0f);
+    r.settings.smoke.albedo = Rgb(0.8f);
+    r.flame = [](const ivec3& n) { return n.x < 0 && n.y < 0 ? 1.0f : 0.0f; };
+    return make_medium(r);
+}
+
+// A floor, half a mirror, a wall, a lamp, a sun and a sky.
+Surroundings set_with_lights() {
+    Scene scene;
+    add_quad(scene, {-4, -4, -1.4f}, {8, 0, 0}, {0, 8, 0}, lambert(0.5f));
+    add_quad(scene, {-4, 2, -1.4f}, {8, 0, 0}, {0, 0, 4}, lambert(0.6f));
+    SceneMaterial mirror = lambert(0.9f);
+    mirror.surface.metallic = 1.0f;
+    mirror.surface.roughness = 0.0f;
+    add_quad(scene, {1.2f, -3, -1.3f}, {1.2f, 0, 0}, {0, 4, 0}, mirror);
+    LightSettings lamp, sun, sky;
+    lamp.position = {-1.5, -1.0, 1.0};
+    lamp.power = Rgb(0.6f);
+    sun.kind = LightKind::Sun;
+    sun.direction = {0.5, 0.3, -1.0};
+    sun.power = Rgb(0.2f, 0.3f, 0.5f);
+    sky.kind = LightKind::Environment;
+    sky.power = Rgb(0.1f, 0.15f, 0.2f);
+    return Surroundings(std::move(scene), {lamp, sun, sky});
+}
+
+RenderedFrame rendered(const Shot& shot, const Medium& medium, const Surroundings* set) {
+    Progress silent;
+    return render_medium(shot, medium, silent, set);
+}
+
+std::vector<std::string> all_samplings() {
+    std::vector<std::string> names;
+    for (const UnifiedLightSampling& row : unified_light_samplings())
+        names.emplace_back(row.name);
+    return names;
+}
+
+class UnifiedPictures : public ::testing::TestWithParam<std::string> {};
+
+INSTANTIATE_TEST_SUITE_P(Samplings, UnifiedPictures, ::testing::ValuesIn(all_samplings()),
+                         [](const auto& sampling) { return sampling.param; });
+
+// Cells add up to the picture, pixel by pixel, also behind the mirror; those of the smoke are as without.
+TEST_P(UnifiedPictures, AddUp) {
+    const Medium medium = smoke();
+    const Surroundings set = set_with_lights();
+    const Image unified = rendered(small_shot(GetParam()), medium, &set).image;
+    const Image apart = rendered(small_shot(kApart), medium, &set).image;
+    const Layer& beauty = unified.layer("");
+    const std::size_t channels = beauty.channels.size(), pixels = beauty.pixels.size() / channels;
+    std::vector<double> sums(pixels * 3, 0.0);
+    for (const Layer& layer : unified.layers)
+        if (std::find(kCellNames.begin(), kCellNames.end(), layer.name) != kCellNames.end())
+            for (std::size_t p = 0; p < pixels; ++p)
+                for (std::size_t c = 0; c < 3; ++c)
+                    sums[3 * p + c] += layer.pixels[p * layer.channels.size() + c];
+    for (std::size_t p = 0; p < pixels; ++p)
+        for (std::size_t c = 0; c < 3; ++c)
+            ASSERT_NEAR(beauty.pixels[p * channels + c], sums[3 * p + c], 1e-5 * (1.0 + sums[3 * p + c])) << p;
+    for (const char* cell : {"V", "A", "MV", "MM", "MA", "MS"})
+        EXPECT_EQ(unified.layer(cell).pixels, apart.layer(cell).pixels) << cell;
+    for (const char* cell : {"SV", "SS", "SA"})
+        EXPECT_NE(unified.layer(cell).pixels, apart.layer(cell).pixels) << cell;
+}
+
+TEST_P(UnifiedPictures, AreTheSameOnAnyNumberOfThreads) {
+    const Medium medium = smoke();
+    const Surroundings set = set_with_lights();
+    const auto pixels = [&](int threads) {
+        const ThreadLimit limit(threads);
+        return rendered(small_shot(GetParam()), medium, &set).image.layer("").pixels;
+    };
+    EXPECT_EQ(pixels(1), pixels(3));
+}
+
+// Nothing of the fire is prepared twice: no hierarchy for the base of surfaces, and no choice of the fire's alone.
+TEST(UnifiedPlans, OwnTheFireOnSurfaces) {
+    const Medium medium = smoke();
+    const Surroundings set = set_with_lights();
+    Shot shot = small_shot("stochastic_lightcuts");
+    shot.scattering.bounces = 1;
+    shot.fire_lights.sampling = "light_tree";
+    const Plan plan = plan_cells(shot, medium, &set);
+    ASSERT_NE(plan.unified_sampling, nullptr);
+    EXPECT_TRUE(plan.fire_lights_on_surfaces());
+    EXPECT_NE(plan.fire_sampling, nullptr) << "MV remains its own";
+    const RenderedFrame frame = rendered(shot, medium, &set);
+    const auto stages = [&](const char* name) {
+        return std::count_if(frame.statistics.stages.begin(), frame.statistics.stages.end(),
+                             [&](const StageCost& stage) { return stage.name == name; });
+    };
+    EXPECT_EQ(stages("lights of all kinds"), 1);
+    EXPECT_EQ(stages("lights for surfaces"), 0);
+    EXPECT_EQ(plan_cells(shot, medium).unified_sampling, nullptr) << "no surfaces";
+    shot.method = RenderMethod::Path;
+    EXPECT_EQ(plan_cells(shot, medium, &set).unified_sampling, nullptr);
+}
+
+TEST(UnifiedPlans, RefuseWhatDoesNotGoTogether) {
+    const auto refusal = [](const std::string& other) {
+        try {
+            parse_shot(R"({"volume": {"file": "a.vdb"}, "unified_lights": {"sampling": "lightcuts"}, )" + other + "}",
+                       "a.json", "folder");
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ExitCode::Usage);
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_NE(refusal(R"("lighting": {"clusters": 4})").find("lighting.clusters=0"), std::string::npos);
+    EXPECT_NE(refusal(R"("virtual_lights": {"sampling": "resampled", "resampling_neighbours": 4})")
+                  .find("resampling_neighbours=0"),
+              std::string::npos);
+    EXPECT_NE(refusal(R"("virtual_lights": {"kind": "point", "path_extension": false},
+                         "output": {"layers": {"bound": true}})")
+                  .find("output.layers.bound=false"),
+              std::string::npos);
+    EXPECT_EQ(refusal(R"("fire_lights": {"sampling": "all"})"), "");
+}
+
+}  // namespace
+}  // namespace brisance
