@@ -46,8 +46,6 @@ Case picture(double g) {
     };
     c.measure = like_the_reference(256);
     c.quick = g == 0.9;
-    if (c.quick)  // four standard errors are the tolerance
-        c.paths = {{"ray_lights", 32768}, {"photon_density", 32768}};
     return c;
 }
 
