@@ -1,13 +1,13 @@
 # Run by CTest: one test for each suite of `program`, but for those of its tests that are left out. Most quick tests run
 # in less time than a process takes to start. Variables: `program`; `left_out`, patterns of --gtest_filter behind a minus,
 # or nothing; `prefix`, of the tests' names; `list`, the file that keeps what the program listed; `properties` of each
-# test.
+# test. The file that sets them includes this one.
 if(NOT EXISTS "${program}")
     add_test("${prefix}_NOT_BUILT" "${prefix}_NOT_BUILT")
     return()
 endif()
 if(NOT EXISTS "${list}" OR NOT "${list}" IS_NEWER_THAN "${program}" OR
-    NOT "${list}" IS_NEWER_THAN "${CMAKE_CURRENT_LIST_FILE}")
+    NOT "${list}" IS_NEWER_THAN "${CMAKE_PARENT_LIST_FILE}")
     execute_process(COMMAND "${program}" --gtest_list_tests "--gtest_filter=*${left_out}"
         OUTPUT_FILE "${list}" RESULT_VARIABLE result TIMEOUT 60)
     if(NOT result EQUAL 0)
