@@ -54,7 +54,7 @@ const std::vector<MediaScene> kScenes = {
      0.05,
      "16",
      {},
-     262144,
+     393216,
      {{"", {0.05, 0.15, kSampled}},
       {"MM", {0.05, 0.2, kPaths}},
       {"MS", {0.05, 0.2, kGrid}},

@@ -41,7 +41,6 @@ Shot read(const MediaScene& scene, const std::vector<std::string>& more) {
                                     "lighting.error=0.02",
                                     "virtual_lights.count=1500",
                                     "virtual_lights.photons=200000",
-                                    "volumetric_photons.paths=500000",
                                     "certify.belief=0",
                                     "output.layers.cells=true"};
     set.insert(set.end(), scene.more.begin(), scene.more.end());
