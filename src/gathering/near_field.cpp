@@ -108,14 +108,19 @@ NearField::NearField(const mat3& local_from_index, float radius, bool shadows)
 
 namespace {
 
+// The lattice's nodes at one distance from a node.
+struct Shell {
+    double distance;  // [m]
+    double nodes;
+};
+
 // The lattice corrections by a Gaussian window w: K = w K + (1 - w) K. The part (1 - w) K is smooth, so the lattice
 // sums it without error. Its value at the origin is included: 1 / window^2 for 1/r^2, and 0 for 1/r.
-NearField::SelfKernels windowed_self_kernels(double s, double window, double volume,
-                                             const std::vector<double>& distances) {
+NearField::SelfKernels windowed_self_kernels(double s, double window, double volume, const std::vector<Shell>& shells) {
     double light = 4.0 * kPi * windowed_integral(0, s, window) / volume + 1.0 / (window * window);
     double flux = 4.0 * kPi * windowed_integral(1, s, window) / volume;
-    for (double d : distances) {
-        const double w = std::exp(-s * d - d * d / (window * window));
+    for (const auto& [d, nodes] : shells) {
+        const double w = nodes * std::exp(-s * d - d * d / (window * window));
         light -= w / (d * d);
         flux -= w / d;
     }
@@ -123,18 +128,20 @@ NearField::SelfKernels windowed_self_kernels(double s, double window, double vol
 }
 
 // Corrections for extinction so strong that it serves as the window.
-NearField::SelfKernels direct_self_kernels(double s, double volume, const std::vector<double>& distances) {
+NearField::SelfKernels direct_self_kernels(double s, double volume, const std::vector<Shell>& shells) {
     double light = 4.0 * kPi / (s * volume), flux = 4.0 * kPi / (s * s * volume);
-    for (double d : distances) {
-        light -= std::exp(-s * d) / (d * d);
-        flux -= std::exp(-s * d) / d;
+    for (const auto& [d, nodes] : shells) {
+        const double w = nodes * std::exp(-s * d);
+        light -= w / (d * d);
+        flux -= w / d;
     }
     return {float(light), float(flux / 3.0)};
 }
 
-// Distances of all lattice nodes but the origin within `reach` [m].
-std::vector<double> node_distances(const mat3& local_from_index, double reach) {
-    const mat3 inverse = glm::transpose(glm::inverse(local_from_index));
+// All lattice nodes but the origin within `reach` [m]. A cubic lattice has 65,000 of them within 25 voxels, at 500
+// distances.
+std::vector<Shell> node_shells(const dmat3& local_from_index, double reach) {
+    const dmat3 inverse = glm::transpose(glm::inverse(local_from_index));
     ivec3 nodes;
     for (int a = 0; a < 3; ++a)
         nodes[a] = static_cast<int>(reach * glm::length(inverse[a]));
@@ -142,11 +149,19 @@ std::vector<double> node_distances(const mat3& local_from_index, double reach) {
     for (int x = -nodes.x; x <= nodes.x; ++x)
         for (int y = -nodes.y; y <= nodes.y; ++y)
             for (int z = -nodes.z; z <= nodes.z; ++z) {
-                const double d = glm::length(local_from_index * vec3(x, y, z));
+                const double d = glm::length(local_from_index * dvec3(x, y, z));
                 if (d > 0.0 && d < reach)
                     distances.push_back(d);
             }
-    return distances;
+    std::sort(distances.begin(), distances.end());
+    constexpr double kSame = 1.0 + 1e-6;  // rounding of the lattice's vectors parts what is one distance
+    std::vector<Shell> shells;
+    for (const double d : distances) {
+        if (shells.empty() || d > shells.back().distance * kSame)
+            shells.push_back({d, 0.0});
+        shells.back().nodes += 1.0;
+    }
+    return shells;
 }
 
 }  // namespace
@@ -158,15 +173,15 @@ void NearField::tabulate_self_kernel() {
         longest = std::max(longest, double(glm::length(local_from_index_[a])));
     const bool nearly_cubic = longest < 3.0 * h;
     const double window = 5.0 * longest;
-    const std::vector<double> distances =
-        nearly_cubic ? node_distances(local_from_index_, 5.0 * window) : std::vector<double>{};
+    const std::vector<Shell> shells =
+        nearly_cubic ? node_shells(dmat3(local_from_index_), 5.0 * window) : std::vector<Shell>{};
     self_.resize(kSelfEntries);
     parallel_for(kSelfEntries, [&](std::size_t i) {
         const double u = std::min(double(i) / (kSelfEntries - 1), 0.9999);
         const double s = u / (1.0 - u) / h;
         const SelfKernels k = !nearly_cubic       ? ball_self_kernels(s, volume)
-                              : s * longest < 0.7 ? windowed_self_kernels(s, window, volume, distances)
-                                                  : direct_self_kernels(s, volume, distances);
+                              : s * longest < 0.7 ? windowed_self_kernels(s, window, volume, shells)
+                                                  : direct_self_kernels(s, volume, shells);
         const double x = 1.0 + s * h;
         self_[i] = {float(k.light * h * h * x), float(k.flux * h * x * x)};
     });

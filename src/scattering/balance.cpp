@@ -33,8 +33,8 @@ std::vector<float> luminances(const std::vector<Rgb>& intensity) {
 
 // Golden-ratio rotation of consecutive rays: well spread for any run of them.
 vec3 ray_direction(std::size_t ray) {
-    return uniform_sphere_direction(std::fmod(0.5 + ray * 0.7548776662466927, 1.0),
-                                    std::fmod(0.5 + ray * 0.5698402909980532, 1.0));
+    return uniform_sphere_direction(glm::fract(0.5 + ray * 0.7548776662466927),
+                                    glm::fract(0.5 + ray * 0.5698402909980532));
 }
 
 // One ray from each of the picked nodes to the edge of the medium or a surface.
@@ -187,8 +187,8 @@ std::vector<float> collision_probabilities(const ExtinctionPyramid& pyramid, con
                 const double turn_u = rng.next(), turn_v = rng.next();
                 for (int d = 0; d < directions; ++d) {
                     const std::size_t ray = k * directions + d;
-                    escape_direction[ray] = uniform_sphere_direction(std::fmod((d + turn_u) / directions, 1.0),
-                                                                     std::fmod(turn_v + d * kGoldenRatio, 1.0));
+                    escape_direction[ray] = uniform_sphere_direction(glm::fract((d + turn_u) / directions),
+                                                                     glm::fract(turn_v + d * kGoldenRatio));
                     escape.set(ray, vec3(starts[start_of(d, starts.size())] - medium.reference_node),
                                escape_direction[ray]);
                 }

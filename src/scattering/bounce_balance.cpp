@@ -63,8 +63,8 @@ std::vector<Start> draw_batch(const std::vector<double>& cumulative, std::size_t
         const double goal = (double(r) + offset) / double(rays) * cumulative.back();
         while (light + 1 < cumulative.size() && cumulative[light] <= goal)
             ++light;
-        starts.push_back({light, uniform_sphere_direction(std::fmod(turn_u + double(r) * 0.7548776662466927, 1.0),
-                                                          std::fmod(turn_v + double(r) * 0.5698402909980532, 1.0))});
+        starts.push_back({light, uniform_sphere_direction(glm::fract(turn_u + double(r) * 0.7548776662466927),
+                                                          glm::fract(turn_v + double(r) * 0.5698402909980532))});
     }
     return starts;
 }

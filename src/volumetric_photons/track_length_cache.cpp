@@ -58,6 +58,7 @@ TrackLengthCache::TrackLengthCache(const Medium& medium, const dvec3& eye, doubl
         list_of_.push_back(extinction > 0.0f ? static_cast<std::int32_t>(lists++) : -1);
     kept_.resize(lists * (kTracks + 1));
     count_.resize(lists, 0);
+    least_priority_ = std::make_unique<std::atomic<float>[]>(lists);
     busy_ = std::make_unique<std::atomic_flag[]>(lists);
 }
 
@@ -87,7 +88,7 @@ void TrackLengthCache::add(const Ray& ray, double end, const Rgb& power, Rng& rn
         if (list_of_.empty() || list_of_[node] < 0)
             return;
         const float priority = luminance(power_length) / (1.0f - rng.next());
-        if (priority > 0.0f)
+        if (priority > 0.0f && priority >= least_priority_[list_of_[node]].load(std::memory_order_relaxed))
             keep(list_of_[node], {priority, direction, power_length});
     });
     if (last >= 0)
@@ -107,6 +108,8 @@ void TrackLengthCache::keep(std::size_t list, const Track& track) {
             first[at] = first[at - 1];
         first[at] = track;
     }
+    if (count_[list] > kTracks)
+        least_priority_[list].store(first[kTracks].priority, std::memory_order_relaxed);
     busy_[list].clear(std::memory_order_release);
 }
 
@@ -163,6 +166,7 @@ void TrackLengthCache::finish(float filter_radius) {
     sums_ = FixedSums(0, 1.0);
     toward_eye_ = {};
     busy_.reset();
+    least_priority_.reset();
     if (!(filter_radius > 0.0f))
         return;
     const auto* const flat = reinterpret_cast<const float*>(radiance_.data());

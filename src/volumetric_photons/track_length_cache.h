@@ -61,6 +61,8 @@ private:
     std::vector<std::int32_t> list_of_;  // of each node, or -1
     std::vector<Track> kept_;
     std::vector<std::uint8_t> count_;  // of each list
+    // Of each list, what a track's priority must reach to be kept: most tracks end here, without a look at the list.
+    std::unique_ptr<std::atomic<float>[]> least_priority_;
     std::unique_ptr<std::atomic_flag[]> busy_;
 };
 

@@ -6,7 +6,7 @@
 #include "fixtures/sets.h"
 #include "render/render_frame.h"
 
-namespace brisance {
+namespace brisance::test_believe {
 namespace {
 
 using namespace testing;
@@ -112,4 +112,4 @@ TEST(Believe, ABlackPictureHasNoError) {
 }
 
 }  // namespace
-}  // namespace brisance
+}  // namespace brisance::test_believe

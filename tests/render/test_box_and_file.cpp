@@ -6,7 +6,7 @@
 #include "same_picture.h"
 #include "temp_folder.h"
 
-namespace brisance {
+namespace brisance::test_box_and_file {
 namespace {
 
 using namespace testing;
@@ -102,4 +102,4 @@ TEST(BoxAndFile, OfSharplyScatteringHazeAreTheSame) {
 }
 
 }  // namespace
-}  // namespace brisance
+}  // namespace brisance::test_box_and_file

@@ -9,7 +9,7 @@
 #include "fixtures/sets.h"
 #include "render/render_frame.h"
 
-namespace brisance {
+namespace brisance::test_cell_survey {
 namespace {
 
 using testing::CellSurvey;
@@ -100,4 +100,4 @@ TEST(RatioOf, SaysSoWhereThereIsNothingToDivideBy) {
 }
 
 }  // namespace
-}  // namespace brisance
+}  // namespace brisance::test_cell_survey

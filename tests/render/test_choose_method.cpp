@@ -9,7 +9,7 @@
 #include "render/choice/choose_method.h"
 #include "render/render_frame.h"
 
-namespace brisance {
+namespace brisance::test_choose_method {
 namespace {
 
 using namespace testing;
@@ -141,4 +141,4 @@ TEST(ChooseMethod, WhatIsNotForecastIsLitByTheGrid) {
 }
 
 }  // namespace
-}  // namespace brisance
+}  // namespace brisance::test_choose_method

@@ -13,7 +13,7 @@
 #include "light_selection/progressive_radius.h"
 #include "render/render_frame.h"
 
-namespace brisance {
+namespace brisance::test_in_scattering {
 namespace {
 
 using namespace testing;
@@ -307,4 +307,4 @@ TEST(ScatteringMethods, AreChosenByTheMedium) {
 }
 
 }  // namespace
-}  // namespace brisance
+}  // namespace brisance::test_in_scattering

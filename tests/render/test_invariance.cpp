@@ -7,7 +7,7 @@
 
 #include "same_picture.h"
 
-namespace brisance {
+namespace brisance::test_invariance {
 namespace {
 
 using namespace testing;
@@ -79,4 +79,4 @@ TEST(ResamplingOfHaze, HalfTheVoxelsEdgeStaysWithinTheLimit) {
 }
 
 }  // namespace
-}  // namespace brisance
+}  // namespace brisance::test_invariance

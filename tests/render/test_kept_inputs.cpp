@@ -9,7 +9,7 @@
 #include "shot/read_shot.h"
 #include "temp_folder.h"
 
-namespace brisance {
+namespace brisance::test_kept_inputs {
 namespace {
 
 constexpr int kFrames = 3;
@@ -105,4 +105,4 @@ TEST(KeptInputs, ReadingAheadTakesNoMemoryThatLightingNeeds) {
 }
 
 }  // namespace
-}  // namespace brisance
+}  // namespace brisance::test_kept_inputs

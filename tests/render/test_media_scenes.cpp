@@ -23,7 +23,7 @@
 #include "render/render_frame.h"
 #include "shot/read_shot.h"
 
-namespace brisance {
+namespace brisance::test_media_scenes {
 namespace {
 
 using testing::kSmall;
@@ -309,4 +309,4 @@ INSTANTIATE_TEST_SUITE_P(Shots, MediaScenes, ::testing::ValuesIn(testing::media_
 INSTANTIATE_TEST_SUITE_P(Shots, MediaScenesByRayLights, ::testing::ValuesIn(kByRayLights), name);
 
 }  // namespace
-}  // namespace brisance
+}  // namespace brisance::test_media_scenes

@@ -5,7 +5,7 @@
 #include "fixtures/media.h"
 #include "forecast/memory_need.h"
 
-namespace brisance {
+namespace brisance::test_memory_need {
 namespace {
 
 using namespace testing;
@@ -45,4 +45,4 @@ TEST(MemoryNeed, IsRefusedWhereItIsMoreThanThereIs) {
 }
 
 }  // namespace
-}  // namespace brisance
+}  // namespace brisance::test_memory_need

@@ -10,7 +10,7 @@
 #include "forecast/scattering_choice.h"
 #include "render/render_frame.h"
 
-namespace brisance {
+namespace brisance::test_mixed_solutions {
 namespace {
 
 using namespace testing;
@@ -194,4 +194,4 @@ TEST(MixedSolutions, DoNotDependOnThreads) {
 }
 
 }  // namespace
-}  // namespace brisance
+}  // namespace brisance::test_mixed_solutions

@@ -7,7 +7,7 @@
 
 #include "reference_shot.h"
 
-namespace brisance {
+namespace brisance::test_path_references {
 namespace {
 
 // Camera rays per pixel: as many as make our noise smaller than the references', so that more would say no more.
@@ -135,4 +135,4 @@ INSTANTIATE_TEST_SUITE_P(OfAnotherRenderer, PathReferences, ::testing::Values("e
                          [](const auto& info) { return std::string(info.param); });
 
 }  // namespace
-}  // namespace brisance
+}  // namespace brisance::test_path_references

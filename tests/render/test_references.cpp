@@ -7,7 +7,7 @@
 
 #include "reference_shot.h"
 
-namespace brisance {
+namespace brisance::test_references {
 namespace {
 
 constexpr float kFineShadows = 0.01f;  // lighting.error: half the default
@@ -108,4 +108,4 @@ INSTANTIATE_TEST_SUITE_P(OfAnotherRenderer, References, ::testing::Values("ember
                          [](const auto& info) { return std::string(info.param); });
 
 }  // namespace
-}  // namespace brisance
+}  // namespace brisance::test_references

@@ -9,7 +9,7 @@
 #include "fixtures/sets.h"
 #include "render/render_frame.h"
 
-namespace brisance {
+namespace brisance::test_sets {
 namespace {
 
 using namespace testing;
@@ -187,4 +187,4 @@ TEST(Sets, SurfacesHideTheSmokeBehindThem) {
 }
 
 }  // namespace
-}  // namespace brisance
+}  // namespace brisance::test_sets

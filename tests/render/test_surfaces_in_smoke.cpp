@@ -9,7 +9,7 @@
 #include "fixtures/sets.h"
 #include "render/render_frame.h"
 
-namespace brisance {
+namespace brisance::test_surfaces_in_smoke {
 namespace {
 
 using namespace testing;
@@ -132,4 +132,4 @@ TEST(SurfacesInSmoke, LitFloorsBehindAWallDoNotLightIt) {
 }
 
 }  // namespace
-}  // namespace brisance
+}  // namespace brisance::test_surfaces_in_smoke

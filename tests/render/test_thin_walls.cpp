@@ -8,7 +8,7 @@
 #include "fixtures/sets.h"
 #include "render/render_frame.h"
 
-namespace brisance {
+namespace brisance::test_thin_walls {
 namespace {
 
 using namespace testing;
@@ -78,4 +78,4 @@ TEST(ThinWalls, KeepLightOfSurfacesOnItsSide) {
 }
 
 }  // namespace
-}  // namespace brisance
+}  // namespace brisance::test_thin_walls

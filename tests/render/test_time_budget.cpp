@@ -8,7 +8,7 @@
 #include "render/choice/time_budget.h"
 #include "render/render_frame.h"
 
-namespace brisance {
+namespace brisance::test_time_budget {
 namespace {
 
 using namespace testing;
@@ -107,4 +107,4 @@ TEST(TimeBudget, WhatIsNotForecastKeepsItsSettings) {
 }
 
 }  // namespace
-}  // namespace brisance
+}  // namespace brisance::test_time_budget

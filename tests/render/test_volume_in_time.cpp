@@ -12,7 +12,7 @@
 #include "render/input/volume_in_time.h"
 #include "temp_folder.h"
 
-namespace brisance {
+namespace brisance::test_volume_in_time {
 namespace {
 
 constexpr double kSpeed = 1.5;  // voxels per frame, along x
@@ -272,4 +272,4 @@ TEST_F(VolumeInTime, AStillVolumeHasNoTime) {
 }
 
 }  // namespace
-}  // namespace brisance
+}  // namespace brisance::test_volume_in_time

@@ -8,10 +8,12 @@
 #include <ostream>
 #include <set>
 
+#include "photon_density/method.h"
 #include "stability/case.h"
 #include "stability/closed_forms.h"
 #include "stability/results_table.h"
 #include "stability/run_cases.h"
+#include "volumetric_photons/method.h"
 
 namespace brisance::stability {
 namespace {
@@ -25,6 +27,13 @@ void PrintTo(const Run& run, std::ostream* out) {
     *out << run.what.name << ", " << run.method.name();
 }
 
+// Backward peaks of which few photons carry most of the light: 44 +- 80 % and 1 +- 20 % were measured where 3 % are
+// allowed, so that a test of them costs a minute and cannot fail.
+bool says_nothing(const Case& c, const Method& method) {
+    return c.name == "phase/-0.999-power" &&
+           (method.name() == PhotonDensityMethod::kName || method.name() == VolumetricPhotonsMethod::kName);
+}
+
 // Of the quick cases: by one picture each, or by methods that several pictures judge. Every test is a process that
 // lists all of them, so that none of their scenes may be made for that.
 std::vector<Run> quick_runs(bool several_pictures) {
@@ -32,7 +41,7 @@ std::vector<Run> quick_runs(bool several_pictures) {
     for (const Case& c : all_cases())
         for (const Method& method : all_methods())
             if (c.quick && method.shares_noise() == several_pictures && c.tolerance_of(method) &&
-                (!several_pictures || c.scatters_twice))
+                (!several_pictures || c.scatters_twice) && !says_nothing(c, method))
                 runs.push_back({c, method});
     return runs;
 }

@@ -16,13 +16,13 @@ FILTER = "--gtest_filter="
 
 
 def stale_patterns(tests, folder):
-    """One line for each pattern of SLOW that no test of its folder has. Folders without a built program are left out."""
+    """One line for each pattern of SLOW or TOGETHER that no slow test of its folder has. Folders without one are left out."""
     names = collections.defaultdict(list)
     for test in tests:
         for argument in test["command"][1:]:
             if argument.startswith(FILTER):
-                labels = [e["value"] for e in test["properties"] if e["name"] == "LABELS"]
-                for label in labels[0] if labels else []:
+                labels = [label for e in test["properties"] if e["name"] == "LABELS" for label in e["value"]]
+                for label in labels if "slow" in labels else []:
                     names[label].append(argument[len(FILTER):])
     for lists in sorted(folder.glob("*/CMakeLists.txt")):
         known = names[lists.parent.name]
