@@ -123,7 +123,7 @@ TEST(RelativeErrors, AreShownOnThreeDecades) {
     EXPECT_FLOAT_EQ(relative_error_map(broken, reference, 0.0).values[4], 1.0f);
 }
 
-TEST(Page, CannotBeEndedByAName) {
+TEST(ReportPage, CannotBeEndedByAName) {
     const nlohmann::ordered_json json = {{"name", "</script><script>alert(1)</script><!--"}, {"bad", "\xff"}};
     const std::string text = script_json(json);
     EXPECT_LACKS(text, "<");
@@ -134,7 +134,7 @@ TEST(Page, CannotBeEndedByAName) {
     EXPECT_LACKS(page, "<!--DATA-->");
 }
 
-TEST(Page, NeedsNothingFromElsewhere) {
+TEST(ReportPage, NeedsNothingFromElsewhere) {
     const std::string page(page_template());
     for (const char* text : {"src=\"http", "href=\"http", "url(http", "@import", "sourceMappingURL"})
         EXPECT_LACKS(page, text);
