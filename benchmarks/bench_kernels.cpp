@@ -9,6 +9,7 @@
 #include "gathering/far_kernels.h"
 #include "gathering/near_field.h"
 #include "medium/phase.h"
+#include "peaks.h"
 
 namespace brisance::benchmarks {
 namespace {
@@ -25,6 +26,32 @@ Receivers brick_receivers(const Medium& medium) {
     Receivers receivers;
     receivers.add_block(points, {});
     return receivers;
+}
+
+// Floating-point operations of an evaluation by far_kernels.cpp: isotropic lights above the finest level, fluence
+// alone. A fused multiply-add counts as two; comparisons, conversions and integers do not count.
+constexpr double kFlopsUnshadowed = 36.0, kFlopsWithMaps = 87.0;
+// 32-bit words that an evaluation gathers from a map: two distances of each of four texels.
+constexpr double kGathered = 4.0;
+
+// What part of the roofs the kernel reaches.
+void hold_against_roofs(benchmark::State& state, std::uint64_t evaluations, bool maps) {
+    static const double flops = peak_flops(), gathered = peak_gathered();
+    const auto part = [&](double of_each, double peak) {
+        return benchmark::Counter(double(evaluations) * of_each / peak, benchmark::Counter::kIsRate);
+    };
+    state.counters["of peak flops"] = part(maps ? kFlopsWithMaps : kFlopsUnshadowed, flops);
+    if (maps)
+        state.counters["of peak gathers"] = part(kGathered, gathered);
+}
+
+void roofs(benchmark::State& state) {
+    const ThreadLimit one(1);
+    for (auto _ : state) {
+        state.counters["flops/s"] = peak_flops();
+        state.counters["gathered/s"] = peak_gathered();
+    }
+    state.SetLabel(gather_instruction_set());
 }
 
 // Level 1 or higher, with the lights that a block of nodes listens to at alpha = 2.
@@ -69,6 +96,8 @@ void far_kernel(benchmark::State& state, FarLights::Shadow shadow) {
     }
     state.counters["evaluations/s"] = benchmark::Counter(double(evaluations), benchmark::Counter::kIsRate);
     state.counters["lights"] = double(list.size());
+    if (shadow != FarLights::Shadow::Exact)
+        hold_against_roofs(state, evaluations, shadow == FarLights::Shadow::Maps);
     state.SetLabel(gather_instruction_set());
 }
 
@@ -90,6 +119,7 @@ void near_stencil(benchmark::State& state, bool shadows) {
     state.counters["separations"] = double(near.separations());
 }
 
+BENCHMARK(roofs)->Iterations(1)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(far_kernel, unshadowed, FarLights::Shadow::None)->ArgName("level")->Arg(1)->Arg(2);
 BENCHMARK_CAPTURE(far_kernel, maps, FarLights::Shadow::Maps)->ArgName("level")->Arg(1)->Arg(2);
 BENCHMARK_CAPTURE(far_kernel, exact, FarLights::Shadow::Exact)->ArgName("level")->Arg(1);

@@ -25,7 +25,7 @@ LightBounds at_infinity(const dvec3& toward, double spread, double irradiance, d
 }  // namespace
 
 EmitterLights::EmitterLights(const Emitters& emitters, double distance)
-    : emitters_(emitters), bounds_(emitters.bounds_) {
+    : emitters_(emitters), bounds_(emitters.near_bounds()) {
     for (std::size_t i = 0; i < emitters.far_.size(); ++i) {
         const Emitters::Far& far = emitters.far_[i];
         if (!far.environment) {

@@ -74,7 +74,36 @@ Emitters::Emitters(const Scene& scene, const std::vector<LightSettings>& lights,
     add_triangles();
     for (std::size_t i = 0; i < lights.size(); ++i)
         add_light(lights[i], i < pictures.size() ? pictures[i] : nullptr);
-    tree_ = LightTree(bounds_);
+    tree_ = LightTree(near_bounds());
+}
+
+LightBounds Emitters::bounds_of(const Near& near) const {
+    if (!near.light) {
+        const Triangle triangle = triangle_of(scene_, near.mesh, near.triangle);
+        return {glm::min(triangle.a, glm::min(triangle.b, triangle.c)),
+                glm::max(triangle.a, glm::max(triangle.b, triangle.c)),
+                glm::normalize(triangle.normal()),
+                0.0,
+                pi / 2.0,
+                near.area * near.radiance,
+                scene_.materials[scene_.meshes[near.mesh].material].double_sided};
+    }
+    const bool spot = near.light->kind == LightKind::Spot;
+    return {near.position,
+            near.position,
+            spot ? glm::normalize(near.light->direction) : dvec3(0, 0, 1),
+            spot ? near.light->outer_degrees * kDegree : pi,
+            spot ? kSharpReach : pi / 2.0,
+            luminance(near.light->power),
+            false};
+}
+
+std::vector<LightBounds> Emitters::near_bounds() const {
+    std::vector<LightBounds> out;
+    out.reserve(near_.size());
+    for (const Near& near : near_)
+        out.push_back(bounds_of(near));
+    return out;
 }
 
 void Emitters::add_triangles() {
@@ -87,17 +116,13 @@ void Emitters::add_triangles() {
         light_[m].assign(mesh.triangles.size(), -1);
         for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
             const Triangle triangle = triangle_of(scene_, m, t);
-            const dvec3 normal = triangle.normal();
-            const double area = 0.5 * glm::length(normal), radiance = mean_luminance(scene_, m, t);
+            const double area = 0.5 * glm::length(triangle.normal()), radiance = mean_luminance(scene_, m, t);
             if (!(area > 0.0) || !(radiance > 0.0))
                 continue;
             light_[m][t] = static_cast<std::int32_t>(near_.size());
-            near_.push_back({m, t, nullptr, {}, area});
+            near_.push_back({m, t, nullptr, {}, area, radiance});
             const double before = near_power_.empty() ? 0.0 : near_power_.back();
             near_power_.push_back(before + pi * area * radiance * (material.double_sided ? 2.0 : 1.0));
-            bounds_.push_back({glm::min(triangle.a, glm::min(triangle.b, triangle.c)),
-                               glm::max(triangle.a, glm::max(triangle.b, triangle.c)), glm::normalize(normal), 0.0,
-                               pi / 2.0, area * radiance, material.double_sided});
         }
     }
 }
@@ -111,11 +136,9 @@ void Emitters::add_light(const LightSettings& light, const Texture* picture) {
         const dvec3 position = light.position - scene_.origin;
         const dvec3 axis = spot ? glm::normalize(light.direction) : dvec3(0, 0, 1);
         points_.push_back({position, axis, spot ? cosine_of_degrees(light.outer_degrees) : -1.0, power});
-        near_.push_back({0, 0, &light, position, 0.0});
+        near_.push_back({0, 0, &light, position});
         const double before = near_power_.empty() ? 0.0 : near_power_.back();
         near_power_.push_back(before + power * (spot ? spot_solid_angle(light) : 4.0 * pi));
-        bounds_.push_back({position, position, axis, spot ? light.outer_degrees * kDegree : pi,
-                           spot ? kSharpReach : pi / 2.0, power, false});
         return;
     }
     Far far;
@@ -165,7 +188,8 @@ std::optional<EmitterSample> Emitters::sample(const LitPoint& point, double choi
         if (!s)
             return s;
         const double probability = far / double(far_.size());
-        s->pdf *= probability;
+        // Where lights at infinity overlap, a ray meets them all, and is weighted against the density of all.
+        s->pdf = s->pdf > 0.0 && far_.size() > 1 ? pdf_of_background(s->direction) : s->pdf * probability;
         s->weight /= float(probability);
         return s;
     }
@@ -355,8 +379,7 @@ EmittedParticle Emitters::emit_far(const Far& far, const dvec3& centre, double r
 }
 
 std::uint64_t Emitters::bytes() const {
-    std::uint64_t sum =
-        near_.size() * (sizeof(Near) + sizeof(LightBounds)) + near_power_.size() * sizeof(double) + tree_.bytes();
+    std::uint64_t sum = near_.size() * sizeof(Near) + near_power_.size() * sizeof(double) + tree_.bytes();
     for (const auto& lights : light_)
         sum += lights.size() * sizeof(std::int32_t);
     return sum;

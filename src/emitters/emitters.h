@@ -17,8 +17,8 @@ struct EmitterSample {
     dvec3 direction;        // unit, from the point to the light
     double distance = 0.0;  // to it, or infinite [m]
     dvec3 end;              // where a ray toward it should end: the light itself, cleared of its own surface [local, m]
-    Rgb weight{0.0f};       // radiance over pdf; of delta lights irradiance [W/m^2] over probability
-    double pdf = 0.0;       // [1/sr]; 0 of delta lights, which no other technique can find
+    Rgb weight{0.0f};       // radiance over the light's own pdf; of delta lights irradiance [W/m^2] over probability
+    double pdf = 0.0;       // of that direction, by any light [1/sr]; 0 of delta lights, which nothing else can find
 };
 
 // The start of a particle, with its power over the probability of sampling it.
@@ -82,7 +82,7 @@ private:
         std::uint32_t mesh = 0, triangle = 0;
         const LightSettings* light = nullptr;  // of points and spots
         dvec3 position{0.0};                   // of them, local
-        double area = 0.0;                     // of triangles [m^2]
+        double area = 0.0, radiance = 0.0;     // of triangles: [m^2], mean luminance [W/(m^2 sr)]
     };
     // A light at infinity: a sun or the environment.
     struct Far {
@@ -97,6 +97,8 @@ private:
     void add_light(const LightSettings& light, const Texture* picture);
     double far_probability() const;
     std::optional<EmitterSample> sample_near(const LitPoint& point, double choice, Rng& rng, double probability) const;
+    LightBounds bounds_of(const Near& near) const;
+    std::vector<LightBounds> near_bounds() const;  // of near_
     std::optional<EmitterSample> sample_on(const Near& near, const LitPoint& point, Rng& rng) const;
     std::optional<EmitterSample> sample_triangle(const Near& near, const LitPoint& point, Rng& rng) const;
     std::optional<EmitterSample> sample_far(const Far& far, Rng& rng) const;
@@ -108,7 +110,6 @@ private:
 
     const Scene& scene_;
     std::vector<Near> near_;
-    std::vector<LightBounds> bounds_;   // of near_
     std::vector<double> near_power_;    // luminance [W], cumulative
     std::vector<PointEmitter> points_;  // of near_
     std::vector<Far> far_;

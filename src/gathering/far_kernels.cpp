@@ -7,6 +7,7 @@
 #define HWY_TARGET_INCLUDE "gathering/far_kernels.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
+#include <hwy/cache_control.h>
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
@@ -226,9 +227,7 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Rece
     const V wx = hn::Mul(to_light[0], minus), wy = hn::Mul(to_light[1], minus), wz = hn::Mul(to_light[2], minus);
     const V surface = hn::Min(hn::Set(d, l.balls ? l.balls[i].radius : 0.0f), distance);  // where shadows begin
     if (l.shadow == FarLights::Shadow::Maps) {
-        const std::size_t map = l.map_of ? l.map_of[i] : i - l.list_base;
-        w = hn::Mul(w, map_transmittance(d, l.layout, l.maps + map * l.layout.stride(), wx, wy, wz,
-                                         hn::Sub(distance, surface)));
+        w = hn::Mul(w, map_transmittance(d, l.layout, l.map(i), wx, wy, wz, hn::Sub(distance, surface)));
     } else if (l.shadow == FarLights::Shadow::Exact) {
         V t = exact_transmittance(d, l, p, to_light, distance, surface);
         if (l.bottom && !l.balls)
@@ -266,13 +265,28 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Rece
     }
 }
 
+// The map of a light, which begins to arrive in the nearest cache. Of large maps a block reads a small part.
+HWY_INLINE void fetch_map(const FarLights& l, std::uint32_t i) {
+    constexpr std::size_t kLargest = 8192, kLine = 64;
+    const std::size_t bytes = l.layout.bytes_per_light();
+    if (l.shadow != FarLights::Shadow::Maps || bytes > kLargest || !l.has_map(i))
+        return;
+    const std::uint16_t* const map = l.map(i);
+    for (std::size_t at = 0; at < bytes; at += kLine)
+        hwy::Prefetch(map + at / sizeof(*map));
+}
+
+// Maps are many times larger than the caches: that of the next light is fetched while one is evaluated.
 std::uint64_t gather(const FarLights& l, const Receivers& r, const ReceiverBlock& block, const FarOutput& out) {
     const D d;
     const std::size_t lanes = hn::Lanes(d);
     const LevelRange range(l);
     std::uint64_t evaluations = 0;
-    for (const std::uint32_t i : l.list) {
-        if (l.map_of && l.map_of[i] == FarLights::kNoMap)  // no receiver needs it
+    for (std::size_t n = 0; n < l.list.size(); ++n) {
+        const std::uint32_t i = l.list[n];
+        if (n + 1 < l.list.size())
+            fetch_map(l, l.list[n + 1]);
+        if (!l.has_map(i))  // no receiver needs it
             continue;
         for (std::size_t g = block.first_group; g < block.first_group + block.group_count; ++g) {
             if (!range.meets(r.group_bounds[g], l.position[i]))

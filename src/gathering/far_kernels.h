@@ -34,6 +34,11 @@ struct FarLights {
     const PackedExtinction* extinction;  // level 0, for exact shadows
     mat3 index_from_local;
     float step_nodes;  // of exact shadows
+
+    bool has_map(std::uint32_t light) const { return !map_of || map_of[light] != kNoMap; }
+    const std::uint16_t* map(std::uint32_t light) const {
+        return maps + (map_of ? map_of[light] : light - list_base) * layout.stride();
+    }
 };
 
 struct FarOutput {

@@ -139,6 +139,28 @@ TEST(Emitters, DensitiesOfHitsAreThoseOfSampling) {
 }
 
 // Particles carry the power that lights have: 4 pi I, pi L A, pi times the disc for a sky.
+// Sampled lights and sampled directions, weighted by the balance heuristic, are all the light there is: also where a
+// sun's disc stands before the sky.
+TEST(Emitters, WeightsOfLightsThatOverlapSumToOne) {
+    LightSettings sun = lamp(LightKind::Sun, {}, {0, 0, -1}), sky = lamp(LightKind::Environment, {});
+    sun.angle_degrees = 90.0;
+    sky.power = Rgb(0.8f);
+    const Surroundings set(Scene{}, {sun, sky});
+    const LitPoint point{{5, 5, 5}, {0, 0, 1}, LitPoint::Kind::Surface};
+    const Estimate e = estimate_to(1e-3, 1, [&](const dvec3& numbers, Rng& rng, double* out) {
+        out[0] = 0.0;
+        if (const auto s = set.emitters().sample(point, rng); s && s->direction.z > 0.0)
+            out[0] += s->weight.x * s->direction.z * s->pdf / (s->pdf + s->direction.z / kPi64);
+        const double z = std::sqrt(1.0 - numbers.x), across = std::sqrt(numbers.x), turn = 2.0 * kPi64 * numbers.y;
+        const dvec3 d(across * std::cos(turn), across * std::sin(turn), z);
+        const double pdf = z / kPi64;
+        out[0] += set.emitters().background(d).x * kPi64 * pdf / (pdf + set.emitters().pdf_of_background(d));
+    });
+    const double truth = 3.0 + kPi64 * 0.8;
+    EXPECT_NEAR(e.mean[0], truth, kSigmas * e.error[0]);
+    EXPECT_LT(e.error[0], 2e-3 * truth);
+}
+
 TEST(Emitters, ParticlesCarryThePower) {
     Scene scene;
     add_quad(scene, {0, 0, 0}, {2, 0, 0}, {0, 3, 0}, emitting(Rgb(5.0f)));
