@@ -23,10 +23,6 @@ Rgb slot(const float* record, int at) {
     return {record[at], record[at + 1], record[at + 2]};
 }
 
-vec3 sample_position(const VoxelSegment& s, double t) {
-    return glm::clamp(vec3(s.origin + s.direction * t), vec3(0.0f), vec3(float(BrickLattice::kSize)));
-}
-
 // A part of a voxel's segment: constant coefficients, `length` metres at `distance`.
 struct Part {
     SourceRecord record;
@@ -94,7 +90,7 @@ void walk_parts(const SourceField& field, const Ray& ray, int parts, double end,
         const int n = std::max(parts, parts_of(field, s, static_cast<float>(length)));
         for (int k = 0; k < n; ++k) {
             const double t = s.begin + length * position_in_part(k, n);
-            const vec3 p = sample_position(s, t);
+            const vec3 p = position_in_brick(s, t);
             Part part{field.sample(s.brick, p), {}, {}, static_cast<float>(length / n), static_cast<float>(t)};
             if (field.has_outside())
                 part.outside = field.sample_outside(s.brick, p);
@@ -127,7 +123,7 @@ void guide_by_emitters(const SourceField& field, const Ray& ray, double end, Ste
         return;
     float depth = 0.0f;
     const auto add_voxel = [&](const VoxelSegment& s) {
-        const vec3 middle = sample_position(s, 0.5 * (s.begin + s.end));
+        const vec3 middle = position_in_brick(s, 0.5 * (s.begin + s.end));
         const SourceRecord own = field.sample(s.brick, middle);
         const SurroundingsRecord outside = field.sample_outside(s.brick, middle);
         const Shown seen = shown(own.value[SourceRecord::Extinction], static_cast<float>(s.end - s.begin), depth);

@@ -19,6 +19,11 @@ void walk_voxels(const SourceField& field, const Ray& ray, const Visit& visit,
                 [&](const VoxelSegment& brick) { return walk_cubes<1>(brick, visit); });
 }
 
+// A point of a segment, for samples of the field: in nodes from the brick's first node.
+inline vec3 position_in_brick(const VoxelSegment& s, double t) {
+    return glm::clamp(vec3(s.origin + s.direction * t), vec3(0.0f), vec3(float(BrickLattice::kSize)));
+}
+
 // The light along one ray.
 struct RaySum {
     CellSum cells;

@@ -14,10 +14,6 @@ namespace {
 constexpr float kThinVoxel = 0.1f, kThinPart = 0.2f;
 constexpr double kGauss = 0.21132487;
 
-vec3 position_at(const VoxelSegment& s, double t) {
-    return glm::clamp(vec3(s.origin + s.direction * t), vec3(0.0f), vec3(float(BrickLattice::kSize)));
-}
-
 Rgb colour(const SecondaryRecord& r, int slot) {
     return {r.value[slot], r.value[slot + 1], r.value[slot + 2]};
 }
@@ -29,19 +25,12 @@ SecondaryField::SecondaryField(const SourceField& field)
       index_from_local_(glm::inverse(dmat3(field.medium().world_from_index))),
       made_(field.bricks().brick_count()) {}
 
-SecondaryField::~SecondaryField() {
-    for (const std::atomic<const Records*>& made : made_)
-        delete made.load(std::memory_order_relaxed);
-}
-
-// Threads that make the same records at once make them alike; one of them is kept.
-const SecondaryField::Records& SecondaryField::make(std::size_t brick) const {
-    auto out = std::make_unique<Records>();
-    field_.put_secondary(brick, *out);
-    const Records* kept = nullptr;
-    if (made_[brick].compare_exchange_strong(kept, out.get(), std::memory_order_acq_rel))
-        kept = out.release();
-    return *kept;
+const SecondaryField::Records& SecondaryField::records(std::size_t brick) const {
+    return made_.get(brick, [&] {
+        auto out = std::make_unique<Records>();
+        field_.put_secondary(brick, *out);
+        return out;
+    });
 }
 
 SecondaryField::Seen SecondaryField::along(const Ray& ray, double end) const {
@@ -51,7 +40,7 @@ SecondaryField::Seen SecondaryField::along(const Ray& ray, double end) const {
         const auto length = static_cast<float>(s.end - s.begin);
         const float extinction = here.value[SecondaryRecord::Extinction], tau = extinction * length;
         if (tau > kThinPart)
-            here = interpolated(records.data(), position_at(s, s.begin + double(mean_depth(tau) / extinction)));
+            here = interpolated(records.data(), position_in_brick(s, s.begin + double(mean_depth(tau) / extinction)));
         const float path = seen.transmittance * length * phi1(tau), opacity = path * extinction;
         seen.emission += colour(here, SecondaryRecord::V) * (field_.direct_emission() ? path : opacity);
         seen.scattered += colour(here, SecondaryRecord::Scattered) * opacity;
@@ -59,16 +48,16 @@ SecondaryField::Seen SecondaryField::along(const Ray& ray, double end) const {
     };
     const auto see_voxel = [&](const Records& records, const VoxelSegment& s) {
         const double length = s.end - s.begin, middle = 0.5 * (s.begin + s.end);
-        const SecondaryRecord here = interpolated(records.data(), position_at(s, middle));
+        const SecondaryRecord here = interpolated(records.data(), position_in_brick(s, middle));
         if (here.value[SecondaryRecord::Extinction] * float(length) <= kThinVoxel) {
             see_part(records, s, here);
         } else {
             VoxelSegment half = s;
             half.end = middle;
-            see_part(records, half, interpolated(records.data(), position_at(s, s.begin + kGauss * length)));
+            see_part(records, half, interpolated(records.data(), position_in_brick(s, s.begin + kGauss * length)));
             half.begin = middle;
             half.end = s.end;
-            see_part(records, half, interpolated(records.data(), position_at(s, s.end - kGauss * length)));
+            see_part(records, half, interpolated(records.data(), position_in_brick(s, s.end - kGauss * length)));
         }
         return seen.transmittance > opaque;
     };

@@ -6,8 +6,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
-#include <vector>
 
 #include "camera_rays/source_field.h"
 
@@ -17,9 +15,6 @@ class SecondaryField {
 public:
     // Keeps a reference. The field must know no similar medium: its rays have two depths.
     explicit SecondaryField(const SourceField& field);
-    ~SecondaryField();
-    SecondaryField(const SecondaryField&) = delete;
-    SecondaryField& operator=(const SecondaryField&) = delete;
 
     struct Seen {
         Rgb emission{0.0f}, scattered{0.0f};  // [W/(m^2 sr)]; light from emitters as far as the field holds it
@@ -31,15 +26,11 @@ public:
 
 private:
     using Records = std::array<SecondaryRecord, SourceField::kRecords>;
-    const Records& records(std::size_t brick) const {
-        const Records* const made = made_[brick].load(std::memory_order_acquire);
-        return made != nullptr ? *made : make(brick);
-    }
-    const Records& make(std::size_t brick) const;
+    const Records& records(std::size_t brick) const;
 
     const SourceField& field_;
     dmat3 index_from_local_;
-    mutable std::vector<std::atomic<const Records*>> made_;
+    MadeWhenAsked<Records> made_;
 };
 
 }  // namespace brisance

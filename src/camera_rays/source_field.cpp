@@ -71,11 +71,6 @@ SourceField::SourceField(const Medium& medium) : SourceField(medium, nullptr, nu
 SourceField::SourceField(const Medium& medium, const NodeSources& sources, const Medium* similar, float forward)
     : SourceField(medium, &sources, similar, forward) {}
 
-SourceField::~SourceField() {
-    for (const std::atomic<const BrickRecords*>& made : made_)
-        delete made.load(std::memory_order_relaxed);
-}
-
 void SourceField::put_similar(BrickRecords& out, const ivec3& low) const {
     out.similar.resize(kRecords);
     put_extinction(*similar_, low, out.similar.data());
@@ -110,18 +105,10 @@ std::unique_ptr<SourceField::BrickRecords> SourceField::new_records(std::size_t 
     return out;
 }
 
-const SourceField::BrickRecords& SourceField::make(std::size_t brick) const {
-    std::unique_ptr<BrickRecords> out = new_records(brick);
-    const BrickRecords* kept = nullptr;
-    if (made_[brick].compare_exchange_strong(kept, out.get(), std::memory_order_acq_rel))
-        kept = out.release();
-    return *kept;
-}
-
 // Where no ray of the camera has come, all records are made for a moment.
 void SourceField::put_secondary(std::size_t brick, std::array<SecondaryRecord, kRecords>& out) const {
     std::unique_ptr<const BrickRecords> own;
-    const BrickRecords* all = made_[brick].load(std::memory_order_acquire);
+    const BrickRecords* all = made_.find(brick);
     if (all == nullptr) {
         own = new_records(brick);
         all = own.get();
@@ -143,11 +130,9 @@ void SourceField::put_secondary(std::size_t brick, std::array<SecondaryRecord, k
 }
 
 std::uint64_t SourceField::bytes() const {
-    const auto made = static_cast<std::uint64_t>(std::count_if(
-        made_.begin(), made_.end(), [](const auto& records) { return records.load(std::memory_order_relaxed); }));
     const std::uint64_t of_brick = sizeof(BrickRecords) + kRecords * (has_similar() ? sizeof(SimilarRecord) : 0) +
                                    kRecords * (has_outside() ? sizeof(SurroundingsRecord) : 0);
-    return made * of_brick + made_.size() * (sizeof(made_[0]) + 2 * sizeof(float)) + bricks_.bytes();
+    return made_.made() * of_brick + made_.bytes_of_places() + 2 * minimum_.size() * sizeof(float) + bricks_.bytes();
 }
 
 float SourceField::majorant_of_voxel(std::size_t brick, const ivec3& voxel) const {

@@ -6,11 +6,11 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
+#include "camera_rays/made_when_asked.h"
 #include "medium/medium.h"
 #include "medium_lighting/node_sources.h"
 
@@ -43,17 +43,18 @@ struct alignas(16) SecondaryRecord {
     float value[Size];
 };
 
+constexpr int kRecordsAside = BrickLattice::kSize + 1;  // along a brick's side
+
 // Trilinear between the records of a brick at p, in nodes from its first node, each coordinate in [0, 8].
 template <class Record>
 inline Record interpolated(const Record* records, const vec3& p) {
-    constexpr int kAside = BrickLattice::kSize + 1;
     const ivec3 base = glm::min(ivec3(p), ivec3(BrickLattice::kSize - 1));
     const vec3 f = p - vec3(base);
-    const Record* r = records + (base.x * kAside + base.y) * kAside + base.z;
+    const Record* r = records + (base.x * kRecordsAside + base.y) * kRecordsAside + base.z;
     Record out{};
     for (int k = 0; k < 8; ++k) {
         const float w = (k & 4 ? f.x : 1 - f.x) * (k & 2 ? f.y : 1 - f.y) * (k & 1 ? f.z : 1 - f.z);
-        const Record& corner = r[((k >> 2) * kAside + (k >> 1 & 1)) * kAside + (k & 1)];
+        const Record& corner = r[((k >> 2) * kRecordsAside + (k >> 1 & 1)) * kRecordsAside + (k & 1)];
         for (int i = 0; i < Record::Size; ++i)
             out.value[i] += w * corner.value[i];
     }
@@ -62,7 +63,7 @@ inline Record interpolated(const Record* records, const vec3& p) {
 
 class SourceField {
 public:
-    static constexpr int kSide = BrickLattice::kSize + 1;  // nodes along a side of a brick's records
+    static constexpr int kSide = kRecordsAside;  // nodes along a side of a brick's records
     static constexpr int kRecords = kSide * kSide * kSide;
 
     // The medium by itself: nothing lights it. Keeps a reference.
@@ -72,7 +73,6 @@ public:
     SourceField(const Medium& medium, const NodeSources& sources, const Medium* similar = nullptr,
                 float forward = 0.0f);
     SourceField(const Medium&, NodeSources&&, const Medium* = nullptr, float = 0.0f) = delete;
-    ~SourceField();
     SourceField(const SourceField&) = delete;
     SourceField& operator=(const SourceField&) = delete;
 
@@ -106,12 +106,9 @@ private:
 
     SourceField(const Medium& medium, const NodeSources* sources, const Medium* similar, float forward);
 
-    // Threads that make the same records at once make them alike; one of them is kept.
     const BrickRecords& records(std::size_t brick) const {
-        const BrickRecords* const made = made_[brick].load(std::memory_order_acquire);
-        return made != nullptr ? *made : make(brick);
+        return made_.get(brick, [&] { return new_records(brick); });
     }
-    const BrickRecords& make(std::size_t brick) const;
     std::unique_ptr<BrickRecords> new_records(std::size_t brick) const;
     void put_similar(BrickRecords& out, const ivec3& low) const;
 
@@ -122,7 +119,7 @@ private:
     bool direct_, outside_;
     BrickLattice bricks_;
     std::vector<float> minimum_, majorant_;
-    mutable std::vector<std::atomic<const BrickRecords*>> made_;
+    MadeWhenAsked<BrickRecords> made_;
 };
 
 }  // namespace brisance
