@@ -44,6 +44,9 @@ public:
     // residual_pixels() is asked for.
     SharedBounce(int width, int height, double radius, int rays, bool tells_residual = false);
 
+    // Over how much pixels share: the radius over the distance to surrounding surfaces [rad].
+    double angle(float lobe) const { return double(radius_) * lobe; }
+
     // Samples of a pixel in any order that does not depend on threads. Not thread-safe. False: the pixel has samples of
     // too many surfaces already, and this one is not taken.
     bool add(const Sample& sample);

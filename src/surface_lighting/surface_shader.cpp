@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "base_lighting/shared_receivers.h"
@@ -16,6 +17,9 @@ namespace brisance {
 namespace {
 
 constexpr std::size_t kSamplesAtOnce = 256;
+
+// What a puddle shows of a window is followed to what the window shows. Beyond that, paths find it.
+constexpr int kMostReflections = 2;
 
 constexpr Stream kGloss = stream_of("surface_lighting/gloss");
 
@@ -39,6 +43,12 @@ float share_of_walks(const SurfaceLightingInput& input) {
     return glm::smoothstep(0.3f, 0.6f, std::abs(input.field.medium().mean_cosine));
 }
 
+// Whoever compares choices of lights, or asks what their bound does, wants those lights at every lobe.
+bool reflects_narrowly(const SurfaceLightingInput& input) {
+    return input.virtual_lights && input.virtual_lights->extend_paths() && input.needed.contains(Cell::SS) &&
+           !input.unified && !input.reuse && !input.bound && !input.compensation;
+}
+
 }  // namespace
 
 SurfaceShader::SurfaceShader(const SurfaceLightingInput& input)
@@ -48,9 +58,11 @@ SurfaceShader::SurfaceShader(const SurfaceLightingInput& input)
       emitters_(input.paths.direct(), input.samples, input.seed),
       panes_(surroundings_),
       gloss_(input.paths.direct(), medium_, samples_through_panes()),
-      mirrors_(input.paths.direct(), medium_, input.needed.contains(Cell::SS), input.seed),
+      mirrors_(input.paths.direct(), medium_, input.needed.contains(Cell::SS), input.samples, samples_through_panes(),
+               input.seed),
       planar_(input.paths.direct().field().medium()),
       smoke_of_paths_(medium_),
+      reflects_(reflects_narrowly(input)),
       walks_(share_of_walks(input)) {}
 
 // A point to shade and the state of its random numbers.
@@ -141,14 +153,19 @@ VirtualLights::Shading SurfaceShader::shading(ShadedPoint& at) const {
 Rgb SurfaceShader::from_virtual_lights(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng,
                                        ShadedPoint& at) const {
     const SurfacePoint& point = at.seen.point;
-    if (!input_.shared || at.seen.mirrors > 0)
-        return shade_vertex(sample, vertex, Lobes::All, shading(at), rng, at);
+    const bool reflected = shows_others(at);  // by shade_reflected()
+    if (!input_.shared || at.seen.mirrors > 0) {
+        if (!reflected)
+            return shade_vertex(sample, vertex, Lobes::All, shading(at), rng, at);
+        const std::optional<PathVertex> base = base_of(at);
+        return base ? shade_vertex(sample, *base, Lobes::Base, shading(at), rng, at) : Rgb(0.0f);
+    }
     if (has_base(point.material)) {
         const Bsdf base(point.material, point.frame, Lobes::Base);
         if (const Rgb albedo = base.base_albedo(-at.seen.arriving); albedo != Rgb(0.0f))
             at.base = shared_sample(sample, base, Lobes::Base, albedo, 1.0f, rng, at);
     }
-    if (!has_specular(point.material))
+    if (!has_specular(point.material) || reflected)
         return Rgb(0.0f);
     const Bsdf others(point.material, point.frame, Lobes::Specular);
     if (point.material.transmission > 0.0f || !has_wide_lobes(point.material))
@@ -180,6 +197,7 @@ SharedBounce::Sample SurfaceShader::shared_sample(const SurfaceSample& sample, c
     VirtualLights::Shading how = shading(at);
     double distance = std::numeric_limits<double>::infinity();
     how.distance = &distance;
+    how.blur = input_.shared->angle(lobe);
     const Rgb own_residual = std::exchange(at.bound.residual, Rgb(0.0f));
     const Rgb light = shade_vertex(sample, PathVertex(at.seen.point, lobes, at.seen.arriving), which, how, rng, at);
     if (!at.chosen.empty())
@@ -277,20 +295,14 @@ void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector
         even[i] = luminance(light[i]);
     }
     std::vector<CellSum> found(samples.size());
-    const auto shade_some = [&](const std::vector<std::size_t>& some) {
-        parallel_for(
-            some.size(),
-            [&](std::size_t k) {
-                const std::size_t i = some[k];
-                if (!points[i].seen.lost)
-                    shade_sample(samples[i], points[i], found[i]);
-                sampled[i] = luminance(found[i]);
-            },
-            kSamplesAtOnce);
+    const auto shade = [&](const std::vector<std::size_t>& some) {
+        shade_some(samples, some, points, found);
+        for (const std::size_t i : some)
+            sampled[i] = luminance(found[i]);
     };
     SurfaceRounds rounds(samples, input_.width, std::size_t(input_.samples), input_.tolerance);
-    shade_some(rounds.first());
-    shade_some(rounds.second(even, sampled));
+    shade(rounds.first());
+    shade(rounds.second(even, sampled));
     for (std::size_t i = 0; i < samples.size(); ++i) {
         points[i].stands_for = rounds.stands_for(i);
         light[i].add(found[i], Rgb(points[i].stands_for));
@@ -299,6 +311,65 @@ void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector
         if (points[i].stands_for > 0.0f)
             input_.lengths->add(samples[i].pixel, points[i].vertices);
     hand_over(samples, points, light);
+}
+
+void SurfaceShader::shade_some(const std::vector<SurfaceSample>& samples, const std::vector<std::size_t>& some,
+                               std::vector<ShadedPoint>& points, std::vector<CellSum>& found) {
+    parallel_for(
+        some.size(),
+        [&](std::size_t k) {
+            if (!points[some[k]].seen.lost)
+                shade_sample(samples[some[k]], points[some[k]], found[some[k]]);
+        },
+        kSamplesAtOnce);
+    if (reflects_)
+        shade_reflected(samples, some, points, found);
+}
+
+// Whether what the point's lobes show of other surfaces is found by shade_reflected().
+bool SurfaceShader::shows_others(const ShadedPoint& at) const {
+    return reflects_ && at.seen.mirrors < kMostReflections && !at.seen.lost &&
+           has_narrow_lobes(at.seen.point.material);
+}
+
+// The surfaces that narrow lobes show are lit together, as those are that camera rays hit.
+void SurfaceShader::shade_reflected(const std::vector<SurfaceSample>& samples, const std::vector<std::size_t>& some,
+                                    std::vector<ShadedPoint>& points, std::vector<CellSum>& found) {
+    std::vector<std::size_t> by;  // samples that show others
+    for (const std::size_t i : some)
+        if (shows_others(points[i]))
+            by.push_back(i);
+    if (by.empty())
+        return;
+    std::vector<SurfaceSample> seen_by(by.size());
+    std::vector<ShadedPoint> there(by.size(), ShadedPoint{{}, Rng(Stream::RayLightSurface, 0), 0});
+    std::vector<CellSum> light(by.size());
+    parallel_for(
+        by.size(),
+        [&](std::size_t k) {
+            ShadedPoint& from = points[by[k]];
+            seen_by[k] = samples[by[k]];
+            there[k].seen = mirrors_.reflected(seen_by[k], from.seen, from.ray_rng, light[k]);
+            there[k].ray_rng = from.ray_rng;
+        },
+        kSamplesAtOnce);
+    light_reflected(seen_by, there, light);
+    for (std::size_t k = 0; k < by.size(); ++k) {
+        found[by[k]].add(light[k], Rgb(1.0f));
+        points[by[k]].vertices += there[k].vertices;
+    }
+}
+
+// And what these show in turn.
+void SurfaceShader::light_reflected(const std::vector<SurfaceSample>& by, std::vector<ShadedPoint>& there,
+                                    std::vector<CellSum>& found) {
+    const std::vector<BaseLight> bases = light_bases(by, there);
+    std::vector<std::size_t> all(by.size());
+    std::iota(all.begin(), all.end(), std::size_t(0));
+    for (const std::size_t k : all)
+        if (!there[k].seen.lost)
+            add_base(bases[k], there[k], found[k]);
+    shade_some(by, all, there, found);
 }
 
 // Behind mirrors all of it is light between surfaces.

@@ -7,6 +7,9 @@
 // base and also shine along those rays; ray lights and rays share the glossy reflection of multiple scattering
 // (gloss_split.h). The grid gives the glossy reflection of single scattering without noise.
 //
+// What narrow lobes show of other surfaces is SS. Those surfaces are shaded as if they were seen in a mirror (mirrors.h):
+// by grids and virtual lights, where a path would sample them one by one.
+//
 // SA: light_of_emitters.h. Lights of all kinds may be chosen together instead (unified_lights.h), for SV of the base,
 // SS and SA. SS: the virtual lights or, without them, paths. Behind mirrors and clear glass the same estimators are
 // used at the first surface that scatters (mirrors.h), and all of that light is SS. Light of fire and smoke that comes
@@ -80,6 +83,13 @@ private:
     std::vector<BaseLight> light_bases(const std::vector<SurfaceSample>& samples,
                                        const std::vector<ShadedPoint>& points);
     void add_base(const BaseLight& base, const ShadedPoint& at, CellSum& light) const;
+    void shade_some(const std::vector<SurfaceSample>& samples, const std::vector<std::size_t>& some,
+                    std::vector<ShadedPoint>& points, std::vector<CellSum>& found);
+    void shade_reflected(const std::vector<SurfaceSample>& samples, const std::vector<std::size_t>& some,
+                         std::vector<ShadedPoint>& points, std::vector<CellSum>& found);
+    void light_reflected(const std::vector<SurfaceSample>& by, std::vector<ShadedPoint>& there,
+                         std::vector<CellSum>& found);
+    bool shows_others(const ShadedPoint& at) const;
     void shade_sample(const SurfaceSample& sample, ShadedPoint& at, CellSum& light) const;
     void shade_point(const SurfaceSample& sample, ShadedPoint& at, CellSum& light) const;
     Rgb from_emitters(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng, ShadedPoint& at) const;
@@ -117,7 +127,8 @@ private:
     Mirrors mirrors_;
     PlanarLight planar_;
     LitSmokeAlongRay smoke_of_paths_;
-    float walks_;  // of the paths between surfaces, the share that walks through the smoke
+    bool reflects_;  // narrow lobes show surfaces as mirrors do
+    float walks_;    // of the paths between surfaces, the share that walks through the smoke
 };
 
 }  // namespace brisance

@@ -3,6 +3,12 @@
 // A surface that the path reaches sees smoke that is lit already (lit_smoke.h): a walk through dense smoke beside a
 // fire meets its bright core rarely, and is what most noise of light between surfaces came from. Lines toward the fire
 // see all of that light, too: by the path's own segments alone, what smoke scatters made most of the rest.
+//
+// A receiver that shares its light with others around cannot tell mirror images at later surfaces apart: they move by
+// the angle under which these others lie apart. Lobes that are narrower are widened to it. Else fire that is met by
+// chance behind a window or a puddle is a bright grain, which no line toward the fire finds (A. Kaplanyan, C.
+// Dachsbacher, Path Space Regularization for Holistic and Robust Light Transport, EG 2013). What is shared shrinks with
+// the samples of a pixel, and so does this.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -19,6 +25,18 @@ namespace {
 
 bool goes_straight_on(const PathVertex& vertex, const PathVertex::Sample& sample) {
     return sample.delta && glm::dot(sample.wi, vertex.arriving()) > 1.0 - 1e-12;
+}
+
+// Where a mirror's image moves by `angle` [rad], facets lean by up to half of it. Light that passes through stays as it
+// is: panes must not blur what is behind them.
+std::optional<SurfacePoint> widened(const SurfacePoint& point, double angle) {
+    const SurfaceMaterial& m = point.material;
+    const double roughness = std::sqrt(0.5 * angle);
+    if (m.roughness >= roughness || !needs_energy_tables(m) || m.transmission > 0.0f)
+        return std::nullopt;
+    SurfacePoint out = point;
+    out.material.roughness = static_cast<float>(roughness);
+    return out;
 }
 
 // Points on every segment through smoke at which lamps are sampled.
@@ -104,6 +122,7 @@ public:
           reservoir_(how.reservoir),
           lights_apart_(how.lights_apart),
           bound_(how.bound),
+          blur_(how.blur),
           lamps_along_(scene_.has_emitters() && aims_at_lamps(scene_) && !scene_.field().bricks().empty()) {}
 
     Rgb own_lights(const PathState& state, Rng& rng) {
@@ -162,7 +181,12 @@ public:
     bool arrive(const PathState& state, const PathStep& step, PathState& next) {
         if (state.order == 1)
             first_end_ = step.segment.end;
-        if (step.medium.collision || step.sample->delta)
+        if (step.medium.collision)
+            return true;
+        if (blur_ > 0.0)
+            if (const std::optional<SurfacePoint> wide = widened(*step.segment.point, blur_))
+                next = state_on_surface(scene_, *wide, step.segment.ray.direction, next.throughput, next.order);
+        if (step.sample->delta)
             return true;
         const Seen seen = lights_.seen_by(step.segment);
         const LightSet::Ending held = lights_.ending(seen, step.sample->pdf);
@@ -213,6 +237,7 @@ private:
     LightReservoir* reservoir_;  // of the receiver; null: it gathers its light at once
     bool lights_apart_;          // from the receiver
     BoundWatch bound_;
+    double blur_;               // of the receiver
     bool lamps_along_;          // estimate lamps along segments, not at vertices in the medium
     bool receiver_lit_ = true;  // by the medium along the current segment
     Rgb sum_{0.0f};

@@ -46,6 +46,8 @@ public:
     // `reservoir`: becomes what the vertex itself has chosen of the lights, where reservoirs() is not null; that light
     // is missing in the sum then.
     // `lights_apart`: the caller lights the vertex by each_light(); the lights' share is missing in the sum then.
+    // `blur`: angle by which receivers lie apart that share the sum, seen from what they are lit by [rad]; 0: none share.
+    // Later vertices of the path widen their lobes to it.
     // `bound`: gets what the bound of point lights and its compensation do to the sum; processor time is taken for it.
     enum class Panes { Followed, Sampled };
     struct Shading {
@@ -57,12 +59,16 @@ public:
         LightReservoir* reservoir = nullptr;
         BoundTally* bound = nullptr;
         bool lights_apart = false;
+        double blur = 0.0;
     };
     Rgb shade(const PathVertex& vertex, Rng& rng, const Shading& how) const;
     Rgb shade(const PathVertex& vertex, Rng& rng) const { return shade(vertex, rng, Shading{}); }
 
     // Null: the sampling does not resample, or there are no lights.
     const ReservoirLights* reservoirs() const { return set_->lights.empty() ? nullptr : gatherer_->reservoirs(); }
+
+    // Whether paths find what the lights do not hold: then any path to the same light may stand for shade().
+    bool extend_paths() const { return !set_->complete && set_->settings().path_extension; }
 
     const std::vector<VirtualLight>& lights() const { return set_->lights; }
     // One by one, for those who choose among them together with other lights. May not outlive these.
