@@ -1,5 +1,6 @@
 #include "camera_rays/secondary_field.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -36,6 +37,7 @@ const SecondaryField::Records& SecondaryField::records(std::size_t brick) const 
 SecondaryField::Seen SecondaryField::along(const Ray& ray, double end) const {
     Seen seen;
     const float opaque = std::exp(-kOpaqueDepth);
+    const double length_of_voxel = field_.medium().spacing;
     const auto see_part = [&](const Records& records, const VoxelSegment& s, SecondaryRecord here) {
         const auto length = static_cast<float>(s.end - s.begin);
         const float extinction = here.value[SecondaryRecord::Extinction], tau = extinction * length;
@@ -45,6 +47,7 @@ SecondaryField::Seen SecondaryField::along(const Ray& ray, double end) const {
         seen.emission += colour(here, SecondaryRecord::V) * (field_.direct_emission() ? path : opacity);
         seen.scattered += colour(here, SecondaryRecord::Scattered) * opacity;
         seen.transmittance -= opacity;
+        seen.closeness += opacity / static_cast<float>(std::max(s.end, length_of_voxel));
     };
     const auto see_voxel = [&](const Records& records, const VoxelSegment& s) {
         const double length = s.end - s.begin, middle = 0.5 * (s.begin + s.end);

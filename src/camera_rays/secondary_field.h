@@ -19,6 +19,7 @@ public:
     struct Seen {
         Rgb emission{0.0f}, scattered{0.0f};  // [W/(m^2 sr)]; light from emitters as far as the field holds it
         float transmittance = 1.0f;
+        float closeness = 0.0f;  // the mean of 1 / distance, where the medium hides what is behind, of that share [1/m]
     };
     // Along a ray up to `end` metres. Extinction is constant over a voxel, that of its middle; sources are those of the
     // mean depth from which light leaves it, so that sources which change linearly along it are exact.

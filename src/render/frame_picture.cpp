@@ -20,6 +20,9 @@ constexpr float kShareOfSampling = 0.35f;
 // Standard error of a pixel of surfaces for want of shaded samples, in parts of `lighting.error`.
 constexpr float kShareOfShading = 1.0f;
 
+constexpr std::pair<Cell, SharedBounce::Apart> kSharedCells[] = {
+    {Cell::SV, SharedBounce::Apart::SV}, {Cell::SM, SharedBounce::Apart::SM}, {Cell::SA, SharedBounce::Apart::SA}};
+
 // Few rays first, and more where they err. Not where each ray carries random estimates, which want all rays, nor where
 // the layers of bounces have to add up, nor where moments of the shutter share the rays of a pixel.
 bool looks_twice(const DrawInput& input, bool moments) {
@@ -174,6 +177,18 @@ float FramePicture::shading_tolerance() const {
     return all ? 0.0f : kShareOfShading * static_cast<float>(input_.shot.lighting.error);
 }
 
+// What rough lobes reflect is shared as a whole, but where lights are to be seen one by one: in the smoke, in
+// reservoirs, and where their bound is asked for.
+std::vector<SharedBounce::Apart> FramePicture::told_of_shared(const InScattering* estimator,
+                                                              bool asks_for_bound) const {
+    if (asks_for_bound)
+        return {SharedBounce::Apart::Residual};
+    const VirtualLightSettings& s = input_.shot.virtual_lights;
+    if (estimator || s.compensation == BoundCompensation::ScreenSpace || s.resampling_neighbours > 0)
+        return {};
+    return {SharedBounce::Apart::SV, SharedBounce::Apart::SM, SharedBounce::Apart::SA};
+}
+
 Image FramePicture::picture(const InScattering* estimator, int number, const MomentLights& lights, const Camera& camera,
                             const Surroundings* surroundings) {
     settings_.pass = number;
@@ -191,7 +206,8 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
     std::optional<SharedBounce> shared;
     const double radius = input_.shot.virtual_lights.sharing_radius;
     if (lights_.virtual_lights() && input_.plan.needs(Cell::SS) && radius > 0.0)
-        shared.emplace(camera.settings().width, camera.settings().height, radius, rays_of_pixel(), asks_for_bound);
+        shared.emplace(camera.settings().width, camera.settings().height, radius, rays_of_pixel(),
+                       told_of_shared(estimator, asks_for_bound));
     std::optional<SharedBounce> shared_sky;
     if (radius > 0.0 && input_.plan.needs(Cell::SA) && !lights.unified() &&
         surroundings->emitters().has_even_background())
@@ -224,12 +240,16 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
                                  [&](const auto& samples, auto& light) { shader.shade(samples, light); });
     if (reuse)
         add_to_cell(image, Cell::SS, reuse->take_pixels());
-    if (shared)
+    if (shared) {
         add_to_cell(image, Cell::SS, shared->take_pixels());
+        for (const auto& [cell, part] : kSharedCells)
+            if (shared->tells(part))
+                add_to_cell(image, cell, shared->told_pixels(part));
+    }
     if (shared_sky)
         add_to_cell(image, Cell::SA, shared_sky->take_pixels());
     if (shared && bound)
-        bound->add_residual(shared->residual_pixels());
+        bound->add_residual(shared->told_pixels(SharedBounce::Apart::Residual));
     if (compensated)
         add_compensation(image, *compensated, bound ? &*bound : nullptr);
     if (bound) {

@@ -43,6 +43,7 @@ private:
     Image picture(const InScattering* estimator, int number, const MomentLights& lights, const Camera& camera,
                   const Surroundings* surroundings);
     std::optional<LightReuse> light_reuse(const Camera& camera, SharedBounce* shared, BoundAccount* bound) const;
+    std::vector<SharedBounce::Apart> told_of_shared(const InScattering* estimator, bool asks_for_bound) const;
     std::optional<ScreenSpaceCompensation> compensation(const Camera& camera) const;
     int samples_of_pixel(const Camera& camera) const;
     float shading_tolerance() const;

@@ -21,8 +21,8 @@ bool has_wide_lobes(const SurfaceMaterial& m) {
     return needs_energy_tables(m) && double(m.roughness) * m.roughness >= kSmoothAlpha;
 }
 
-void GlossOfMedium::reflect(const SurfacePoint& point, const dvec3& toward_viewer, const GlossyLobes& lobes,
-                            const dvec3& numbers, Rng& ray_rng, CellSum& light) const {
+double GlossOfMedium::reflect(const SurfacePoint& point, const dvec3& toward_viewer, const GlossyLobes& lobes,
+                              const dvec3& numbers, Rng& ray_rng, CellSum& light) const {
     const PathVertex vertex(point, lobes.bsdf, -toward_viewer);
     const float lines = has_wide_lobes(point.material) ? direct_.fire_lines_on_surface(vertex) : 0.0f;
     if (lines > 0.0f)
@@ -31,20 +31,23 @@ void GlossOfMedium::reflect(const SurfacePoint& point, const dvec3& toward_viewe
                 line->weight, true, light);
     const std::optional<BsdfSample> drawn = lobes.bsdf.sample(toward_viewer, numbers);
     if (!drawn || point.leaks(toward_viewer, drawn->wi))
-        return;
+        return 0.0;
     const float of_rays = drawn->delta ? 1.0f : float(lobes.split.of_rays(drawn->wi));
     Rgb weight = drawn->weight;
     RaySegment segment = direct_.segment_along(point.leaving(drawn->wi));
+    double closeness = 0.0;
     for (bool first = true;; first = false) {
         const SecondaryField::Seen seen = medium_.glance(segment.ray, segment.end, of_rays, ray_rng);
         const bool by_lines = first && !drawn->delta && !is_dark(seen);
         const float share = by_lines ? direct_.weight_of_sample(lines, segment.ray, drawn->pdf) : 1.0f;
         add(seen, share * weight, first, light);
+        if (first)
+            closeness = seen.closeness + seen.transmittance / segment.end;
         if (!through_panes_ || !segment.point)
-            return;
+            return closeness;
         weight *= seen.transmittance * Panes::straight_on(*segment.point, segment.ray.direction);
         if (weight == Rgb(0.0f))
-            return;
+            return closeness;
         segment = direct_.segment_along(segment.point->leaving(segment.ray.direction));
     }
 }

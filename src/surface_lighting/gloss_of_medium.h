@@ -29,9 +29,10 @@ public:
     GlossOfMedium(const DirectLight& direct, const MediumAlongRay& medium, bool through_panes)
         : direct_(direct), medium_(medium), through_panes_(through_panes) {}
 
-    // Adds one estimate. `numbers`: in [0, 1), of which the lobes' direction is made.
-    void reflect(const SurfacePoint& point, const dvec3& toward_viewer, const GlossyLobes& lobes, const dvec3& numbers,
-                 Rng& ray_rng, CellSum& light) const;
+    // Adds one estimate. `numbers`: in [0, 1), of which the lobes' direction is made. Returns what that direction
+    // meets: the mean of 1 / distance, of a surface or of smoke as far as that hides it [1/m].
+    double reflect(const SurfacePoint& point, const dvec3& toward_viewer, const GlossyLobes& lobes,
+                   const dvec3& numbers, Rng& ray_rng, CellSum& light) const;
 
 private:
     const DirectLight& direct_;

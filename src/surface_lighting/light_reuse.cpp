@@ -200,7 +200,7 @@ void LightReuse::show(Sample& sample, const Found& found) {
         return;
     pixel += s.light * s.weight;
     if (bound_)
-        bound_->add_residual(sample.pixel, s.residual * s.weight);
+        bound_->add_residual(sample.pixel, s.of(SharedBounce::Apart::Residual) * s.weight);
 }
 
 }  // namespace brisance

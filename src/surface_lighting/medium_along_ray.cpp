@@ -10,6 +10,10 @@ namespace {
 // Points on a ray at which emitters are sampled.
 constexpr int kEmitterSamples = 4;
 
+float closeness_of(const RaySum& sum) {
+    return sum.distance_sum > 0.0f ? sum.distance_weight * sum.distance_weight / sum.distance_sum : 0.0f;
+}
+
 }  // namespace
 
 MediumAlongRay::MediumAlongRay(const SourceField& field, const DirectLight& scene, int parts,
@@ -46,7 +50,7 @@ SecondaryField::Seen MediumAlongRay::glance(const Ray& ray, double end, float of
         seen = secondary_->along(ray, end);
     } else {
         const RaySum sum = integrate(field_, ray, 1, end);
-        seen = {sum.cells.at(Cell::V), scattered_by_medium(sum.cells), sum.through};
+        seen = {sum.cells.at(Cell::V), scattered_by_medium(sum.cells), sum.through, closeness_of(sum)};
     }
     if (!in_scattering_ && emitters_by_rays_ == 0.0f)
         return seen;

@@ -26,8 +26,8 @@ bool has_narrow_lobes(const SurfaceMaterial& m);
 class Mirrors {
 public:
     // Keeps references. `beyond`: light of surfaces behind mirrors (cell SS) is needed. `samples`: rays of a pixel.
-    // `through_panes`: the caller lights surfaces by what of the medium is seen straight through panes. Other seeds draw
-    // other numbers.
+    // `through_panes`: the caller lights surfaces by what of the medium is seen straight through panes. Other seeds
+    // draw other numbers.
     Mirrors(const DirectLight& scene, const MediumAlongRay& medium, bool beyond, int samples, bool through_panes,
             std::uint32_t seed = 0)
         : scene_(scene),

@@ -37,10 +37,11 @@ SharedBounce::Sample share_light(const SurfaceSample& sample, const SurfacePoint
     for (int c = 0; c < 3; ++c)
         if (of.colour[c] > 0.0f) {
             out.light[c] = of.light[c] / of.colour[c];
-            out.residual[c] = of.residual[c] / of.colour[c];
+            for (std::size_t k = 0; k < SharedBounce::kAparts; ++k)
+                out.apart[k][c] = of.apart[k][c] / of.colour[c];
         }
     out.weight = sample.share * of.colour;
-    out.closeness = float(1.0 / of.distance);
+    out.closeness = float(of.closeness.value_or(0.0));
     // Along a glossy surface the direction to the eye changes, too.
     if (of.lobe < 1.0f && out.closeness > 0.0f)
         out.closeness += float(1.0 / from_eye);

@@ -1,6 +1,8 @@
 // What a sample found, as pixels share it.
 #pragma once
 
+#include <optional>
+
 #include "camera_rays/picture.h"
 #include "geometry/surface_point.h"
 #include "surface_lighting/shared_bounce.h"
@@ -8,11 +10,12 @@
 namespace brisance {
 
 struct LightToShare {
-    Rgb colour;       // of the lobes, positive where they reflect
-    Rgb light;        // radiance that they reflect [W/(m^2 sr)]
-    Rgb residual;     // a part of it, told apart
-    float lobe;       // their width: 1 for a base
-    double distance;  // of the surface that the sampled ray met; infinite: none [m]
+    Rgb colour{1.0f};   // of the lobes, positive where they reflect
+    Rgb light{0.0f};    // radiance that they reflect [W/(m^2 sr)]
+    float lobe = 1.0f;  // their width: 1 for a base
+    // Of what the sampled ray met, the inverse distance; 0: nothing [1/m].
+    std::optional<double> closeness = std::nullopt;
+    SharedBounce::Aparts apart = {};
 };
 
 // Half the angle [rad] in which a glossy lobe reflects.

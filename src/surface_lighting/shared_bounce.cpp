@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "core/parallel.h"
 
@@ -41,11 +43,11 @@ float turned(float lobe) {
 
 }  // namespace
 
-SharedBounce::SharedBounce(int width, int height, double radius, int rays, bool tells_residual)
+SharedBounce::SharedBounce(int width, int height, double radius, int rays, std::vector<Apart> told)
     : width_(width),
       height_(height),
       radius_(float(radius * std::pow(double(kUsualRays) / std::max(rays, 1), 1.0 / 6.0))),
-      tells_residual_(tells_residual),
+      told_(std::move(told)),
       first_(std::size_t(width) * height, kNone) {}
 
 bool SharedBounce::add(const Sample& s) {
@@ -65,11 +67,10 @@ bool SharedBounce::add(const Sample& s) {
     if (*at == kNone) {
         *at = static_cast<std::uint32_t>(found);
         patches_.emplace_back();  // may move what `at` points to
-        if (tells_residual_)
-            residual_.emplace_back(0.0f);
+        apart_.resize(apart_.size() + told_.size(), Rgb(0.0f));
     }
-    if (tells_residual_)
-        residual_[found] += s.residual;
+    for (std::size_t t = 0; t < told_.size(); ++t)
+        apart_[found * told_.size() + t] += s.of(told_[t]);
     Patch& p = patches_[found];
     p.position += s.position;
     p.normal += s.normal;
@@ -85,8 +86,8 @@ bool SharedBounce::add(const Sample& s) {
 }
 
 void SharedBounce::take_means() {
-    for (std::size_t k = 0; k < residual_.size(); ++k)
-        residual_[k] /= patches_[k].samples;
+    for (std::size_t k = 0; k < apart_.size(); ++k)
+        apart_[k] /= patches_[k / told_.size()].samples;
     for (Patch& p : patches_) {
         const float each = 1.0f / p.samples;
         p.position *= each;
@@ -156,14 +157,16 @@ std::vector<float> SharedBounce::radii() const {
 }
 
 void SharedBounce::share(const std::vector<float>& radius, int step) {
-    std::vector<Rgb> light(patches_.size()), residual(residual_);
+    std::vector<Rgb> light(patches_.size()), apart(apart_);
+    const std::size_t told = told_.size();
     for_each_patch([&](std::size_t pixel, std::uint32_t k) {
         const Patch& p = patches_[k];
         light[k] = p.light;
         // What is nearer than a step has been shared by the step before.
         if (radius[k] <= (step > 1 ? float(step) * p.pixel_size : 0.0f))
             return;
-        Rgb sum(0.0f), sum_of_residual(0.0f);
+        Rgb sum(0.0f);
+        Aparts sums{};
         float weights = 0.0f;
         for_neighbours(pixel, p, std::min(radius[k], float(kReach * step) * p.pixel_size), step,
                        [&](std::uint32_t j, float w) {
@@ -175,16 +178,16 @@ void SharedBounce::share(const std::vector<float>& radius, int step) {
                            w *= j == k ? 1.0f : square(within);
                            sum += w * patches_[j].light;
                            weights += w;
-                           if (tells_residual_)
-                               sum_of_residual += w * residual_[j];
+                           for (std::size_t t = 0; t < told; ++t)
+                               sums[t] += w * apart_[j * told + t];
                        });
         if (!(weights > 0.0f))
             return;
         light[k] = sum / weights;
-        if (tells_residual_)
-            residual[k] = sum_of_residual / weights;
+        for (std::size_t t = 0; t < told; ++t)
+            apart[k * told + t] = sums[t] / weights;
     });
-    residual_.swap(residual);
+    apart_.swap(apart);
     for (std::size_t k = 0; k < patches_.size(); ++k)
         patches_[k].light = light[k];
 }
@@ -199,11 +202,26 @@ std::vector<Rgb> SharedBounce::take_pixels() {
     return out;
 }
 
-std::vector<Rgb> SharedBounce::residual_pixels() const {
+bool SharedBounce::tells(Apart which) const {
+    return std::find(told_.begin(), told_.end(), which) != told_.end();
+}
+
+std::vector<Rgb> SharedBounce::told_pixels(Apart which) const {
     std::vector<Rgb> out(first_.size(), Rgb(0.0f));
-    if (tells_residual_)
-        for_each_patch([&](std::size_t pixel, std::uint32_t k) { out[pixel] += patches_[k].weight * residual_[k]; });
+    const auto at = static_cast<std::size_t>(std::find(told_.begin(), told_.end(), which) - told_.begin());
+    if (at < told_.size())
+        for_each_patch([&](std::size_t pixel, std::uint32_t k) {
+            out[pixel] += patches_[k].weight * apart_[k * told_.size() + at];
+        });
     return out;
+}
+
+// The weights of share() are 1 - r^2 twice squared, less what normals and planes take: a fifth of the circle.
+float SharedBounce::pixels_sharing(const Sample& s, float closeness) const {
+    constexpr float kOfCircle = 0.2f * std::numbers::pi_v<float>;
+    const float most = kMostPixels * s.pixel_size;
+    const float radius = closeness > 0.0f ? std::min(radius_ * s.lobe / closeness, most) : most;
+    return s.area > 0.0f ? std::max(1.0f, kOfCircle * square(radius) / s.area) : 1.0f;
 }
 
 }  // namespace brisance

@@ -1,12 +1,13 @@
 // Light between surfaces (SS) that Lambert bases and rough lobes reflect, shared among the pixels of a picture. Light
-// of an even sky on bases (light_of_emitters.h) is shared likewise.
+// of an even sky on bases (light_of_emitters.h) is shared likewise, and so is all other light that rough lobes reflect.
 //
 // A pixel has few paths and much noise, while the light that arrives at a matt surface from others changes slowly: over
 // a distance that is a part of the distance to the surfaces around (G. Ward, F. Rubinstein, R. Clear, A Ray Tracing
 // Solution for Diffuse Interreflection, SIGGRAPH 1988, on the split sphere). So each pixel takes the mean of what its
 // neighbours found on the same surface, without its colour, weighted by area, by distance, by normals, and by how far
-// they lie off the plane. Weights depend on the surfaces alone, never on the light: the mean keeps its energy but for
-// what crosses edges, and a bright grain is divided among as many pixels as any other sample.
+// they lie off the plane. Smoke counts as a surface as far as it hides what is behind it. Weights depend on the
+// surfaces alone, never on the light: the mean keeps its energy but for what crosses edges, and a bright grain is
+// divided among as many pixels as any other sample.
 //
 // A glossy lobe sees less of the surroundings: the distances over which its light changes are shorter by its width, and
 // so are the differences of normals. Where the lobe is narrower than pixels, nothing is shared.
@@ -17,6 +18,7 @@
 // HPG 2010).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -26,6 +28,12 @@ namespace brisance {
 
 class SharedBounce {
 public:
+    // Light that is shared by the same weights and told apart [W/(m^2 sr)]: a part of Sample::light, and what the lobe
+    // reflects of other cells, which is no part of it.
+    enum class Apart : std::uint8_t { Residual, SV, SM, SA };
+    static constexpr std::size_t kAparts = 4;
+    using Aparts = std::array<Rgb, kAparts>;
+
     // What one path found.
     struct Sample {
         std::uint32_t pixel = 0;
@@ -37,12 +45,14 @@ public:
         Rgb light{0.0f};         // radiance that the lobe reflects, over its colour [W/(m^2 sr)]
         Rgb weight{0.0f};        // the pixel shows light times weight
         float closeness = 0.0f;  // inverse distance of the surface that the path met first; 0: none [1/m]
-        Rgb residual{0.0f};      // a part of `light` that is shared likewise, and told apart
+        Aparts apart{};          // as `light`
+        Rgb& of(Apart which) { return apart[std::size_t(which)]; }
+        const Rgb& of(Apart which) const { return apart[std::size_t(which)]; }
     };
 
-    // `radius`: over the distance to surrounding surfaces, for 16 rays per pixel. `rays`: of a pixel. `tells_residual`:
-    // residual_pixels() is asked for.
-    SharedBounce(int width, int height, double radius, int rays, bool tells_residual = false);
+    // `radius`: over the distance to surrounding surfaces, for 16 rays per pixel. `rays`: of a pixel. `told`: for what
+    // told_pixels() is asked.
+    SharedBounce(int width, int height, double radius, int rays, std::vector<Apart> told = {});
 
     // Over how much pixels share: the radius over the distance to surrounding surfaces [rad].
     double angle(float lobe) const { return double(radius_) * lobe; }
@@ -53,8 +63,13 @@ public:
 
     // Radiance of each pixel. Uses up the samples.
     std::vector<Rgb> take_pixels();
-    // After that: the part of it that comes from Sample::residual.
-    std::vector<Rgb> residual_pixels() const;
+    // After that: what comes from Sample::apart, of those told.
+    std::vector<Rgb> told_pixels(Apart which) const;
+    bool tells(Apart which) const;
+
+    // About how many pixels like this one share, where the mean of 1 / distance around it is `closeness` [1/m]; the
+    // noise of a sample falls by the square root of that.
+    float pixels_sharing(const Sample& at, float closeness) const;
 
 private:
     // The samples of a pixel that lie on one surface, of lobes of one width: sums, then their means, but for `weight`.
@@ -79,10 +94,10 @@ private:
 
     int width_, height_;
     float radius_;
-    bool tells_residual_;
+    std::vector<Apart> told_;
     std::vector<std::uint32_t> first_;  // patch of each pixel
     std::vector<Patch> patches_;
-    std::vector<Rgb> residual_;  // of each patch, as Patch::light; empty: not told
+    std::vector<Rgb> apart_;  // told_.size() for each patch, as Patch::light
 };
 
 }  // namespace brisance

@@ -50,7 +50,7 @@ bool SurfaceRounds::among_few(std::size_t sample) const {
     return ray % per_axis_ % 4 == kColumns[ray / per_axis_ % 4];
 }
 
-void SurfaceRounds::measure(Pixel& p, std::span<const float> even, std::span<const float> sampled) const {
+void SurfaceRounds::measure(Pixel& p, std::span<const float> even, const Found& found) const {
     float sum = 0.0f, squares = 0.0f, count = 0.0f;
     p.shown = samples_[p.begin].beside;
     for (std::size_t i = p.begin; i < p.end; ++i) {
@@ -58,7 +58,8 @@ void SurfaceRounds::measure(Pixel& p, std::span<const float> even, std::span<con
         p.shown += share * even[i];
         if (p.few && !among_few(i))
             continue;
-        const float seen = p.scale * share * sampled[i];
+        const float seen = p.scale * share * found.noisy[i];
+        p.shown += p.scale * share * found.shared[i];
         sum += seen;
         squares += seen * seen;
         count += 1.0f;
@@ -91,13 +92,13 @@ bool SurfaceRounds::wants_more(std::size_t number) const {
     return !(std::max(own.variance, variance / estimates) <= tolerated * tolerated);
 }
 
-std::vector<std::size_t> SurfaceRounds::second(std::span<const float> even, std::span<const float> sampled) {
+std::vector<std::size_t> SurfaceRounds::second(std::span<const float> even, const Found& found) {
     if (pixels_.empty())
         return {};
     const std::size_t rows = (samples_.back().pixel - origin_) / width_ + 1;
     number_.assign(rows * width_, kNone);
     for (std::uint32_t k = 0; k < pixels_.size(); ++k) {
-        measure(pixels_[k], even, sampled);
+        measure(pixels_[k], even, found);
         number_[samples_[pixels_[k].begin].pixel - origin_] = k;
     }
     std::vector<std::size_t> second;

@@ -23,9 +23,13 @@ public:
     SurfaceRounds(std::span<const SurfaceSample> samples, int width, std::size_t rays, float tolerance);
 
     const std::vector<std::size_t>& first() const { return first_; }
-    // The second round. `even`: luminance of each sample that is known of all [W/(m^2 sr)]; `sampled`: of what shading
-    // found at those of the first round.
-    std::vector<std::size_t> second(std::span<const float> even, std::span<const float> sampled);
+    // What shading found at samples of the first round, as luminance [W/(m^2 sr)].
+    struct Found {
+        std::vector<float> noisy;   // with the noise that it has in the pixel
+        std::vector<float> shared;  // among pixels: it counts for what the pixel shows
+    };
+    // The second round. `even`: luminance of each sample that is known of all [W/(m^2 sr)].
+    std::vector<std::size_t> second(std::span<const float> even, const Found& found);
     // For how many samples, by their shares, one stands, after second(); 0: it was not shaded.
     float stands_for(std::size_t sample) const;
 
@@ -39,7 +43,7 @@ private:
         float variance = 0.0f;   // of that for want of samples
     };
     bool among_few(std::size_t sample) const;
-    void measure(Pixel& pixel, std::span<const float> even, std::span<const float> sampled) const;
+    void measure(Pixel& pixel, std::span<const float> even, const Found& found) const;
     bool wants_more(std::size_t at) const;
 
     std::span<const SurfaceSample> samples_;

@@ -9,7 +9,6 @@
 #include "core/cpu_clock.h"
 #include "core/parallel.h"
 #include "surface_lighting/lobe_numbers.h"
-#include "surface_lighting/share_light.h"
 #include "surface_lighting/shown_area.h"
 
 namespace brisance {
@@ -20,6 +19,8 @@ constexpr std::size_t kSamplesAtOnce = 256;
 
 // What a puddle shows of a window is followed to what the window shows. Beyond that, paths find it.
 constexpr int kMostReflections = 2;
+
+using Apart = SharedBounce::Apart;
 
 constexpr Stream kGloss = stream_of("surface_lighting/gloss");
 
@@ -41,6 +42,16 @@ float share_of_walks(const SurfaceLightingInput& input) {
     if (input.in_scattering)
         return 1.0f;
     return glm::smoothstep(0.3f, 0.6f, std::abs(input.field.medium().mean_cosine));
+}
+
+// What the lobe reflects beside light between surfaces.
+Rgb light_apart(const SharedBounce::Sample& s) {
+    return s.of(Apart::SV) + s.of(Apart::SM) + s.of(Apart::SA);
+}
+
+// As the pixel shows it.
+Rgb all_light(const SharedBounce::Sample& s) {
+    return s.weight * (s.light + light_apart(s));
 }
 
 // Whoever compares choices of lights, or asks what their bound does, wants those lights at every lobe.
@@ -73,8 +84,10 @@ struct SurfaceShader::ShadedPoint {
     float stands_for = 1.0f;                                                        // that of SurfaceRounds
     std::optional<SharedBounce::Sample> base = std::nullopt, gloss = std::nullopt,  // left to all pixels
         sky = std::nullopt;
-    std::vector<LightReuse::Sample> chosen = {};  // left to samples around
-    BoundTally bound = {};                        // of what is not left to all pixels
+    SharedBounce::Aparts of_gloss = {};              // left to them with the gloss, ...
+    std::optional<double> closeness = std::nullopt;  // ... by what its ray met [1/m]
+    std::vector<LightReuse::Sample> chosen = {};     // left to samples around
+    BoundTally bound = {};                           // of what is not left to all pixels
 };
 
 std::vector<SurfaceShader::ShadedPoint> SurfaceShader::shaded_points(const std::vector<SurfaceSample>& samples,
@@ -133,9 +146,24 @@ void SurfaceShader::reflect_scattered(const SurfaceSample& sample, ShadedPoint& 
             light.at(Cell::SM) += input_.in_scattering->at_surface(
                 point, ReceiverLobes(base, shared ? &gloss->split : nullptr), toward_viewer, at.ray_rng);
     }
-    if (gloss)
-        gloss_.reflect(point, toward_viewer, *gloss, lobe_numbers(kGloss, sample, input_.samples, input_.seed, rng),
-                       at.ray_rng, light);
+    if (!gloss)
+        return;
+    CellSum found;
+    const dvec3 numbers = lobe_numbers(kGloss, sample, input_.samples, input_.seed, rng);
+    const double closeness = gloss_.reflect(point, toward_viewer, *gloss, numbers, at.ray_rng, found);
+    if (shares_gloss(at)) {
+        at.closeness = closeness;
+        at.of_gloss[std::size_t(Apart::SV)] = std::exchange(found.at(Cell::SV), Rgb(0.0f));
+        at.of_gloss[std::size_t(Apart::SM)] = std::exchange(found.at(Cell::SM), Rgb(0.0f));
+    }
+    light.add(found, Rgb(1.0f));
+}
+
+// Whether pixels share what rough lobes reflect, whoever sent it.
+bool SurfaceShader::shares_gloss(const ShadedPoint& at) const {
+    const SurfaceMaterial& m = at.seen.point.material;
+    return input_.shared && input_.shared->tells(Apart::SV) && at.seen.mirrors == 0 && has_specular(m) &&
+           m.transmission == 0.0f && has_wide_lobes(m) && !shows_others(at);
 }
 
 VirtualLights::Shading SurfaceShader::shading(ShadedPoint& at) const {
@@ -163,15 +191,18 @@ Rgb SurfaceShader::from_virtual_lights(const SurfaceSample& sample, const PathVe
     if (has_base(point.material)) {
         const Bsdf base(point.material, point.frame, Lobes::Base);
         if (const Rgb albedo = base.base_albedo(-at.seen.arriving); albedo != Rgb(0.0f))
-            at.base = shared_sample(sample, base, Lobes::Base, albedo, 1.0f, rng, at);
+            at.base = shared_sample(sample, base, Lobes::Base, {.colour = albedo, .lobe = 1.0f}, rng, at);
     }
     if (!has_specular(point.material) || reflected)
         return Rgb(0.0f);
     const Bsdf others(point.material, point.frame, Lobes::Specular);
     if (point.material.transmission > 0.0f || !has_wide_lobes(point.material))
         return shade_vertex(sample, PathVertex(point, others, at.seen.arriving), Lobes::Specular, shading(at), rng, at);
-    at.gloss = shared_sample(sample, others, Lobes::Specular, colour_of_gloss(point.material),
-                             width_of_gloss(point.material.roughness), rng, at);
+    LightToShare of_gloss{.colour = colour_of_gloss(point.material),
+                          .lobe = width_of_gloss(point.material.roughness),
+                          .closeness = at.closeness,
+                          .apart = at.of_gloss};
+    at.gloss = shared_sample(sample, others, Lobes::Specular, of_gloss, rng, at);
     return Rgb(0.0f);
 }
 
@@ -191,19 +222,21 @@ Rgb SurfaceShader::shade_vertex(const SurfaceSample& sample, const PathVertex& v
     return light;
 }
 
-// Of some lobes of the sample's surface. `colour`: of them; `lobe`: their width.
+// Of some lobes of the sample's surface, with their light between surfaces. What the lobes met may be known already.
 SharedBounce::Sample SurfaceShader::shared_sample(const SurfaceSample& sample, const Bsdf& lobes, Lobes which,
-                                                  const Rgb& colour, float lobe, Rng& rng, ShadedPoint& at) const {
+                                                  LightToShare found, Rng& rng, ShadedPoint& at) const {
     VirtualLights::Shading how = shading(at);
     double distance = std::numeric_limits<double>::infinity();
     how.distance = &distance;
-    how.blur = input_.shared->angle(lobe);
+    how.blur = input_.shared->angle(found.lobe);
     const Rgb own_residual = std::exchange(at.bound.residual, Rgb(0.0f));
-    const Rgb light = shade_vertex(sample, PathVertex(at.seen.point, lobes, at.seen.arriving), which, how, rng, at);
+    found.light = shade_vertex(sample, PathVertex(at.seen.point, lobes, at.seen.arriving), which, how, rng, at);
     if (!at.chosen.empty())
-        at.chosen.back().colour = colour;
-    const LightToShare to_share{colour, light, std::exchange(at.bound.residual, own_residual), lobe, distance};
-    return share_light(sample, at.seen.point, at.seen.arriving, input_.pixel_angle, to_share);
+        at.chosen.back().colour = found.colour;
+    found.apart[std::size_t(Apart::Residual)] = std::exchange(at.bound.residual, own_residual);
+    if (!found.closeness)
+        found.closeness = 1.0 / distance;
+    return share_light(sample, at.seen.point, at.seen.arriving, input_.pixel_angle, found);
 }
 
 // Even light from infinity that the base reflects is left to all pixels, where they share it.
@@ -214,15 +247,28 @@ Rgb SurfaceShader::from_emitters(const SurfaceSample& sample, const PathVertex& 
     const SurfacePoint& point = at.seen.point;
     const Bsdf base(point.material, point.frame, Lobes::Base);
     const Rgb albedo = input_.shared_sky && at.seen.mirrors == 0 ? base.base_albedo(-at.seen.arriving) : Rgb(0.0f);
-    if (albedo == Rgb(0.0f))
+    const bool shares = shares_gloss(at);
+    if (albedo == Rgb(0.0f) && !shares)
         return emitters_.at(sample, vertex, rng).all();
-    const LightOfEmitters::Seen of_base = emitters_.at(sample, PathVertex(point, base, at.seen.arriving), rng);
-    at.sky = share_light(sample, point, at.seen.arriving, input_.pixel_angle,
-                         {albedo, of_base.even, Rgb(0.0f), 1.0f, of_base.distance});
+    Rgb own(0.0f);
+    if (has_base(point.material)) {
+        const LightOfEmitters::Seen of_base = emitters_.at(sample, PathVertex(point, base, at.seen.arriving), rng);
+        own = of_base.other;
+        if (albedo == Rgb(0.0f))
+            own += of_base.even;
+        else
+            at.sky = share_light(
+                sample, point, at.seen.arriving, input_.pixel_angle,
+                {.colour = albedo, .light = of_base.even, .lobe = 1.0f, .closeness = 1.0 / of_base.distance});
+    }
     if (!has_specular(point.material))
-        return of_base.other;
+        return own;
     const Bsdf others(point.material, point.frame, Lobes::Specular);
-    return of_base.other + emitters_.at(sample, PathVertex(point, others, at.seen.arriving), rng).all();
+    const Rgb of_others = emitters_.at(sample, PathVertex(point, others, at.seen.arriving), rng).all();
+    if (!shares)
+        return own + of_others;
+    at.of_gloss[std::size_t(Apart::SA)] = of_others;
+    return own;
 }
 
 std::optional<PathVertex> SurfaceShader::base_of(const ShadedPoint& at) const {
@@ -288,7 +334,8 @@ void SurfaceShader::shade_point(const SurfaceSample& sample, ShadedPoint& at, Ce
 void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) {
     std::vector<ShadedPoint> points = shaded_points(samples, light);
     const std::vector<BaseLight> bases = light_bases(samples, points);
-    std::vector<float> even(samples.size()), sampled(samples.size(), 0.0f);
+    std::vector<float> even(samples.size());
+    SurfaceRounds::Found known{std::vector<float>(samples.size()), std::vector<float>(samples.size())};
     for (std::size_t i = 0; i < samples.size(); ++i) {
         if (!points[i].seen.lost)
             add_base(bases[i], points[i], light[i]);
@@ -297,12 +344,11 @@ void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector
     std::vector<CellSum> found(samples.size());
     const auto shade = [&](const std::vector<std::size_t>& some) {
         shade_some(samples, some, points, found);
-        for (const std::size_t i : some)
-            sampled[i] = luminance(found[i]);
+        tell(samples, some, points, found, known);
     };
     SurfaceRounds rounds(samples, input_.width, std::size_t(input_.samples), input_.tolerance);
     shade(rounds.first());
-    shade(rounds.second(even, sampled));
+    shade(rounds.second(even, known));
     for (std::size_t i = 0; i < samples.size(); ++i) {
         points[i].stands_for = rounds.stands_for(i);
         light[i].add(found[i], Rgb(points[i].stands_for));
@@ -311,6 +357,31 @@ void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector
         if (points[i].stands_for > 0.0f)
             input_.lengths->add(samples[i].pixel, points[i].vertices);
     hand_over(samples, points, light);
+}
+
+// What shading found at some samples, of which all pixels share a part. What that leaves of its noise is told of the
+// light that rough lobes reflect.
+void SurfaceShader::tell(const std::vector<SurfaceSample>& samples, const std::vector<std::size_t>& some,
+                         const std::vector<ShadedPoint>& points, const std::vector<CellSum>& found,
+                         SurfaceRounds::Found& known) const {
+    for (std::size_t begin = 0, end = 0; begin < some.size(); begin = end) {
+        float closeness = 0.0f, met = 0.0f;
+        for (; end < some.size() && samples[some[end]].pixel == samples[some[begin]].pixel; ++end)
+            if (const auto& gloss = points[some[end]].gloss; gloss && gloss->closeness > 0.0f) {
+                closeness += gloss->closeness;
+                met += 1.0f;
+            }
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::size_t i = some[k];
+            known.noisy[i] = luminance(found[i]);
+            for (const auto* s : {&points[i].base, &points[i].gloss, &points[i].sky})
+                if (*s)
+                    known.shared[i] += luminance(all_light(**s)) / samples[i].share;
+            if (const auto& gloss = points[i].gloss)
+                known.noisy[i] += luminance(gloss->weight * light_apart(*gloss)) / samples[i].share /
+                                  std::sqrt(input_.shared->pixels_sharing(*gloss, closeness / std::max(met, 1.0f)));
+        }
+    }
 }
 
 void SurfaceShader::shade_some(const std::vector<SurfaceSample>& samples, const std::vector<std::size_t>& some,
@@ -328,8 +399,7 @@ void SurfaceShader::shade_some(const std::vector<SurfaceSample>& samples, const 
 
 // Whether what the point's lobes show of other surfaces is found by shade_reflected().
 bool SurfaceShader::shows_others(const ShadedPoint& at) const {
-    return reflects_ && at.seen.mirrors < kMostReflections && !at.seen.lost &&
-           has_narrow_lobes(at.seen.point.material);
+    return reflects_ && at.seen.mirrors < kMostReflections && !at.seen.lost && has_narrow_lobes(at.seen.point.material);
 }
 
 // The surfaces that narrow lobes show are lit together, as those are that camera rays hit.
@@ -398,7 +468,7 @@ ScreenSpaceCompensation::Sample SurfaceShader::compensated_sample(const SurfaceS
         out.light += cell;
     for (const std::optional<SharedBounce::Sample>& s : {at.base, at.gloss, at.sky})
         if (s)
-            out.light += s->light * s->weight / sample.share;
+            out.light += all_light(*s) / sample.share;
     if (has_base(point.material))
         out.albedo = Bsdf(point.material, point.frame, Lobes::Base).base_albedo(-at.seen.arriving);
     out.share = sample.share;
@@ -430,9 +500,13 @@ void SurfaceShader::hand_over(const std::vector<SurfaceSample>& samples, std::ve
         }
         for (const std::optional<SharedBounce::Sample>& s : {at.base, at.gloss})
             if (s && !input_.shared->add(*s)) {
-                light[i].at(Cell::SS) += s->light * s->weight / samples[i].share;
+                const Rgb shown = s->weight / samples[i].share;
+                light[i].at(Cell::SS) += s->light * shown;
+                light[i].at(Cell::SV) += s->of(Apart::SV) * shown;
+                light[i].at(Cell::SM) += s->of(Apart::SM) * shown;
+                light[i].at(Cell::SA) += s->of(Apart::SA) * shown;
                 if (input_.bound)
-                    input_.bound->add_residual(samples[i].pixel, s->residual * s->weight);
+                    input_.bound->add_residual(samples[i].pixel, s->of(Apart::Residual) * s->weight);
             }
         if (at.sky && !input_.shared_sky->add(*at.sky))
             light[i].at(Cell::SA) += at.sky->light * at.sky->weight / samples[i].share;

@@ -3,12 +3,13 @@
 // SV and SM: the Lambert base is lit by the lighting grids, which sum all lights of fire and smoke without noise; the
 // sum is multiplied by the fraction that other surfaces do not occlude (visibility_ratio.h). Where the fire's single
 // lights are chosen otherwise (fire_lights/sampled_fire.h), SV of the base is theirs. All other lobes are sampled, and
-// reflect the medium along the sampled ray. Virtual lights in the smoke that own SM replace the smoke's grid on the
-// base and also shine along those rays; ray lights and rays share the glossy reflection of multiple scattering
-// (gloss_split.h). The grid gives the glossy reflection of single scattering without noise.
+// reflect the medium along the sampled ray; what rough lobes reflect is shared among pixels (shared_bounce.h). Virtual
+// lights in the smoke that own SM replace the smoke's grid on the base and also shine along those rays; ray lights and
+// rays share the glossy reflection of multiple scattering (gloss_split.h). The grid gives the glossy reflection of
+// single scattering without noise.
 //
-// What narrow lobes show of other surfaces is SS. Those surfaces are shaded as if they were seen in a mirror (mirrors.h):
-// by grids and virtual lights, where a path would sample them one by one.
+// What narrow lobes show of other surfaces is SS. Those surfaces are shaded as if they were seen in a mirror
+// (mirrors.h): by grids and virtual lights, where a path would sample them one by one.
 //
 // SA: light_of_emitters.h. Lights of all kinds may be chosen together instead (unified_lights.h), for SV of the base,
 // SS and SA. SS: the virtual lights or, without them, paths. Behind mirrors and clear glass the same estimators are
@@ -35,6 +36,7 @@
 #include "surface_lighting/mirrors.h"
 #include "surface_lighting/path_lengths.h"
 #include "surface_lighting/screen_space_compensation.h"
+#include "surface_lighting/share_light.h"
 #include "surface_lighting/shared_bounce.h"
 #include "surface_lighting/surface_rounds.h"
 #include "unified_lights/unified_lights.h"
@@ -83,6 +85,9 @@ private:
     std::vector<BaseLight> light_bases(const std::vector<SurfaceSample>& samples,
                                        const std::vector<ShadedPoint>& points);
     void add_base(const BaseLight& base, const ShadedPoint& at, CellSum& light) const;
+    void tell(const std::vector<SurfaceSample>& samples, const std::vector<std::size_t>& some,
+              const std::vector<ShadedPoint>& points, const std::vector<CellSum>& found,
+              SurfaceRounds::Found& known) const;
     void shade_some(const std::vector<SurfaceSample>& samples, const std::vector<std::size_t>& some,
                     std::vector<ShadedPoint>& points, std::vector<CellSum>& found);
     void shade_reflected(const std::vector<SurfaceSample>& samples, const std::vector<std::size_t>& some,
@@ -97,8 +102,9 @@ private:
     Rgb base_from_fire(const SurfaceSample& sample, const ShadedPoint& at) const;
     void add_unified(const SurfaceSample& sample, const PathVertex& vertex, const ShadedPoint& at, CellSum& out) const;
     Rgb from_virtual_lights(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng, ShadedPoint& at) const;
-    SharedBounce::Sample shared_sample(const SurfaceSample& sample, const Bsdf& lobes, Lobes which, const Rgb& colour,
-                                       float lobe, Rng& rng, ShadedPoint& at) const;
+    SharedBounce::Sample shared_sample(const SurfaceSample& sample, const Bsdf& lobes, Lobes which, LightToShare found,
+                                       Rng& rng, ShadedPoint& at) const;
+    bool shares_gloss(const ShadedPoint& at) const;
     VirtualLights::Shading shading(ShadedPoint& at) const;
     Rgb shade_vertex(const SurfaceSample& sample, const PathVertex& vertex, Lobes which, VirtualLights::Shading how,
                      Rng& rng, ShadedPoint& at) const;

@@ -46,9 +46,9 @@ public:
     // `reservoir`: becomes what the vertex itself has chosen of the lights, where reservoirs() is not null; that light
     // is missing in the sum then.
     // `lights_apart`: the caller lights the vertex by each_light(); the lights' share is missing in the sum then.
-    // `blur`: angle by which receivers lie apart that share the sum, seen from what they are lit by [rad]; 0: none share.
-    // Later vertices of the path widen their lobes to it.
-    // `bound`: gets what the bound of point lights and its compensation do to the sum; processor time is taken for it.
+    // `blur`: angle by which receivers lie apart that share the sum, seen from what they are lit by [rad]; 0: none
+    // share. Later vertices of the path widen their lobes to it. `bound`: gets what the bound of point lights and its
+    // compensation do to the sum; processor time is taken for it.
     enum class Panes { Followed, Sampled };
     struct Shading {
         Panes panes = Panes::Followed;

@@ -17,8 +17,8 @@ using Sample = SharedBounce::Sample;
 
 // A wall that faces the camera, seen by `rays` samples of each pixel. `finish` sets the light, and what else differs.
 SharedBounce wall(double radius, const std::function<void(Sample&, Rng&)>& finish, int rays = kRays,
-                  bool tells_residual = false) {
-    SharedBounce shared(kWidth, kHeight, radius, rays, tells_residual);
+                  std::vector<SharedBounce::Apart> told = {}) {
+    SharedBounce shared(kWidth, kHeight, radius, rays, std::move(told));
     Rng rng(Stream::Surface, 1);
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x)
@@ -77,10 +77,11 @@ TEST(SharedBounce, TellsAPartApart) {
     for (const double radius : {0.0, 0.2}) {
         const auto divide = [](Sample& s, Rng& rng) {
             grain(s, rng);
-            s.residual = 0.25f * s.light;
+            s.of(SharedBounce::Apart::Residual) = 0.25f * s.light;
         };
-        SharedBounce whole = wall(radius, grain), divided = wall(radius, divide, kRays, true);
-        const std::vector<Rgb> all = divided.take_pixels(), part = divided.residual_pixels();
+        SharedBounce whole = wall(radius, grain),
+                     divided = wall(radius, divide, kRays, {SharedBounce::Apart::Residual});
+        const std::vector<Rgb> all = divided.take_pixels(), part = divided.told_pixels(SharedBounce::Apart::Residual);
         EXPECT_EQ(all, whole.take_pixels());
         for (std::size_t p = 0; p < all.size(); ++p)
             ASSERT_EQ(part[p], 0.25f * all[p]);
