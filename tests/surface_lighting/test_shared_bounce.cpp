@@ -97,6 +97,24 @@ TEST(SharedBounce, DividesNoiseAndKeepsEnergy) {
     EXPECT_NEAR(shared.mean, 1.0, 3.0 * 0.045);
 }
 
+// By how many pixels noise is divided is what it says beforehand, within a half.
+TEST(SharedBounce, SaysHowManyPixelsShare) {
+    const Spread alone = spread(wall(0.0, grain).take_pixels());
+    for (const float closeness : {0.5f, 2.0f, 4.0f}) {
+        Sample one;
+        SharedBounce shared = wall(0.2, [&](Sample& s, Rng& rng) {
+            grain(s, rng);
+            s.closeness = closeness;
+            one = s;
+        });
+        const float said = shared.pixels_sharing(one, closeness);
+        const double is = alone.variance / spread(shared.take_pixels()).variance;
+        std::printf("closeness %g: %.0f pixels, said %.0f\n", closeness, is, said);
+        EXPECT_GT(said, is / 1.5);
+        EXPECT_LT(said, is * 1.5);
+    }
+}
+
 TEST(SharedBounce, CrossesNoEdgeOfNormals) {
     SharedBounce shared = wall(0.2, [](Sample& s, Rng&) {
         const bool right = s.pixel % kWidth >= kWidth / 2;

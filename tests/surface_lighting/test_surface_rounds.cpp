@@ -37,6 +37,9 @@ struct Band {
                     sampled.push_back(light(x, y, k));
                 }
     }
+    SurfaceRounds::Found found(float shared = 0.0f) const {
+        return {sampled, std::vector<float>(samples.size(), shared)};
+    }
     SurfaceRounds rounds(float tolerance = kTolerance) const { return {samples, kAcross, kRaysOfPixel, tolerance}; }
     std::size_t at(int x, int y, int ray) const { return (std::size_t(y) * kAcross + x) * kRaysOfPixel + ray; }
 };
@@ -49,7 +52,7 @@ TEST(SurfaceRounds, EvenLightWantsAQuarterOfTheRaysAndKeepsItsEnergy) {
     const Band band([](int, int, int) { return 0.7f; });
     SurfaceRounds rounds = band.rounds();
     EXPECT_EQ(rounds.first().size(), band.samples.size() / 4);
-    EXPECT_TRUE(rounds.second(band.even, band.sampled).empty());
+    EXPECT_TRUE(rounds.second(band.even, band.found()).empty());
     std::vector<float> pixels(kAcross * kDown, 0.0f);
     for (std::size_t i = 0; i < band.samples.size(); ++i) {
         EXPECT_EQ(rounds.stands_for(i) > 0.0f, is_first(rounds, i));
@@ -64,7 +67,7 @@ TEST(SurfaceRounds, TheFewAreSpreadOverThePixel) {
     for (const bool across : {true, false}) {
         const Band band([&](int, int, int k) { return across ? float(k % 4) : float(k / 4); });
         SurfaceRounds rounds = band.rounds(1e6f);
-        ASSERT_TRUE(rounds.second(band.even, band.sampled).empty());
+        ASSERT_TRUE(rounds.second(band.even, band.found()).empty());
         float sum = 0.0f;
         for (std::size_t k = 0; k < kRaysOfPixel; ++k)
             sum += rounds.stands_for(k) * band.samples[k].share * band.sampled[k];
@@ -78,7 +81,7 @@ TEST(SurfaceRounds, ErrorAsksForAllRaysThereAndBeside) {
     const Band band([](int x, int y, int k) { return x == kX && y == kY && k == 2 ? 5.0f : 1.0f; });
     SurfaceRounds rounds = band.rounds();
     ASSERT_TRUE(is_first(rounds, band.at(kX, kY, 2)));
-    const std::vector<std::size_t> second = rounds.second(band.even, band.sampled);
+    const std::vector<std::size_t> second = rounds.second(band.even, band.found());
     EXPECT_EQ(second.size(), 9 * kRaysOfPixel * 3 / 4);
     for (const std::size_t i : second)
         EXPECT_FALSE(is_first(rounds, i));
@@ -98,8 +101,10 @@ TEST(SurfaceRounds, TheErrorIsThatOfThePixel) {
     const auto noisy = [](int x, int y, int k) { return Rng(Stream::Surface, x + 100 * y, k).next(); };
     const Band alone(noisy), beside_bright(noisy, {}, 100.0f);
     SurfaceRounds rounds = alone.rounds(), others = beside_bright.rounds();
-    EXPECT_EQ(rounds.second(alone.even, alone.sampled).size(), alone.samples.size() * 3 / 4);
-    EXPECT_TRUE(others.second(beside_bright.even, beside_bright.sampled).empty());
+    EXPECT_EQ(rounds.second(alone.even, alone.found()).size(), alone.samples.size() * 3 / 4);
+    EXPECT_TRUE(others.second(beside_bright.even, beside_bright.found()).empty());
+    SurfaceRounds with_shared = alone.rounds();
+    EXPECT_TRUE(with_shared.second(alone.even, alone.found(100.0f)).empty());
 }
 
 TEST(SurfaceRounds, EdgesAndNoToleranceHaveAllRaysAtOnce) {
@@ -108,7 +113,7 @@ TEST(SurfaceRounds, EdgesAndNoToleranceHaveAllRaysAtOnce) {
     EXPECT_EQ(whole.rounds(0.0f).first().size(), whole.samples.size());
     SurfaceRounds rounds = cut.rounds();
     EXPECT_EQ(rounds.first().size(), std::size_t(kDown) * ((kAcross - 1) * kRaysOfPixel / 4 + 9));
-    EXPECT_TRUE(rounds.second(cut.even, cut.sampled).empty());
+    EXPECT_TRUE(rounds.second(cut.even, cut.found()).empty());
     for (std::size_t i = 0; i < cut.samples.size(); ++i)
         if (cut.samples[i].pixel % kAcross == 3) {
             EXPECT_EQ(rounds.stands_for(i), 1.0f);
