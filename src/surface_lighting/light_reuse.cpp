@@ -45,6 +45,15 @@ LightReuse::LightReuse(const ReservoirLights& lights, int width, int height, con
       done_(std::size_t(settings.rounds), 0),
       pixels_(std::size_t(width) * height, Rgb(0.0f)) {}
 
+std::uint64_t LightReuse::bytes_of(int width, int height, int rays, int rows_at_once, const Settings& settings) {
+    constexpr std::uint64_t kLobes = 2, kGrowth = 2;
+    const int rows = (settings.rounds + 1) * static_cast<int>(std::ceil(settings.radius)) + rows_at_once;
+    const std::uint64_t samples =
+        std::uint64_t(width) * std::uint64_t(std::min(rows, height)) * std::uint64_t(rays) * kLobes;
+    return std::uint64_t(width) * std::uint64_t(height) * sizeof(Rgb) +
+           samples * kGrowth * (sizeof(Sample) + 2 * sizeof(Choice));
+}
+
 void LightReuse::add(std::vector<Sample> samples) {
     if (samples.empty())
         return;

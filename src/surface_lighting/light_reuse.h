@@ -79,6 +79,10 @@ public:
     LightReuse(const ReservoirLights& lights, int width, int height, const Settings& settings, SharedBounce* shared,
                BoundAccount* bound = nullptr);
 
+    // That a picture takes whose samples all have lights to reuse, about. `rows_at_once`: of a call of add(); `rays`:
+    // of a pixel, each with two samples where lobes are lit apart.
+    static std::uint64_t bytes_of(int width, int height, int rays, int rows_at_once, const Settings& settings);
+
     // Samples of whole rows, in the order of rows. Not thread-safe. Rows whose neighbours are all known are lit, and
     // their samples forgotten: those of (rounds + 1) radius + 1 rows are kept, beside the rows of one call.
     void add(std::vector<Sample> samples);

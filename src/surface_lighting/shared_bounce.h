@@ -44,6 +44,9 @@ public:
     // residual_pixels() is asked for.
     SharedBounce(int width, int height, double radius, int rays, bool tells_residual = false);
 
+    // That a picture with surfaces everywhere takes while it is shared, about: a pixel shows two lobes of a surface.
+    static std::uint64_t bytes_of(int width, int height, bool tells_residual = false);
+
     // Samples of a pixel in any order that does not depend on threads. Not thread-safe. False: the pixel has samples of
     // too many surfaces already, and this one is not taken.
     bool add(const Sample& sample);
