@@ -105,13 +105,17 @@ AutomaticSamples automatic_samples(const Camera& camera, const SourceField& fiel
     return {samples(kFewOfVoxel), samples(kEnoughOfVoxel)};
 }
 
+int rows_at_once(int width, int height, std::size_t rays) {
+    const std::size_t per_row = std::max<std::size_t>(1, std::size_t(width) * rays);
+    return static_cast<int>(std::clamp<std::size_t>(kRaysAtOnce / per_row, 1, std::size_t(height)));
+}
+
 Image render_picture(const SourceField& field, const Camera& camera, const PictureSettings& settings,
                      Progress& progress, const LightSurfaces& light_surfaces) {
     PictureWriter writer(camera, settings);
     const PixelRays pixel_rays(field, camera, settings);
     const int width = camera.settings().width, height = camera.settings().height;
-    const std::size_t per_row = std::max<std::size_t>(1, std::size_t(width) * pixel_rays.count());
-    const int rows = static_cast<int>(std::clamp<std::size_t>(kRaysAtOnce / per_row, 1, height));
+    const int rows = rows_at_once(width, height, pixel_rays.count());
     std::vector<FirstLook> first(looks_again(settings) ? std::size_t(width) * height : 0);
     Band band(pixel_rays, width, light_surfaces, first);
     for (int y = 0; y < height; y += rows) {

@@ -69,6 +69,9 @@ struct AutomaticSamples {
 };
 AutomaticSamples automatic_samples(const Camera& camera, const SourceField& field);
 
+// Rows of a picture that are drawn, and their surfaces lit, in one go. `rays`: of a pixel.
+int rows_at_once(int width, int height, std::size_t rays);
+
 // Beauty (R, G, B, A), cell layers, Z (opacity-weighted mean distance along the view axis, 1e10 where nothing is
 // visible) and albedo (premultiplied by alpha). If `light_surfaces` is empty, surfaces are black except for their
 // emission.

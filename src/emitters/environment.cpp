@@ -4,13 +4,15 @@
 #include <cmath>
 #include <numbers>
 
+#include "emitters/texel_means.h"
+
 namespace brisance {
 
 namespace {
 
 using std::numbers::pi;
 
-// Directions drawn evenly over the sphere, so that what interpolation adds to dark pixels is never missed.
+// Directions drawn evenly over the sphere, so that no light is missed for rounding.
 constexpr double kEven = 0.05;
 
 // The axes of a picture whose top is z: x at its centre, y at its left.
@@ -46,14 +48,22 @@ Environment::Environment(const LightSettings& light, const Texture* picture)
     if (!picture)
         return;
     const int width = picture->width, height = picture->height;
+    std::vector<float> texels;
+    texels.reserve(std::size_t(width) * height);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const Rgb c = factor_ * Rgb(picture->at({(x + 0.5f) / float(width), (y + 0.5f) / float(height)}));
+            texels.push_back(std::max(0.0f, luminance(c)));
+        }
+    if (!picture->nearest)
+        texels = texel_means(texels, width, height);
     columns_.resize(std::size_t(width) * height);
     double total = 0.0;
     for (int y = 0; y < height; ++y) {
         const double sine = std::sin(pi * (y + 0.5) / height);
         double row = 0.0;
         for (int x = 0; x < width; ++x) {
-            const Rgb c = factor_ * Rgb(picture->at({(x + 0.5f) / float(width), (y + 0.5f) / float(height)}));
-            row += std::max(0.0f, luminance(c)) * sine;
+            row += texels[std::size_t(y) * width + x] * sine;
             columns_[std::size_t(y) * width + x] = row;
         }
         for (int x = 0; x < width && row > 0.0; ++x)

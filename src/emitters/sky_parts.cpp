@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/parallel.h"
+#include "emitters/texel_means.h"
 
 namespace brisance {
 
@@ -29,13 +30,20 @@ SkyParts::SkyParts(const Environment& environment, std::size_t most)
       height_(environment.picture() ? environment.picture()->height : kPlainHeight) {
     const auto stride = std::size_t(width_) + 1;
     sums_.assign(stride * (std::size_t(height_) + 1), 0.0);
+    std::vector<float> light(std::size_t(width_) * std::size_t(height_));
+    parallel_for(std::size_t(height_), [&](std::size_t y) {
+        for (int x = 0; x < width_; ++x) {
+            const dvec3 middle = environment.direction_of((x + 0.5) / width_, (double(y) + 0.5) / height_);
+            light[y * std::size_t(width_) + std::size_t(x)] = std::max(0.0f, luminance(environment.radiance(middle)));
+        }
+    });
+    light = texel_means(light, width_, height_);
     parallel_for(std::size_t(height_), [&](std::size_t y) {
         const double solid_angle =
             2.0 * pi / width_ * (std::cos(polar(static_cast<int>(y))) - std::cos(polar(static_cast<int>(y) + 1)));
         double row = 0.0;
         for (int x = 0; x < width_; ++x) {
-            const dvec3 middle = environment.direction_of((x + 0.5) / width_, (double(y) + 0.5) / height_);
-            row += std::max(0.0f, luminance(environment.radiance(middle))) * solid_angle;
+            row += light[y * std::size_t(width_) + std::size_t(x)] * solid_angle;
             sums_[(y + 1) * stride + std::size_t(x) + 1] = row;
         }
     });

@@ -98,6 +98,11 @@ std::vector<LightBounds> FireLights::bounds(LobeBrightness) const {
     return out;
 }
 
+std::vector<double> FireLights::least_squared_distances() const {
+    const double a = std::cbrt(volume_ * 0.75 / std::numbers::pi);
+    return std::vector<double>(lights_.size(), a * a / 3.0);
+}
+
 FireLights::Point FireLights::uniform_point(const Voxel& voxel, Rng& rng) const {
     const double x = rng.next_double(), y = rng.next_double(), z = rng.next_double();
     const dvec3 in_brick = corner_of(voxel.offset) + dvec3(x, y, z);

@@ -29,6 +29,9 @@ public:
     const std::vector<double>& intensity() const { return intensity_; }
     // Of all lights, for a tree. They shine alike in all directions.
     std::vector<LightBounds> bounds(LobeBrightness = LobeBrightness::Mean) const;
+    // At which each counts as being, however near it is (LightLimits): the mean of 1 / distance^2 over a ball as large
+    // as the voxel at its middle is 3 / a^2, a being its radius [m^2].
+    std::vector<double> least_squared_distances() const;
 
     // Of the smoke there, 0 outside [1/m].
     double extinction_at(const dvec3& position) const;

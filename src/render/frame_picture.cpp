@@ -150,8 +150,10 @@ std::optional<LightReuse> FramePicture::light_reuse(const Camera& camera, Shared
         lights_.virtual_lights() && input_.plan.needs(Cell::SS) ? lights_.virtual_lights()->reservoirs() : nullptr;
     if (!lights || s.resampling_neighbours == 0)
         return std::nullopt;
-    return LightReuse(*lights, camera.settings().width, camera.settings().height,
-                      {s.resampling_neighbours, s.resampling_radius, s.resampling_visibility, s.seed}, shared, bound);
+    return LightReuse(
+        *lights, camera.settings().width, camera.settings().height,
+        {s.resampling_neighbours, s.resampling_radius, s.resampling_visibility, s.resampling_rounds, s.seed}, shared,
+        bound);
 }
 
 // None where no light is bounded, or nothing on the screen is to make up for it.

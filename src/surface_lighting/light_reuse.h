@@ -26,9 +26,16 @@
 // V_i(y_i) is 1, and takes no ray. m_x enters the estimate linearly, so that one term of its sum, of a random i, keeps
 // the mean: three rays for a sample, however many neighbours it has.
 //
-// Departs from [1]: no reuse from frame to frame, frames stay independent; one round, in which all choices are the
-// samples' own; the generalized balance heuristic of [2] instead of the weights 1/Z of algorithm 6, which divides by
-// the number of neighbours that could have chosen y, and is noisy where their targets differ.
+// Rounds repeat that with other neighbours, among what the round before has kept ([1], algorithm 5). For any g that is
+// 0 where t_x is, E[W g(y)] = sum over i of E[m_i(y_i) g(y_i) W_i], which is the integral of g: what a sample keeps is
+// such a choice again, whether or not the choices that it came from have some in common. With visibility it has to
+// reach the sample before it is given away, which takes a ray in every round but the last. A choice stands for as many
+// first choices as it was taken from: that count C, the M of [1], follows from the sets alone and multiplies t in all
+// weights.
+//
+// Departs from [1]: no reuse from frame to frame, frames stay independent; the generalized balance heuristic of [2]
+// instead of the weights 1/Z of algorithm 6, which divides by the number of neighbours that could have chosen y, and is
+// noisy where their targets differ.
 #pragma once
 
 #include <cstdint>
@@ -63,6 +70,7 @@ public:
         int neighbours;           // of each sample, at most
         double radius;            // in which they lie [pixels]; 0: in the same pixel
         bool visibility = false;  // what samples chose reaches them
+        int rounds = 1;           // of reuse, in which neighbours are drawn anew
         std::uint32_t seed = 0;   // other seeds draw other random numbers
     };
 
@@ -71,8 +79,12 @@ public:
     LightReuse(const ReservoirLights& lights, int width, int height, const Settings& settings, SharedBounce* shared,
                BoundAccount* bound = nullptr);
 
+    // That a picture takes whose samples all have lights to reuse, about. `rows_at_once`: of a call of add(); `rays`:
+    // of a pixel, each with two samples where lobes are lit apart.
+    static std::uint64_t bytes_of(int width, int height, int rays, int rows_at_once, const Settings& settings);
+
     // Samples of whole rows, in the order of rows. Not thread-safe. Rows whose neighbours are all known are lit, and
-    // their samples forgotten: those of 2 radius + 1 rows are kept.
+    // their samples forgotten: those of (rounds + 1) radius + 1 rows are kept, beside the rows of one call.
     void add(std::vector<Sample> samples);
 
     // Light of each pixel [W/(m^2 sr)], but for what is shared. Uses up the samples.
@@ -83,18 +95,37 @@ private:
         BoundedLight light;
         double seconds = 0.0;  // processor time, where somebody asks
     };
+    // What a sample has kept after some rounds.
+    struct Choice {
+        LightReservoir reservoir;
+        double count = 1.0;  // of the first choices that it was taken from
+    };
     struct Row {
         std::vector<Sample> samples;
         std::vector<std::uint32_t> first;  // sample of each pixel, and an end
+        // Of each sample: round r reads those of r % 2 and writes the others, which no round reads any more.
+        std::vector<Choice> choices[2];
     };
+    // A sample in a round, with what it chose before.
+    struct Member {
+        const Sample* sample;
+        const Choice* choice;
+    };
+    using Set = std::vector<Member>;  // the first reuses what all chose
 
-    void light_rows(int end);
-    void count_samples(Row& row) const;
-    BoundedLight light(const Sample& sample) const;
-    std::vector<const Sample*> set_of(const Sample& sample, Rng& rng) const;
-    void offer_unoccluded(const std::vector<const Sample*>& set, Reservoir<LightReservoir>& kept, Rng& rng) const;
-    void offer_visible(const std::vector<const Sample*>& set, Reservoir<LightReservoir>& kept, Rng& rng) const;
-    const Sample* choose_around(const Sample& sample, Rng& rng) const;
+    void advance(int added);
+    void prepare_rows(int begin, int end);
+    void exchange_rows(int round, int begin, int end);
+    void light_rows(int begin, int end);
+    Set set_of(int round, int y, std::size_t number, Rng& rng) const;
+    std::optional<Member> choose_around(int round, const Sample& sample, Rng& rng) const;
+    Rng rng_of(int round, const Sample& sample) const;
+    // What is kept has 1 / t_x(y) for its weight.
+    void offer_unoccluded(const Set& set, Reservoir<LightReservoir>& kept, Rng& rng) const;
+    void offer_visible(const Set& set, Reservoir<LightReservoir>& kept, Rng& rng) const;
+    LightReservoir resample(const Set& set, Rng& rng) const;
+    Choice exchange(int round, int y, std::size_t number) const;
+    BoundedLight light(int y, std::size_t number) const;
     void show(Sample& sample, const Found& found);
 
     const ReservoirLights& lights_;
@@ -104,7 +135,7 @@ private:
     SharedBounce* shared_;
     BoundAccount* bound_;
     std::vector<Row> rows_;
-    int lit_ = 0;  // rows
+    std::vector<int> done_;  // rows, of each round
     std::vector<Rgb> pixels_;
 };
 

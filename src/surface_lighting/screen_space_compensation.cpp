@@ -63,6 +63,13 @@ ScreenSpaceCompensation::Patch& ScreenSpaceCompensation::patch_of(const Sample& 
     return patches_.emplace_back();
 }
 
+// Lists that grow hold up to twice what is in them, and a pyramid has a third more than its first level.
+std::uint64_t ScreenSpaceCompensation::bytes_of(int width, int height) {
+    constexpr std::uint64_t kGrowth = 2;
+    const std::uint64_t patch = kGrowth * sizeof(Patch) + 2 * sizeof(Rgb), nodes = sizeof(Node) + sizeof(Node) / 3;
+    return std::uint64_t(width) * std::uint64_t(height) * (sizeof(std::uint32_t) + sizeof(Rgb) + patch + nodes);
+}
+
 void ScreenSpaceCompensation::add(const Sample& s) {
     Patch& p = patch_of(s);
     p.position += s.position;

@@ -46,6 +46,9 @@ public:
     // `settings`: the bound. `rays`: of a pixel.
     ScreenSpaceCompensation(int width, int height, const VirtualLightSettings& settings, int rays);
 
+    // That a picture with surfaces everywhere takes, about: one surface in each pixel, and boxes around them.
+    static std::uint64_t bytes_of(int width, int height);
+
     // In any order that does not depend on threads. Not thread-safe.
     void add(const Sample& sample);
 

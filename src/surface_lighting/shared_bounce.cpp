@@ -50,6 +50,14 @@ SharedBounce::SharedBounce(int width, int height, double radius, int rays, std::
       told_(std::move(told)),
       first_(std::size_t(width) * height, kNone) {}
 
+// Lists that grow hold up to twice what is in them. Sharing makes radii and new light beside.
+std::uint64_t SharedBounce::bytes_of(int width, int height, bool tells_residual) {
+    constexpr std::uint64_t kLobes = 2, kGrowth = 2;
+    const std::uint64_t residual = tells_residual ? (kGrowth + 1) * sizeof(Rgb) : 0;
+    const std::uint64_t patch = kGrowth * sizeof(Patch) + sizeof(float) + sizeof(Rgb) + residual;
+    return std::uint64_t(width) * std::uint64_t(height) * (sizeof(std::uint32_t) + sizeof(Rgb) + kLobes * patch);
+}
+
 bool SharedBounce::add(const Sample& s) {
     std::uint32_t* at = &first_[s.pixel];
     for (int patches = 0; *at != kNone; ++patches) {

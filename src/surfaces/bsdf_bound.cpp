@@ -33,8 +33,7 @@ BsdfBound::BsdfBound(const Bsdf& bsdf, const dvec3& wo)
         normal_ = -normal_;
     if (b.glass_ > 0.0f && !b.matched_ && !b.smooth_ && b.has_specular_)
         transmitted_ = b.glass_ / pi;
-    if (!b.smooth_ && b.has_specular_)
-        facets_ = b.ggx_.masking_per_cosine(view_.wo.z) / 4.0;
+    has_facets_ = !b.smooth_ && b.has_specular_;
     if (view_.side == 1)
         return;
     // At most all of the light is lost to single scattering in the other direction.
@@ -47,20 +46,22 @@ BsdfBound::BsdfBound(const Bsdf& bsdf, const dvec3& wo)
     }
 }
 
-double BsdfBound::over(const dvec3& axis, double cos_around) const {
-    const double cosine = nearest_cosine(glm::dot(normal_, axis), cos_around);
+double BsdfBound::over(const dvec3& axis, double cos_around, double most_cosine) const {
+    const double cosine = std::min(nearest_cosine(glm::dot(normal_, axis), cos_around), most_cosine);
     if (!(cosine > 0.0))
         return transmitted_;
     double sum = transmitted_ + cosine_lobes_ * cosine_density(cosine);
-    if (facets_ > 0.0)
-        sum += facets_over(axis, cos_around);
+    if (has_facets_)
+        sum += facets_over(axis, cos_around, cosine);
     return sum;
 }
 
-double BsdfBound::facets_over(const dvec3& axis, double cos_around) const {
+// `cosine`: the largest.
+double BsdfBound::facets_over(const dvec3& axis, double cos_around, double cosine) const {
+    const double facets = bsdf_.ggx_.correlated_masking_per_cosines(view_.wo.z, cosine) * cosine / 4.0;
     const auto of = [&](double cos_facet, double cos_half) {
         const double sine = std::sqrt(std::max(0.0, (1.0 - cos_half) * (1.0 + cos_half)));
-        return largest_channel(bsdf_.facet_reflectance(view_, cos_facet)) * facets_ *
+        return largest_channel(bsdf_.facet_reflectance(view_, cos_facet)) * facets *
                bsdf_.ggx_.density({sine, 0.0, cos_half});
     };
     const dvec3 sum = wo_ + axis;

@@ -54,25 +54,20 @@ std::vector<NodeLimit> limits_of_nodes(const LightTree& tree, const LightLimits&
     return out;
 }
 
-// A cosine is at most the height over the plane, over the least distance: a second bound beside that by the cone of
+// A cosine is at most the height over the plane, over the least distance: a bound beside that by the cone of
 // directions, which is all of them where the vertex lies among the lights. Rounding lifts lights of the plane that it
 // lies in: they keep a little, since a random choice must not lose them.
-void VertexBounds::limit(std::uint32_t node, NodeBound& out) const {
+double VertexBounds::largest_cosine(const NodeLimit& limit, const LightsInView& view) const {
     constexpr double kLeastCosine = 1e-4, kRounding = 1e-6;
-    const NodeLimit& limit = limits_[node];
     const LitPoint& point = vertex_.lit();
-    if (!limit.far && point.kind == LitPoint::Kind::Surface) {
-        const double height = limit.height(point.position, point.normal), nearest = std::sqrt(out.nearest2);
-        double cosine = 1.0;
-        if (height <= 0.0)
-            cosine = 0.0;
-        else if (height < kRounding * std::sqrt(out.farthest2))
-            cosine = kLeastCosine;
-        else if (height < nearest)
-            cosine = height / nearest;
-        out.scattered = std::min(out.scattered, tree_.lights(node).intensity() * everywhere_ * cosine);
-    }
-    out.keep_off(limit.least2);
+    if (limit.far || point.kind != LitPoint::Kind::Surface)
+        return 1.0;
+    const double height = limit.height(point.position, point.normal), nearest = std::sqrt(view.nearest2);
+    if (height <= 0.0)
+        return 0.0;
+    if (height < kRounding * std::sqrt(view.farthest2))
+        return kLeastCosine;
+    return height < nearest ? height / nearest : 1.0;
 }
 
 // Children have greater numbers than their parents.

@@ -50,8 +50,8 @@ inline NodeBound bound_in_box(const LightCone& lights, const ScatteringBound& sc
     return out;
 }
 
-// Beside a tree, for cuts through lights of all kinds: nodes around a vertex have no other bound, and lights of the
-// surface that it lies on would get all of a small cut.
+// Beside a tree: nodes around a vertex have no other bound, and lights of the surface that it lies on would get all of
+// a small cut.
 struct LightLimits {
     std::vector<LightBounds> bounds;  // of each light
     // At which each light counts as being, however near it is: it sends its intensity over that at most [m^2].
@@ -79,27 +79,28 @@ public:
     // Keeps references. `limits`: limits_of_nodes(), or empty.
     VertexBounds(const LightTree& tree, const PathVertex& vertex, double extinction,
                  std::span<const NodeLimit> limits = {})
-        : tree_(tree), vertex_(vertex), bsdf_(vertex.bound()), extinction_(extinction), limits_(limits) {
-        if (!limits_.empty())
-            everywhere_ = bsdf_.over({0.0, 0.0, 1.0}, -1.0);
-    }
+        : tree_(tree), vertex_(vertex), bsdf_(vertex.bound()), extinction_(extinction), limits_(limits) {}
 
     NodeBound of(std::uint32_t node) const {
-        NodeBound out = bound_in_box(tree_.lights(node), bsdf_, vertex_.position(), dvec3(0.0), extinction_);
-        if (!limits_.empty() && out.scattered > 0.0)
-            limit(node, out);
+        const LightsInView view = tree_.lights(node).seen_from(vertex_.position());
+        NodeBound out{0.0, view.nearest2, view.farthest2, extinction_};
+        if (!(view.intensity > 0.0))
+            return out;
+        const double most_cosine = limits_.empty() ? 1.0 : largest_cosine(limits_[node], view);
+        out.scattered = view.intensity * bsdf_.over(view.direction, view.cos_around, most_cosine);
+        if (!limits_.empty())
+            out.keep_off(limits_[node].least2);
         return out;
     }
 
 private:
-    void limit(std::uint32_t node, NodeBound& out) const;
+    double largest_cosine(const NodeLimit& limit, const LightsInView& view) const;
 
     const LightTree& tree_;
     const PathVertex& vertex_;
     ScatteringBound bsdf_;
     double extinction_;
     std::span<const NodeLimit> limits_;
-    double everywhere_ = 0.0;  // bound of the BSDF over all directions
 };
 
 // One node of a cut. A cut is a heap: the node whose lights may err most stands first. Leaves do not err.

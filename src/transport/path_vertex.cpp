@@ -81,9 +81,9 @@ ScatteringBound PathVertex::bound() const {
 }
 
 // A phase function is largest at the smallest angle of the cone, or at the largest.
-double ScatteringBound::over(const dvec3& axis, double cos_around) const {
+double ScatteringBound::over(const dvec3& axis, double cos_around, double most_cosine) const {
     if (bsdf_)
-        return bsdf_->over(axis, cos_around);
+        return bsdf_->over(axis, cos_around, most_cosine);
     const double angle = std::acos(std::clamp(glm::dot(arriving_, axis), -1.0, 1.0));
     const double around = std::acos(std::clamp(cos_around, -1.0, 1.0));
     const auto phase = [&](double a) {

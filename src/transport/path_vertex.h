@@ -14,7 +14,8 @@ namespace brisance {
 class ScatteringBound {
 public:
     // Largest channel [1/sr]. `axis`: unit, from the vertex; `cos_around`: of the cone's half angle, -1: everywhere.
-    double over(const dvec3& axis, double cos_around) const;
+    // `most_cosine`: on surfaces, of the directions that count (BsdfBound).
+    double over(const dvec3& axis, double cos_around, double most_cosine = 1.0) const;
 
 private:
     friend class PathVertex;

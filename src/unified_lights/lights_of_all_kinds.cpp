@@ -1,9 +1,5 @@
 #include "unified_lights/lights_of_all_kinds.h"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 #include "transport/particles.h"
 #include "virtual_lights/gatherers/light_choosers.h"
 
@@ -15,7 +11,6 @@ LightsOfAllKinds::LightsOfAllKinds(const DirectLight& scene, const DirectLight& 
       virtual_lights_(virtual_lights && wanted.contains(Cell::SS) && !virtual_lights->lights().empty() ? virtual_lights
                                                                                                        : nullptr),
       point_bound_(point_bound),
-      voxel_volume_(std::abs(glm::determinant(dmat3(through.field().medium().world_from_index)))),
       fire_(through) {
     if (virtual_lights_) {
         single_ = virtual_lights_->each_light();
@@ -50,21 +45,13 @@ std::vector<double> LightsOfAllKinds::intensity() const {
 std::vector<double> LightsOfAllKinds::least_squared_distances() const {
     std::vector<double> out;
     out.reserve(size());
-    // As for emissive surfaces, with a light's intensity of flux / pi.
-    for (std::size_t i = 0; i < first_voxel_; ++i) {
-        const VirtualLight& light = virtual_lights_->lights()[i];
-        const double r2 = light.radius * light.radius;
-        out.push_back(!(r2 > 0.0)        ? 1.0 / point_bound_
-                      : light.area > 0.0 ? std::min(r2, light.area / std::numbers::pi)
-                                         : r2);
-    }
-    // A ball as large as the voxel: 1 / distance^2 has the mean 3 / a^2 at its middle, a being its radius.
-    const double a = std::cbrt(voxel_volume_ * 0.75 / std::numbers::pi);
-    out.resize(first_emitter_, a * a / 3.0);
-    if (emitters_) {
-        const std::vector<double> of_emitters = emitters_->least_squared_distances();
-        out.insert(out.end(), of_emitters.begin(), of_emitters.end());
-    }
+    const auto add = [&](const std::vector<double>& some) { out.insert(out.end(), some.begin(), some.end()); };
+    if (virtual_lights_)
+        add(brisance::least_squared_distances(virtual_lights_->lights(), point_bound_));
+    if (voxels() > 0)
+        add(fire_.least_squared_distances());
+    if (emitters_)
+        add(emitters_->least_squared_distances());
     return out;
 }
 

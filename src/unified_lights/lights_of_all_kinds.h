@@ -40,8 +40,7 @@ public:
     std::vector<LightBounds> bounds(LobeBrightness lobes) const;
     std::vector<double> intensity() const;  // largest, luminance [W/sr]
 
-    // At which each light counts as being, however near it is: intensity over that is the most that it sends [m^2]. The
-    // bound of points, the mean over a voxel at its middle, and the radiance of what has a surface limit it.
+    // At which each light counts as being, however near it is: intensity over that is the most that it sends [m^2].
     std::vector<double> least_squared_distances() const;
 
     // Of the smoke there, 0 outside [1/m].
@@ -57,7 +56,6 @@ private:
     const VirtualLights* virtual_lights_;
     double point_bound_;
     std::unique_ptr<const SingleLights> single_;  // null: no virtual lights
-    double voxel_volume_;                         // [m^3]
     FireLights fire_;
     std::optional<EmitterLights> emitters_;
     // Virtual lights come first, then voxels, then emitters.

@@ -39,6 +39,7 @@ void check(const VirtualLightSettings& s) {
     require_in(R::resampling_rays, s.resampling_rays, "resampling_rays");
     require_in(R::resampling_neighbours, s.resampling_neighbours, "resampling_neighbours");
     require_in(R::resampling_radius, s.resampling_radius, "resampling_radius");
+    require_in(R::resampling_rounds, s.resampling_rounds, "resampling_rounds");
     require_in(R::lightcuts_error, s.lightcuts_error, "lightcuts_error");
     require_in(R::lightcuts_most, s.lightcuts_most, "lightcuts_most");
     require_in(R::stochastic_cut_size, s.stochastic_cut_size, "stochastic_cut_size");

@@ -60,6 +60,7 @@ struct VirtualLightSettings {
     int resampling_rays = 1;               // sampling resampled_combined: rays by BSDF beside them
     int resampling_neighbours = 0;         // both: samples of pixels around whose lights are reused; 0: none
     double resampling_radius = 8.0;        // ... from how far [pixels]
+    int resampling_rounds = 1;             // ... in so many rounds, of what the one before has kept
     bool resampling_visibility = true;     // ... as far as they are seen by those that chose them
     bool resampling_transmittance = true;  // both: candidates count the smoke before them, coarsely
     double lightcuts_error = 0.02;         // sampling lightcuts: what a node may err, over the sum of all
@@ -100,6 +101,7 @@ struct VirtualLightRanges {
     static constexpr SettingRange<int> resampling_rays{1, 65536};
     static constexpr SettingRange<int> resampling_neighbours{0, 32};
     static constexpr SettingRange<double> resampling_radius{0.0, 128.0};
+    static constexpr SettingRange<int> resampling_rounds{1, 8};
     static constexpr SettingRange<double> lightcuts_error{0.0, 1.0};
     static constexpr SettingRange<int> lightcuts_most{1, 100000000};
     static constexpr SettingRange<int> stochastic_cut_size{1, 1000000};

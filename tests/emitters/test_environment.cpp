@@ -54,6 +54,33 @@ TEST(Environment, SamplesWithTheDensityItTells) {
         }
 }
 
+// A sun of one texel lights the texels around it by interpolation. What one sample of the irradiance brings is about 16
+// times its mean at most, wherever it falls: a corner shared with the sun has a quarter of its radiance, and its texel
+// is drawn by a 64th.
+TEST(Environment, SamplesWhatInterpolationAddsBesideASun) {
+    Texture picture;
+    picture.width = 64;
+    picture.height = 32;
+    picture.floats.assign(64 * 32 * 4, 0.01f);
+    for (int c = 0; c < 4; ++c)
+        picture.floats[std::size_t((10 * 64 + 20) * 4 + c)] = 1e5f;
+    const Environment environment(settings('z'), &picture);
+    Rng rng(Stream::Points, 5);
+    double mean = 0.0, largest = 0.0;
+    constexpr int kSamples = 20000;
+    for (int i = 0; i < kSamples; ++i) {
+        const double u = rng.next_double();
+        const dvec3 drawn = environment.sample(u, rng.next_double());
+        mean += luminance(environment.radiance(drawn)) / environment.pdf(drawn) / kSamples;
+        // Evenly over the texels around the sun: as BSDFs find them.
+        const dvec3 beside =
+            environment.direction_of((18.5 + 4.0 * rng.next_double()) / 64.0, (8.5 + 4.0 * rng.next_double()) / 32.0);
+        largest = std::max(largest, luminance(environment.radiance(beside)) / environment.pdf(beside));
+    }
+    EXPECT_GT(mean, 1.0);
+    EXPECT_LT(largest, 20.0 * mean);
+}
+
 // The picture's top is up, its middle looks along x, and x turns to the right side of the picture by -y (z up).
 TEST(Environment, IsTheRightWayUpAndRound) {
     Texture t;

@@ -44,6 +44,27 @@ TEST(SuiteMethods, OfWhatScattersOnKeepTheLightOfTheFire) {
     EXPECT_TRUE(has_coarse_fire("ray_lights"));
 }
 
+// Paths between surfaces would walk through the smoke of any other method.
+TEST(SuiteMethods, OfSurfacesHaveTheSmokeOfTheGrid) {
+    const auto has = [](const Method& method, const std::string& setting) {
+        return std::find(method.settings.begin(), method.settings.end(), setting) != method.settings.end();
+    };
+    for (const SuiteSize& size : suite_sizes()) {
+        int surfaces = 0;
+        for (const Method& method : suite_methods(size, {})) {
+            if (!owns(method, name_of(Cell::SS)) || has(method, "method=path"))
+                continue;
+            ++surfaces;
+            EXPECT_TRUE(has(method, "scattering.method=lighting_grid")) << size.name << ": " << method.label;
+            for (const std::string& coarse : size.beside_fire)
+                EXPECT_FALSE(has(method, coarse)) << size.name << ": " << method.label << ": " << coarse;
+            for (const std::string& finer : size.beside_fire_of_surfaces)
+                EXPECT_TRUE(has(method, finer)) << size.name << ": " << method.label << ": " << finer;
+        }
+        EXPECT_GT(surfaces, 10) << size.name;
+    }
+}
+
 TEST(SuiteMethods, EachOwnsACellAndEachCellHasTwo) {
     const std::vector<Method> methods = all_methods();
     for (const Method& method : methods)

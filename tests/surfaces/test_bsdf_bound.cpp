@@ -46,6 +46,45 @@ TEST(BsdfBound, IsNeverBelow) {
         }
 }
 
+// Of those directions of a cone that lie no higher than that above the surface.
+TEST(BsdfBound, IsNeverBelowNearTheSurface) {
+    Rng rng(Stream::Path, 9);
+    for (NamedSurface surface : coloured_surfaces())
+        for (const float roughness : {0.05f, 0.3f, 1.0f}) {
+            surface.material.roughness = roughness;
+            if (surface.material.transmission > 0.0f && !surface.material.thin)
+                continue;  // rough glass has no bound
+            const Bsdf bsdf(surface.material, ShadingFrame{});
+            for (int i = 0; i < 300; ++i) {
+                const double most = std::pow(10.0, -4.0 * rng.next_double());
+                const dvec3 wo = direction(std::pow(rng.next_double(), 3.0), 6.283185 * rng.next_double());
+                const BsdfBound bounds(bsdf, wo);
+                const double bound = bounds.over({0.0, 0.0, 1.0}, -1.0, most);
+                EXPECT_LE(bound, bounds.over({0.0, 0.0, 1.0}, -1.0));
+                for (int k = 0; k < 30; ++k) {
+                    // Half of them across from wo, where lobes are.
+                    const double turn = k % 2 == 0 ? 3.14159265 : 6.283185 * rng.next_double();
+                    const dvec3 wi = direction(most * rng.next_double(), std::atan2(wo.y, wo.x) + turn);
+                    const Rgb value = bsdf.evaluate(wo, wi);
+                    ASSERT_LE(std::max({value.x, value.y, value.z}), bound * 1.0001 + 1e-7)
+                        << surface.name << " " << roughness << " " << most << " " << wo.z;
+                }
+            }
+        }
+}
+
+// Grazing directions scatter little, as facets mask them, in proportion to the cosine.
+TEST(BsdfBound, FallsWithTheHeightAboveTheSurface) {
+    SurfaceMaterial metal;
+    metal.metallic = 1.0f;
+    metal.roughness = 0.4f;
+    const Bsdf bsdf(metal, ShadingFrame{});
+    const BsdfBound bounds(bsdf, direction(0.7));
+    const double all = bounds.over({0.0, 0.0, 1.0}, -1.0);
+    EXPECT_LT(bounds.over({0.0, 0.0, 1.0}, -1.0, 0.01), 0.2 * all);
+    EXPECT_LT(bounds.over({0.0, 0.0, 1.0}, -1.0, 0.001), 0.02 * all);
+}
+
 // Of one direction the bound is the value, up to masking and what facets lose.
 TEST(BsdfBound, IsTightForOneDirection) {
     Rng rng(Stream::Path, 8);

@@ -165,7 +165,7 @@ INSTANTIATE_TEST_SUITE_P(OfVirtualLights, Ranges,
                                            "resampling_candidates", "n_min", "n_max", "importance_floor",
                                            "light_samples", "resampling_rays", "lightcuts_error", "lightcuts_most",
                                            "stochastic_cut_size", "sharing_radius", "resampling_neighbours",
-                                           "resampling_radius"));
+                                           "resampling_radius", "resampling_rounds"));
 
 // Every key with numbers is in the list above, but for the seed, of which the renderer takes any, and for
 // photons, which may be a word.
@@ -175,7 +175,7 @@ TEST(AllRanges, AreTested) {
         if (key.path.starts_with("virtual_lights.") && key.path != "virtual_lights.seed" &&
             (key.schema.value("type", "") == "integer" || key.schema.value("type", "") == "number"))
             ++numbers;
-    EXPECT_EQ(numbers, 21);
+    EXPECT_EQ(numbers, 22);
 }
 
 // What the check takes the renderer can build, where it does not take long.

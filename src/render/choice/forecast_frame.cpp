@@ -4,13 +4,19 @@
 #include <cmath>
 
 #include "camera/camera.h"
+#include "camera_rays/picture.h"
 #include "core/stopwatch.h"
 #include "forecast/costs.h"
 #include "forecast/memory_need.h"
 #include "forecast/plan.h"
+#include "render/bound_layers.h"
 #include "render/choice/choose_method.h"
 #include "render/choice/time_budget.h"
 #include "render/input/frame_input.h"
+#include "render/many_lights.h"
+#include "surface_lighting/light_reuse.h"
+#include "surface_lighting/screen_space_compensation.h"
+#include "surface_lighting/shared_bounce.h"
 
 namespace brisance {
 
@@ -28,6 +34,38 @@ std::uint64_t picture_bytes(const CameraSettings& camera, std::size_t cells) {
     return kPictures * channels * sizeof(float) * std::uint64_t(camera.width) * std::uint64_t(camera.height);
 }
 
+// Rays of a pixel, of which each meets a surface. Where the shot leaves them open: four by four, unless voxels want
+// more.
+std::size_t surface_rays(const FrameInput& input) {
+    const int stated = input.camera.samples_per_axis;
+    const int side =
+        stated > 0 ? stated
+                   : std::max(kSurfaceSamples,
+                              automatic_samples(Camera(input.camera, input.medium), SourceField(input.medium)).enough);
+    return std::size_t(side) * std::size_t(side);
+}
+
+// What samples of the camera keep for each other while surfaces are lit.
+std::uint64_t bytes_between_pixels(const Shot& shot, const FrameInput& input, const Plan& plan) {
+    const VirtualLightSettings& s = shot.virtual_lights;
+    const int width = input.camera.width, height = input.camera.height;
+    if (shot.method == RenderMethod::Path || !plan.surfaces)
+        return 0;
+    const bool lights = s.count > 0 && plan.needs(Cell::SS);
+    std::uint64_t sum = 0;
+    if (lights && s.sharing_radius > 0.0)
+        sum += SharedBounce::bytes_of(width, height, has_bound_layers(shot, plan));
+    if (lights && s.compensation == BoundCompensation::ScreenSpace)
+        sum += ScreenSpaceCompensation::bytes_of(width, height);
+    if (lights && s.resampling_neighbours > 0) {
+        const std::size_t rays = surface_rays(input);
+        sum += LightReuse::bytes_of(
+            width, height, static_cast<int>(rays), rows_at_once(width, height, rays),
+            {s.resampling_neighbours, s.resampling_radius, s.resampling_visibility, s.resampling_rounds, s.seed});
+    }
+    return sum;
+}
+
 std::uint64_t bytes_needed(const Shot& shot, const FrameInput& input, const Plan& plan, const Statistics& read) {
     std::uint64_t grids = 0;
     for (const StageCost& stage : read.stages)
@@ -37,7 +75,8 @@ std::uint64_t bytes_needed(const Shot& shot, const FrameInput& input, const Plan
                                    ? kTracerMedia * medium
                                    : bytes_to_light(input.medium, plan.directional, shot.lighting.memory_limit_bytes);
     return kProgramBytes + picture_bytes(input.camera, plan.cells().size()) + medium +
-           (input.surroundings ? input.surroundings->bytes() : 0) + std::max(grids, work);
+           bytes_between_pixels(shot, input, plan) + (input.surroundings ? input.surroundings->bytes() : 0) +
+           std::max(grids, work);
 }
 
 // Core seconds of the path tracer; none where it stops by nothing that is known.

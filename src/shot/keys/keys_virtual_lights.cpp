@@ -162,6 +162,10 @@ void add_resampling_keys(std::vector<Key>& keys) {
         "virtual_lights.resampling_radius", "for resampling_neighbours: how far they may lie [pixels]",
         real_in(Ranges::resampling_radius), [](Shot & s) -> auto& { return s.virtual_lights.resampling_radius; }));
     keys.push_back(make_key(
+        "virtual_lights.resampling_rounds",
+        "for resampling_neighbours: rounds of reuse, each of what the one before has kept, with other neighbours",
+        whole_in(Ranges::resampling_rounds), [](Shot & s) -> auto& { return s.virtual_lights.resampling_rounds; }));
+    keys.push_back(make_key(
         "virtual_lights.resampling_visibility",
         "for resampling_neighbours: lights are reused only where the sample that chose them sees them", flag(),
         [](Shot & s) -> auto& { return s.virtual_lights.resampling_visibility; }));

@@ -25,6 +25,19 @@ std::vector<LightBounds> bounds_of(const std::vector<VirtualLight>& lights, Lobe
     return out;
 }
 
+// As for emissive surfaces (EmitterLights), with a light's intensity of flux / pi.
+std::vector<double> least_squared_distances(const std::vector<VirtualLight>& lights, double point_bound) {
+    std::vector<double> out;
+    out.reserve(lights.size());
+    for (const VirtualLight& light : lights) {
+        const double r2 = light.radius * light.radius;
+        out.push_back(!(r2 > 0.0)        ? 1.0 / point_bound
+                      : light.area > 0.0 ? std::min(r2, light.area / std::numbers::pi)
+                                         : r2);
+    }
+    return out;
+}
+
 PowerChooser::PowerChooser(const std::vector<VirtualLight>& lights, LightImportance importance)
     : choice_([&] {
           std::vector<double> weights;

@@ -15,6 +15,10 @@ namespace brisance {
 // Virtual lights as a light tree sees them: the boxes of their spheres, their cones, and their largest intensities.
 std::vector<LightBounds> bounds_of(const std::vector<VirtualLight>& lights, LobeBrightness lobes);
 
+// At which each of them counts as being, however near it is (LightLimits::least2): the bound of points, or its own
+// radiance where it has a surface [m^2].
+std::vector<double> least_squared_distances(const std::vector<VirtualLight>& lights, double point_bound);
+
 // Made of lights whose power, intensity, area and spread are known.
 template <class Chooser>
 concept LightChooser = requires(const Chooser& chooser, const std::vector<VirtualLight>& lights,

@@ -17,7 +17,9 @@ struct Lightcuts {
         Of(const LightSet& set, LightImportance)
             : kind_(set),
               cut_(LightTree(bounds_of(set.lights, LobeBrightness::Peak)), set.settings().seed,
-                   set.settings().lightcuts_error, set.settings().lightcuts_most) {}
+                   set.settings().lightcuts_error, set.settings().lightcuts_most,
+                   LightLimits{bounds_of(set.lights, LobeBrightness::Peak),
+                               least_squared_distances(set.lights, set.settings().point_bound)}) {}
 
         BoundedLight from_lights(const PathVertex& vertex, Rng& rng) const override {
             return cut_.at(vertex, [&](std::size_t light) { return kind_.estimate(light, 1.0, vertex, rng); });

@@ -16,7 +16,9 @@ struct StochasticLightcuts {
     public:
         Of(const LightSet& set, LightImportance)
             : kind_(set),
-              cut_(LightTree(bounds_of(set.lights, LobeBrightness::Mean)), set.settings().stochastic_cut_size) {}
+              cut_(LightTree(bounds_of(set.lights, LobeBrightness::Mean)), set.settings().stochastic_cut_size,
+                   LightLimits{bounds_of(set.lights, LobeBrightness::Mean),
+                               least_squared_distances(set.lights, set.settings().point_bound)}) {}
 
         BoundedLight from_lights(const PathVertex& vertex, Rng& rng) const override {
             return cut_.at(vertex, rng, [&](std::size_t light, double probability) {

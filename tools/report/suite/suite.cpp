@@ -60,6 +60,10 @@ std::string budget_of(const SuiteSize& size, const Method& method) {
     return size.sides;
 }
 
+// Paths between surfaces see the grid's smoke as the camera does, and walk through that of other methods, which would
+// be most of the noise of SS.
+constexpr const char* kSmokeOfTheGrid = "scattering.method=lighting_grid";
+
 // What a method says of itself stays so.
 void add_settings(const std::vector<std::string>& settings, Method& method) {
     for (const std::string& setting : settings)
@@ -88,7 +92,8 @@ const std::vector<SuiteSize>& suite_sizes() {
                       "ray_lights.count=8192", "volumetric_vpls.paths=4096", "volumetric_vpls.count=8192",
                       "volumetric_photons.paths=50000", "photon_density.paths=20000"},
          .beside_fire = {"lighting.lattice_level=5", "lighting.error=0.3"},
-         .beside_scattering = {"scattering.method=volumetric_photons", "volumetric_photons.paths=20000"}},
+         .beside_fire_of_surfaces = {},
+         .beside_scattering = {kSmokeOfTheGrid}},
         {.name = "draft",
          .help = "an hour or two: small pictures, settings of drafts",
          .width = 96,
@@ -103,7 +108,8 @@ const std::vector<SuiteSize>& suite_sizes() {
          .settings = {"camera.edge_refinement=1", "lighting.error=0.05", "lighting.alpha=1", "scattering.alpha=1",
                       "virtual_lights.count=1500", "virtual_lights.photons=100000", "scattering.remainder=0.01"},
          .beside_fire = {"lighting.lattice_level=3", "lighting.error=0.2"},
-         .beside_scattering = {"scattering.method=volumetric_photons", "volumetric_photons.paths=50000"}},
+         .beside_fire_of_surfaces = {"lighting.lattice_level=2", "lighting.error=0.1"},
+         .beside_scattering = {kSmokeOfTheGrid}},
         {.name = "full",
          .help = "hours: the shots' own settings",
          .width = 160,
@@ -117,7 +123,8 @@ const std::vector<SuiteSize>& suite_sizes() {
          .sides = "1,2,4",
          .settings = {},
          .beside_fire = {},
-         .beside_scattering = {}}};
+         .beside_fire_of_surfaces = {},
+         .beside_scattering = {kSmokeOfTheGrid}}};
     return all;
 }
 
@@ -139,7 +146,7 @@ std::vector<Method> suite_methods(const SuiteSize& size, const std::vector<std::
     std::vector<Method> methods = parse_methods(options);
     for (Method& method : methods) {
         if (!owns(method, name_of(Cell::MV)) && !method.scatters_grid)
-            add_settings(size.beside_fire, method);
+            add_settings(owns(method, name_of(Cell::SS)) ? size.beside_fire_of_surfaces : size.beside_fire, method);
         if (!owns(method, name_of(Cell::MM)))
             add_settings(size.beside_scattering, method);
     }

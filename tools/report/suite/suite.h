@@ -24,8 +24,10 @@ struct SuiteSize {
     std::string sides;                  // samples along a pixel's side, of all other methods: "1,2"
     std::vector<std::string> settings;  // over those of every shot, for every method
     // What is cheap where it is not judged: further ones of the methods that neither own MV nor scatter it on, and of
-    // those without MM.
+    // those without MM. Those with SS are judged by the fire's light in smoke that their paths see, and have a finer
+    // one.
     std::vector<std::string> beside_fire;
+    std::vector<std::string> beside_fire_of_surfaces;
     std::vector<std::string> beside_scattering;
 };
 

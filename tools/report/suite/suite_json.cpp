@@ -73,6 +73,7 @@ Json head_json(const SuiteReport& suite) {
               {"sides", size.sides},
               {"settings", size.settings},
               {"beside_fire", size.beside_fire},
+              {"beside_fire_of_surfaces", size.beside_fire_of_surfaces},
               {"beside_scattering", size.beside_scattering}}}};
 }
 

@@ -163,10 +163,12 @@ std::string how_it_was_made(const SuiteReport& suite) {
         size.name, width_of(suite), suite.reference_samples, size.path_samples, size.grid_steps, size.sides);
     if (!size.settings.empty())
         text += fmt::format(" Settings over those of every shot: `{}`.", fmt::join(size.settings, " "));
-    for (const auto& [settings, cell] : {std::pair{&size.beside_fire, "MV"}, {&size.beside_scattering, "MM"}})
+    for (const auto& [settings, others] :
+         {std::pair{&size.beside_fire, "that do not compete in `MV`, nor go on from it, nor compete in `SS`,"},
+          {&size.beside_fire_of_surfaces, "that compete in `SS` and not in `MV`"},
+          {&size.beside_scattering, "that do not compete in `MM`, nor go on from it,"}})
         if (!settings->empty())
-            text += fmt::format(" Methods that do not compete in `{}`, nor go on from it, have `{}` for it.", cell,
-                                fmt::join(*settings, " "));
+            text += fmt::format(" Methods {} have `{}`.", others, fmt::join(*settings, " "));
     return text + "\n";
 }
 
