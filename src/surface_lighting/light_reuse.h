@@ -42,8 +42,8 @@
 #include <optional>
 #include <vector>
 
+#include "pixel_sharing/shared_bounce.h"
 #include "surface_lighting/bound_account.h"
-#include "surface_lighting/shared_bounce.h"
 #include "virtual_lights/gatherers/light_reservoir.h"
 #include "virtual_lights/gatherers/reservoir.h"
 

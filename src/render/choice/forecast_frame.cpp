@@ -9,6 +9,7 @@
 #include "forecast/costs.h"
 #include "forecast/memory_need.h"
 #include "forecast/plan.h"
+#include "pixel_sharing/shared_bounce.h"
 #include "render/bound_layers.h"
 #include "render/choice/choose_method.h"
 #include "render/choice/time_budget.h"
@@ -16,7 +17,6 @@
 #include "render/many_lights.h"
 #include "surface_lighting/light_reuse.h"
 #include "surface_lighting/screen_space_compensation.h"
-#include "surface_lighting/shared_bounce.h"
 
 namespace brisance {
 

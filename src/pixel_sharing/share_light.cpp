@@ -1,8 +1,8 @@
-#include "surface_lighting/share_light.h"
+#include "pixel_sharing/share_light.h"
 
 #include <cmath>
 
-#include "surface_lighting/shown_area.h"
+#include "pixel_sharing/shown_area.h"
 
 namespace brisance {
 

@@ -48,6 +48,8 @@ public:
         Aparts apart{};          // as `light`
         Rgb& of(Apart which) { return apart[std::size_t(which)]; }
         const Rgb& of(Apart which) const { return apart[std::size_t(which)]; }
+        Rgb of_other_cells() const { return of(Apart::SV) + of(Apart::SM) + of(Apart::SA); }
+        Rgb shown() const { return weight * (light + of_other_cells()); }  // by the pixel, of all cells
     };
 
     // `radius`: over the distance to surrounding surfaces, for 16 rays per pixel. `rays`: of a pixel. `told`: for what

@@ -5,7 +5,7 @@
 
 #include "camera_rays/picture.h"
 #include "geometry/surface_point.h"
-#include "surface_lighting/shared_bounce.h"
+#include "pixel_sharing/shared_bounce.h"
 
 namespace brisance {
 

@@ -1,4 +1,4 @@
-#include "surface_lighting/shared_bounce.h"
+#include "pixel_sharing/shared_bounce.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "core/rng.h"
-#include "surface_lighting/shared_bounce.h"
+#include "pixel_sharing/shared_bounce.h"
 
 namespace brisance {
 namespace {
