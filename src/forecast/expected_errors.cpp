@@ -124,8 +124,7 @@ std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFra
     const ErrorModel model(
         frame, noted(statistics, lattice, "error"), noted(statistics, lattice, "interpolation"),
         noted(statistics, lattice, "smoke_lattice_level"), noted(statistics, series, "lattice_level"),
-        noted(statistics, series, "share_of_fine_bounces"),
-        noted(statistics, series, "estimated_remainder"));
+        noted(statistics, series, "share_of_fine_bounces"), noted(statistics, series, "estimated_remainder"));
     std::vector<ExpectedError> out(1);
     double errors = 0.0, spreads = 0.0, light = 0.0;
     for (const std::string& cell : frame.plan.cells())
@@ -150,10 +149,9 @@ ExpectedError expected_error(const ModelledFrame& frame) {
     const int level = forecast_lattice_level(frame.shot, frame.counted);
     const LightingLevels levels = lighting_levels(frame.counted.medium, frame.shot.lighting);
     const double fine_bounces = share_of_fine_bounces({level}, settings, frame.shot.lighting.error);
-    ExpectedError out =
-        ErrorModel(frame, levels.first.error, levels.interpolation, levels.smoke.level, level, fine_bounces,
-                   settings.remainder)
-            .of(brightest(frame.plan));
+    ExpectedError out = ErrorModel(frame, levels.first.error, levels.interpolation, levels.smoke.level, level,
+                                   fine_bounces, settings.remainder)
+                            .of(brightest(frame.plan));
     out.cell.clear();
     return out;
 }

@@ -15,7 +15,7 @@ struct LightingSettings {
     // Relative error that shadow maps may add to the picture. Their resolution follows from it where it is not given.
     float error = 0.02f;
     // Relative error of the light that the picture shows up to which nodes are interpolated from coarser ones. 0: none
-    // are, every node is lit by itself. Below 0: up to an eighth of `error`, where voxels twice as wide would serve
+    // are, every node is lit by itself. Below 0: up to a quarter of `error`, where voxels twice as wide would serve
     // (medium_lighting/levels/lighting_level.h).
     float interpolation = -1.0f;
     float alpha = 2.0f;      // blending radius of level l is alpha * spacing of level l; at least 1

@@ -24,8 +24,8 @@ constexpr float kErrorOfVoxels = 0.05f;
 // that comes from the fire within its own voxel.
 constexpr float kErrorOfEmission = 0.1f;
 
-// Around a fire of radius R an interpolant through nodes h apart errs by about the square of h / R: voxels twice as wide
-// changed MV by 2 % where a small fire in thin smoke had 18 voxels across, and four times as wide by 11 %.
+// Around a fire of radius R an interpolant through nodes h apart errs by about the square of h / R: voxels twice as
+// wide changed MV by 2 % where a small fire in thin smoke had 18 voxels across, and four times as wide by 11 %.
 constexpr float kErrorOfSmallFire = 0.45f;
 
 // Of lighting.error: what light on a coarser lattice may add, and what the interpolation of its nodes may.
@@ -159,7 +159,7 @@ private:
     float depth_;  // of a voxel
     std::optional<float> albedo_;
     std::optional<float> fire_radius_;  // in voxels
-    std::vector<float> emission_;  // luminance per node
+    std::vector<float> emission_;       // luminance per node
     std::map<int, float> unresolved_;
 };
 

@@ -24,8 +24,8 @@ struct LightingLevel {
 };
 
 struct LightingLevels {
-    LightingLevel first;  // of light that has not scattered yet
-    LightingLevel smoke;  // of light that has; never finer
+    LightingLevel first;         // of light that has not scattered yet
+    LightingLevel smoke;         // of light that has; never finer
     float interpolation = 0.0f;  // tolerated_interpolation() on the lattice of `first`
 };
 
@@ -36,7 +36,7 @@ LightingLevels lighting_levels(const MediumLightingInput& input);
 // The same without surfaces.
 LightingLevels lighting_levels(const Medium& medium, const LightingSettings& settings);
 
-// The error that interpolation between nodes of this medium may add to the picture: as stated, or an eighth of
+// The error that interpolation between nodes of this medium may add to the picture: as stated, or a quarter of
 // lighting.error where light on the lattice twice as coarse errs by no more than lighting.error, falling to 0 where it
 // errs by twice that. It depends on the smoke, the fire and the width of voxels, on no count of them.
 float tolerated_interpolation(const Medium& medium, const LightingSettings& settings);
