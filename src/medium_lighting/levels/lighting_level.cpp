@@ -31,11 +31,7 @@ constexpr float kErrorOfSmallFire = 0.45f;
 // Of lighting.error: what light on a coarser lattice may add, and what the interpolation of its nodes may.
 constexpr float kShareOfLattice = 0.5f, kShareOfInterpolation = 0.25f;
 
-// Nodes are interpolated where the next coarser lattice errs by no more than lighting.error, and none is where it errs
-// by this many times that.
-constexpr float kTooCoarse = 2.0f;
-
-// Beyond this many times what is allowed, the next coarser lattice does not count.
+// Beyond this many times what is allowed, the next coarser lattice does not count, and no node is interpolated.
 constexpr float kNearlyAllowed = 1.5f;
 
 // Wider voxels were measured on one volume alone, and are not chosen.
@@ -177,7 +173,7 @@ float interpolation_of(LatticeErrors& errors, const LightingSettings& settings, 
     if (settings.interpolation >= 0.0f || !(settings.error > 0.0f))
         return std::max(0.0f, settings.interpolation);
     const float coarser = (errors.of_first(level + 1) - errors.of_first(level)) / settings.error;
-    return kShareOfInterpolation * settings.error * (1.0f - glm::smoothstep(1.0f, kTooCoarse, coarser));
+    return kShareOfInterpolation * settings.error * (1.0f - glm::smoothstep(1.0f, kNearlyAllowed, coarser));
 }
 
 LightingLevel level_of_first(LatticeErrors& errors, const LightingSettings& settings) {

@@ -38,7 +38,7 @@ LightingLevels lighting_levels(const Medium& medium, const LightingSettings& set
 
 // The error that interpolation between nodes of this medium may add to the picture: as stated, or a quarter of
 // lighting.error where light on the lattice twice as coarse errs by no more than lighting.error, falling to 0 where it
-// errs by twice that. It depends on the smoke, the fire and the width of voxels, on no count of them.
+// errs by 1.5 times that. It depends on the smoke, the fire and the width of voxels, on no count of them.
 float tolerated_interpolation(const Medium& medium, const LightingSettings& settings);
 
 // Relative error of light gathered on voxels of this optical depth, as a collision meets it.
