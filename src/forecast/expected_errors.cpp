@@ -50,13 +50,14 @@ double voxel_depth(const Medium& medium) {
 class ErrorModel {
 public:
     // `coarse_light`: the error of light on a coarser lattice than the medium's, before it has scattered.
+    // `interpolation`: what interpolation between nodes may add.
     // `smoke_level`: lattice of light that has. `fine_bounces`: the share of the light of the orders, on a lattice of
     // `lattice_level`, that they replace.
-    ErrorModel(const ModelledFrame& frame, double coarse_light, double smoke_level, double lattice_level,
-               double fine_bounces, double remainder)
+    ErrorModel(const ModelledFrame& frame, double coarse_light, double interpolation, double smoke_level,
+               double lattice_level, double fine_bounces, double remainder)
         : plan_(frame.plan),
           coarse_light_(coarse_light),
-          interpolation_(tolerated_interpolation(frame.shot.lighting, std::size_t(frame.counted.lit_nodes))),
+          interpolation_(interpolation),
           depth_(voxel_depth(frame.counted.medium)),
           orders_(depth_ * std::exp2(smoke_level) *
                   error_of_orders(std::exp2(lattice_level - smoke_level), fine_bounces)),
@@ -121,9 +122,9 @@ std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFra
     const std::string lattice = "lattice of the light";
     const std::string series = "orders of scattering on the coarse lattice";
     const ErrorModel model(
-        frame, noted(statistics, lattice, "error"), noted(statistics, lattice, "smoke_lattice_level"),
-        noted(statistics, series, "lattice_level"), noted(statistics, series, "share_of_fine_bounces"),
-        noted(statistics, series, "estimated_remainder"));
+        frame, noted(statistics, lattice, "error"), noted(statistics, lattice, "interpolation"),
+        noted(statistics, lattice, "smoke_lattice_level"), noted(statistics, series, "lattice_level"),
+        noted(statistics, series, "share_of_fine_bounces"), noted(statistics, series, "estimated_remainder"));
     std::vector<ExpectedError> out(1);
     double errors = 0.0, spreads = 0.0, light = 0.0;
     for (const std::string& cell : frame.plan.cells())
@@ -148,9 +149,9 @@ ExpectedError expected_error(const ModelledFrame& frame) {
     const int level = forecast_lattice_level(frame.shot, frame.counted);
     const LightingLevels levels = lighting_levels(frame.counted.medium, frame.shot.lighting);
     const double fine_bounces = share_of_fine_bounces({level}, settings, frame.shot.lighting.error);
-    ExpectedError out =
-        ErrorModel(frame, levels.first.error, levels.smoke.level, level, fine_bounces, settings.remainder)
-            .of(brightest(frame.plan));
+    ExpectedError out = ErrorModel(frame, levels.first.error, levels.interpolation, levels.smoke.level, level,
+                                   fine_bounces, settings.remainder)
+                            .of(brightest(frame.plan));
     out.cell.clear();
     return out;
 }

@@ -1,8 +1,6 @@
 // Settings for gathering the fire's light and scattered light at points of the medium.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
 #include <cstdint>
 
 namespace brisance {
@@ -17,7 +15,8 @@ struct LightingSettings {
     // Relative error that shadow maps may add to the picture. Their resolution follows from it where it is not given.
     float error = 0.02f;
     // Relative error of the light that the picture shows up to which nodes are interpolated from coarser ones. 0: none
-    // are, every node is lit by itself. Below 0: up to an eighth of `error` in large media.
+    // are, every node is lit by itself. Below 0: up to a quarter of `error`, where voxels twice as wide would serve
+    // (medium_lighting/levels/lighting_level.h).
     float interpolation = -1.0f;
     float alpha = 2.0f;      // blending radius of level l is alpha * spacing of level l; at least 1
     int lattice_level = -1;  // light is gathered on voxels 2^level wide; -1: from `error`
@@ -31,16 +30,5 @@ struct LightingSettings {
     std::uint64_t memory_limit_bytes = std::uint64_t{2} << 30;  // for shadow maps; resolution is lowered to respect it
     bool energy_balance = true;  // scale each bounce so that emitted = collided + escaped
 };
-
-// The error that interpolation may add in a medium where this many nodes need light. Without a stated one, an error is
-// tolerated only where it saves time: none where lighting every node takes a minute of one core or less, half of the
-// largest where it takes three.
-inline float tolerated_interpolation(const LightingSettings& settings, std::size_t nodes) {
-    constexpr float kNodesOfAMinute = 1e6f;
-    if (settings.interpolation >= 0.0f)
-        return settings.interpolation;
-    const float saved = std::max(0.0f, float(nodes) - kNodesOfAMinute);
-    return 0.125f * settings.error * saved / (saved + 2.0f * kNodesOfAMinute);
-}
 
 }  // namespace brisance

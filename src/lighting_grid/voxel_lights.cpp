@@ -143,40 +143,44 @@ struct Surrounded {
     int index(const ivec3& p) const { return (p.x * wide + p.y) * wide + p.z; }
 };
 
-// The share of its outgoing flux that a node can afford.
-float affordable(const float* v, const Surrounded& s) {
+// The part of its outgoing flux, `share` of each difference, that a node can afford.
+float affordable(const float* v, const Surrounded& s, float share) {
     float out = 0.0f;
     for (int a = 0; a < 3; ++a)
         for (int step : {-s.stride(a), s.stride(a)})
-            out += std::max(0.0f, v[step] - *v) / 12.0f;
+            out += share * std::max(0.0f, v[step] - *v);
     return out > *v ? *v / out : 1.0f;
 }
 
 }  // namespace
 
 void sharpen_lights(const BrickLattice& lattice, std::vector<Rgb>& intensity) {
-    const std::vector<Rgb> before = intensity;
+    sharpen_nodes(lattice, {reinterpret_cast<float*>(intensity.data()), intensity.size() * 3}, 3, 1.0f / 12.0f);
+}
+
+void sharpen_nodes(const BrickLattice& lattice, std::span<float> values_of_nodes, int channels, float share) {
+    const std::vector<float> before(values_of_nodes.begin(), values_of_nodes.end());
     parallel_for(lattice.brick_count(), [&](std::size_t b) {
-        const Surrounded s(lattice, flat(before), 3, b, 2);
+        const Surrounded s(lattice, before, channels, b, 2);
         if (std::all_of(s.box.begin(), s.box.end(), [](float v) { return v == 0.0f; }))
             return;
         const std::size_t plane = std::size_t(s.wide) * s.wide * s.wide;
-        std::vector<float> share(plane, 1.0f);
-        for (int c = 0; c < 3; ++c) {
+        std::vector<float> afforded(plane, 1.0f);
+        for (int c = 0; c < channels; ++c) {
             const float* values = &s.box[c * plane];
             for (int x = 1; x < s.wide - 1; ++x)
                 for (int y = 1; y < s.wide - 1; ++y)
                     for (int z = 1; z < s.wide - 1; ++z)
-                        share[s.index({x, y, z})] = affordable(values + s.index({x, y, z}), s);
+                        afforded[s.index({x, y, z})] = affordable(values + s.index({x, y, z}), s, share);
             for (int n = 0; n < BrickLattice::kNodes; ++n) {
                 const int i = s.index(BrickLattice::node_in_brick(n) + 2);
                 float sum = values[i];
                 for (int a = 0; a < 3; ++a)
                     for (int k : {i - s.stride(a), i + s.stride(a)}) {
-                        const float flux = (values[k] - values[i]) / 12.0f;  // out of this node where positive
-                        sum -= flux * (flux > 0.0f ? share[i] : share[k]);
+                        const float flux = share * (values[k] - values[i]);  // out of this node where positive
+                        sum -= flux * (flux > 0.0f ? afforded[i] : afforded[k]);
                     }
-                intensity[b * BrickLattice::kNodes + n][c] = std::max(sum, 0.0f);
+                values_of_nodes[(b * BrickLattice::kNodes + n) * channels + c] = std::max(sum, 0.0f);
             }
         }
     });

@@ -26,6 +26,10 @@ std::vector<Rgb> voxel_lights(const Medium& medium);
 // absorbs e-fold about 8 % too easily.
 void sharpen_lights(const BrickLattice& lattice, std::vector<Rgb>& intensity);
 
+// The same for any field of values (`channels` interleaved) that are not negative: the flux is `share` of the
+// difference, which undoes a spread of 2 share h^2 per axis. At most 1/6.
+void sharpen_nodes(const BrickLattice& lattice, std::span<float> values, int channels, float share);
+
 // Replaces `values` (planar, one channel of the lattice's nodes) by node values whose trilinear interpolant has the
 // averages of the smooth field through them: it subtracts a twelfth of the second difference per axis. Nodes outside
 // `mask` keep their values.

@@ -6,6 +6,7 @@
 #include "gathering/escape_probability.h"
 #include "lighting_grid/voxel_lights.h"
 #include "medium/phase.h"
+#include "medium_lighting/levels/lighting_level.h"
 #include "medium_lighting/surface_occluders.h"
 #include "scattering/coarse_operator.h"
 
@@ -28,6 +29,10 @@ MediumLightingInput with_levels_above(MediumLightingInput input, int level) {
     return input;
 }
 
+Medium medium_of(const Medium& fine, int level, LightOf light) {
+    return light == LightOf::Smoke ? medium_to_light_smoke(fine, level) : medium_to_light(fine, level);
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> nodes_beside_extinction(const Medium& medium) {
@@ -47,10 +52,10 @@ std::vector<std::uint8_t> nodes_beside_extinction(const Medium& medium) {
     return needed;
 }
 
-LitLattice::LitLattice(const MediumLightingInput& input, int level)
+LitLattice::LitLattice(const MediumLightingInput& input, int level, LightOf light)
     : input_(with_levels_above(input, level)),
       level_(level),
-      coarse_(level > 0 ? std::make_unique<Medium>(medium_to_light(input.medium, level)) : nullptr),
+      coarse_(level > 0 ? std::make_unique<Medium>(medium_of(input.medium, level, light)) : nullptr),
       pyramid_(medium(), ExtinctionPyramid::kMaxLevels),
       needed_(nodes_beside_extinction(medium())),
       depths_(pyramid_, kExteriorRayLevel) {
@@ -64,8 +69,7 @@ LitLattice::LitLattice(const MediumLightingInput& input, int level)
                                   pyramid_.occluders());
     if (!thin_medium_.empty())
         pyramid_.set_homogeneous_bricks(&thin_medium_.homogeneous_bricks());
-    const auto nodes = std::count_if(needed_.begin(), needed_.end(), [](std::uint8_t n) { return n != 0; });
-    interpolation_error_ = tolerated_interpolation(input.lighting, std::size_t(nodes));
+    interpolation_error_ = tolerated_interpolation(medium(), input.lighting);
     if (interpolation_error_ > 0.0f)
         levels_ = make_lit_levels(pyramid_, needed_, thin_medium_.rest(), {input.eye, input.pixel_angle}, kLitLevels);
 }

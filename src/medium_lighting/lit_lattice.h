@@ -18,11 +18,17 @@ namespace brisance {
 // Per node: whether the camera or the smoke can look up light there, at the corners of voxels with extinction.
 std::vector<std::uint8_t> nodes_beside_extinction(const Medium& medium);
 
+// Which light has a lattice (levels/lighting_level.h).
+enum class LightOf {
+    First,  // light that has not scattered yet
+    Smoke   // light that has
+};
+
 class LitLattice {
 public:
     // Keeps what the input refers to. `level`: light lives on the lattice 2^level coarser than the medium's, in a
     // medium of mean extinction.
-    LitLattice(const MediumLightingInput& input, int level);
+    LitLattice(const MediumLightingInput& input, int level, LightOf light);
     LitLattice(const LitLattice&) = delete;
     LitLattice& operator=(const LitLattice&) = delete;
 

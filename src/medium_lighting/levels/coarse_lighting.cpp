@@ -1,9 +1,11 @@
 #include "medium_lighting/levels/coarse_lighting.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "core/parallel.h"
+#include "lighting_grid/voxel_lights.h"
 #include "medium/coarse_medium.h"
 
 namespace brisance {
@@ -91,6 +93,15 @@ Medium medium_to_light(const Medium& fine, int level) {
     coarse.emission.resize(coarse.extinction.size());
     for (std::size_t i = 0; i < coarse.emission.size(); ++i)
         coarse.emission[i] = {mean[3 * i], mean[3 * i + 1], mean[3 * i + 2]};
+    return coarse;
+}
+
+Medium medium_to_light_smoke(const Medium& fine, int level) {
+    Medium coarse = medium_to_light(fine, level);
+    const float blur = (2.0f - std::exp2(-2.0f * float(level))) / 6.0f;
+    std::vector<float>& extinction = coarse.extinction;
+    sharpen_nodes(coarse.lattice, extinction, 1, 0.5f * blur);
+    coarse.max_extinction = extinction.empty() ? 0.0f : *std::max_element(extinction.begin(), extinction.end());
     return coarse;
 }
 

@@ -11,6 +11,12 @@ namespace brisance {
 // by extinction.
 Medium medium_to_light(const Medium& fine, int level);
 
+// The same for light of the smoke, with the contrast of the fine extinction. Means over coarse hats, interpolated by
+// the same hats, are the extinction after a blur of (2 - 4^-level) h^2 / 6 per axis, h the coarse spacing. Through
+// clumps without their contrast too little light escapes from between them. A conservative flux between neighbours
+// undoes the blur, as for lights (lighting_grid/voxel_lights.h).
+Medium medium_to_light_smoke(const Medium& fine, int level);
+
 // Luminance of the emission coefficient per node [W/(m^3 sr)].
 std::vector<float> emission_luminance(const Medium& medium);
 

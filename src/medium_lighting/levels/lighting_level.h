@@ -4,8 +4,10 @@
 // that a coarser lattice cannot represent.
 //
 // - Of light that has not scattered yet the first constant is that of the believed errors
-//   (forecast/expected_errors.cpp), the second was chosen by pictures of one volume. What is allowed is what
-//   interpolation may add (gathering/settings.h): nothing where lighting every node takes no more than a minute.
+//   (forecast/expected_errors.cpp), the second was chosen by pictures of one volume. A third part is what light does
+//   around a small fire. Half of lighting.error is allowed.
+// - Whether nodes may be interpolated at all follows from the same error, of the next coarser lattice: from it hidden
+//   smoke is lit. How many are is decided node by node, by what the picture shows (adaptive_gather.h).
 // - Light of the smoke is smooth where smoke is thin, whatever the fire does. Its voxels are the widest whose whole
 //   error lighting.error allows: they depend on the smoke in the world, not on the voxels that it is stored in.
 #pragma once
@@ -22,8 +24,9 @@ struct LightingLevel {
 };
 
 struct LightingLevels {
-    LightingLevel first;  // of light that has not scattered yet
-    LightingLevel smoke;  // of light that has; never finer
+    LightingLevel first;         // of light that has not scattered yet
+    LightingLevel smoke;         // of light that has; never finer
+    float interpolation = 0.0f;  // tolerated_interpolation() on the lattice of `first`
 };
 
 // As LightingSettings say, or by the errors; where an error of interpolation is stated, the medium's own lattice.
@@ -32,6 +35,11 @@ struct LightingLevels {
 LightingLevels lighting_levels(const MediumLightingInput& input);
 // The same without surfaces.
 LightingLevels lighting_levels(const Medium& medium, const LightingSettings& settings);
+
+// The error that interpolation between nodes of this medium may add to the picture: as stated, or a quarter of
+// lighting.error where light on the lattice twice as coarse errs by no more than lighting.error, falling to 0 where it
+// errs by 1.5 times that. It depends on the smoke, the fire and the width of voxels, on no count of them.
+float tolerated_interpolation(const Medium& medium, const LightingSettings& settings);
 
 // Relative error of light gathered on voxels of this optical depth, as a collision meets it.
 float error_of_voxels(float depth);

@@ -10,7 +10,7 @@ void add_lighting_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "lighting.interpolation",
         "relative error of the light in smoke up to which it is interpolated from coarser nodes; 0: every node is lit; "
-        "auto: up to an eighth of lighting.error",
+        "auto: a quarter of lighting.error where voxels twice as wide would add no more than lighting.error",
         or_word(real_float({0.0, 1.0}), "auto", -1.0f), [](Shot & s) -> auto& { return s.lighting.interpolation; }));
     keys.push_back(make_key(
         "lighting.lattice_level",
