@@ -51,10 +51,10 @@ SharedBounce::SharedBounce(int width, int height, double radius, int rays, std::
       first_(std::size_t(width) * height, kNone) {}
 
 // Lists that grow hold up to twice what is in them. Sharing makes radii and new light beside.
-std::uint64_t SharedBounce::bytes_of(int width, int height, bool tells_residual) {
+std::uint64_t SharedBounce::bytes_of(int width, int height, std::size_t told) {
     constexpr std::uint64_t kLobes = 2, kGrowth = 2;
-    const std::uint64_t residual = tells_residual ? (kGrowth + 1) * sizeof(Rgb) : 0;
-    const std::uint64_t patch = kGrowth * sizeof(Patch) + sizeof(float) + sizeof(Rgb) + residual;
+    const std::uint64_t apart = told * (kGrowth + 1) * sizeof(Rgb);
+    const std::uint64_t patch = kGrowth * sizeof(Patch) + sizeof(float) + sizeof(Rgb) + apart;
     return std::uint64_t(width) * std::uint64_t(height) * (sizeof(std::uint32_t) + sizeof(Rgb) + kLobes * patch);
 }
 

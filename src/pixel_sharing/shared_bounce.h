@@ -60,7 +60,8 @@ public:
     double angle(float lobe) const { return double(radius_) * lobe; }
 
     // That a picture with surfaces everywhere takes while it is shared, about: a pixel shows two lobes of a surface.
-    static std::uint64_t bytes_of(int width, int height, bool tells_residual = false);
+    // `told`: how many lights are told apart.
+    static std::uint64_t bytes_of(int width, int height, std::size_t told = 0);
 
     // Samples of a pixel in any order that does not depend on threads. Not thread-safe. False: the pixel has samples of
     // too many surfaces already, and this one is not taken.

@@ -54,7 +54,7 @@ std::uint64_t bytes_between_pixels(const Shot& shot, const FrameInput& input, co
     const bool lights = s.count > 0 && plan.needs(Cell::SS);
     std::uint64_t sum = 0;
     if (lights && s.sharing_radius > 0.0)
-        sum += SharedBounce::bytes_of(width, height, has_bound_layers(shot, plan));
+        sum += SharedBounce::bytes_of(width, height, has_bound_layers(shot, plan) ? 1 : SharedBounce::kAparts - 1);
     if (lights && s.compensation == BoundCompensation::ScreenSpace)
         sum += ScreenSpaceCompensation::bytes_of(width, height);
     if (lights && s.resampling_neighbours > 0) {
