@@ -171,22 +171,31 @@ void SurfaceShader::shade_reflected(const std::vector<SurfaceSample>& samples, c
             by.push_back(i);
     if (by.empty())
         return;
-    std::vector<SurfaceSample> seen_by(by.size());
-    std::vector<ShadedPoint> there(by.size(), ShadedPoint{{}, Rng(Stream::RayLightSurface, 0), 0});
-    std::vector<CellSum> light(by.size());
+    std::vector<ShadedPoint> all(by.size(), ShadedPoint{{}, Rng(Stream::RayLightSurface, 0), 0});
     parallel_for(
         by.size(),
         [&](std::size_t k) {
             ShadedPoint& from = points[by[k]];
-            seen_by[k] = samples[by[k]];
-            there[k].seen = mirrors_.reflected(seen_by[k], from.seen, from.ray_rng, light[k]);
-            there[k].ray_rng = from.ray_rng;
+            all[k].seen = mirrors_.reflected(samples[by[k]], from.seen, from.ray_rng, found[by[k]]);
+            all[k].ray_rng = from.ray_rng;
         },
         kSamplesAtOnce);
+    std::vector<SurfaceSample> seen_by;
+    std::vector<ShadedPoint> there;
+    std::vector<std::size_t> meets;  // those of `by` that do
+    for (std::size_t k = 0; k < by.size(); ++k)
+        if (!all[k].seen.lost) {
+            seen_by.push_back(samples[by[k]]);
+            there.push_back(std::move(all[k]));
+            meets.push_back(by[k]);
+        }
+    if (there.empty())
+        return;
+    std::vector<CellSum> light(there.size());
     light_reflected(seen_by, there, light);
-    for (std::size_t k = 0; k < by.size(); ++k) {
-        found[by[k]].add(light[k], Rgb(1.0f));
-        points[by[k]].vertices += there[k].vertices;
+    for (std::size_t k = 0; k < meets.size(); ++k) {
+        found[meets[k]].add(light[k], Rgb(1.0f));
+        points[meets[k]].vertices += there[k].vertices;
     }
 }
 
@@ -197,8 +206,7 @@ void SurfaceShader::light_reflected(const std::vector<SurfaceSample>& by, std::v
     std::vector<std::size_t> all(by.size());
     std::iota(all.begin(), all.end(), std::size_t(0));
     for (const std::size_t k : all)
-        if (!there[k].seen.lost)
-            add_base(bases[k], there[k], found[k]);
+        add_base(bases[k], there[k], found[k]);
     shade_some(by, all, there, found);
 }
 

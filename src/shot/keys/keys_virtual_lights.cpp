@@ -127,8 +127,9 @@ void add_placement_keys(std::vector<Key>& keys) {
 void add_sharing_key(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "virtual_lights.sharing_radius",
-        "pixels share light between matt surfaces, and of even skies on them: how far, over the distance to surfaces "
-        "around; 0: none does",
+        "pixels share light between matt surfaces, of even skies on them, and all that rough lobes reflect: how far, "
+        "over "
+        "the distance to surfaces around; 0: none does",
         real_in(Ranges::sharing_radius), [](Shot & s) -> auto& { return s.virtual_lights.sharing_radius; }));
 }
 
