@@ -70,7 +70,8 @@ TEST(ModelFireball, IsAsBrightAsTheIntegralEquationSays) {
 }
 
 // The fire's light, all orders on the coarse lattice together, and the last flight: rays with no part in the balance
-// find that what is emitted collides or escapes. Four standard errors, seeds are fixed.
+// find that what is emitted collides or escapes. Four standard errors, seeds are fixed. Light of the fire on
+// the next coarser lattice, as far as it counts, has a row of its own.
 TEST(ModelFireball, WhatIsEmittedCollidesOrEscapes) {
     const Lit lit = light_ball(2.0f, 0.9f);
     int rows = 0;
@@ -85,7 +86,7 @@ TEST(ModelFireball, WhatIsEmittedCollidesOrEscapes) {
                 EXPECT_NEAR(b["scale"].get<double>(), 1.0, 0.06);
                 ++rows;
             }
-    EXPECT_EQ(rows, 3);
+    EXPECT_GE(rows, 3);
 }
 
 TEST(ModelFireball, AWeaklyForwardPhaseFunctionIsNearlyIsotropic) {
