@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "fixtures/cell_means.h"
 #include "fixtures/media.h"
 #include "fixtures/sets.h"
 #include "render/render_frame.h"
@@ -75,13 +76,6 @@ RenderedFrame rendered(const Surroundings& set, RenderMethod method, double shar
     return render_medium(shot_of(method, sharing, seed, close), small_burst(), silent, &set);
 }
 
-double mean_of_cell(const Image& image, const std::string& cell) {
-    double sum = 0.0;
-    for (const float p : image.layer(cell).pixels)
-        sum += p;
-    return sum / double(image.layer(cell).pixels.size());
-}
-
 // Variance of a pixel for want of samples, by two pictures.
 double noise_of(const Image& a, const Image& b, const std::string& cell) {
     const std::vector<float>&x = a.layer(cell).pixels, &y = b.layer(cell).pixels;
@@ -99,8 +93,8 @@ TEST_P(GlossySurfaces, EveryCellIsThePathTracers) {
     const Surroundings set = corner(varnish(roughness), metal(roughness), lambert(0.6f));
     const RenderedFrame grid = rendered(set, RenderMethod::LightingGrid), paths = rendered(set, RenderMethod::Path);
     for (const std::string cell : {"SV", "SM", "SA", "SS"}) {
-        const double ours = mean_of_cell(grid.image, cell), truth = mean_of_cell(paths.image, cell);
-        const double noise = std::abs(mean_of_cell(paths.halves[0], cell) - mean_of_cell(paths.halves[1], cell));
+        const double ours = mean_of(grid.image, cell), truth = mean_of(paths.image, cell);
+        const double noise = std::abs(mean_of(paths.halves[0], cell) - mean_of(paths.halves[1], cell));
         EXPECT_NEAR(ours, truth, 0.04 * truth + 1.5 * noise) << cell;
         std::printf("%s %.5f, paths %.5f (%+.2f %%)\n", cell.c_str(), ours, truth, 100.0 * (ours / truth - 1.0));
     }
@@ -117,8 +111,8 @@ TEST(GlossySurfacesShared, KeepTheirEnergyAndLoseTheirNoise) {
         other[radius] = rendered(set, RenderMethod::LightingGrid, radius, 1, true).image;
     }
     for (const std::string cell : {"SV", "SM", "SA"}) {
-        const double alone = mean_of_cell(one[0.0], cell) + mean_of_cell(other[0.0], cell),
-                     shared = mean_of_cell(one[0.2], cell) + mean_of_cell(other[0.2], cell);
+        const double alone = mean_of(one[0.0], cell) + mean_of(other[0.0], cell),
+                     shared = mean_of(one[0.2], cell) + mean_of(other[0.2], cell);
         const double before = noise_of(one[0.0], other[0.0], cell), after = noise_of(one[0.2], other[0.2], cell);
         std::printf("%s: mean %+.2f %%, noise %.2f of before\n", cell.c_str(), 100.0 * (shared / alone - 1.0),
                     std::sqrt(after / before));

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "fixtures/cell_means.h"
 #include "fixtures/media.h"
 #include "fixtures/sets.h"
 #include "render/render_frame.h"
@@ -54,14 +55,6 @@ Shot hall_shot(RenderMethod method) {
     shot.virtual_lights.count = 1500;
     shot.virtual_lights.photons = 300000;
     return shot;
-}
-
-double mean_of(const Image& image, const std::string& cell) {
-    const std::vector<float>& pixels = image.layer(cell).pixels;
-    double sum = 0.0;
-    for (const float p : pixels)
-        sum += p;
-    return sum / double(pixels.size());
 }
 
 TEST(Mirrors, EveryCellIsThePathTracers) {
