@@ -13,7 +13,7 @@
 #include "core/input_file.h"
 #include "core/printable.h"
 #include "image_formats/image_formats.h"
-#include "scene/picture_size.h"
+#include "scene/picture_parts.h"
 #include "scene/srgb.h"
 
 namespace brisance {
@@ -124,8 +124,9 @@ Texture read_memory(std::string_view bytes, const std::string& where, bool srgb,
         reject(where, fmt::format("the {} is truncated", format->name));
     const PictureSize size = claimed_size(bytes, where);
     check_size(size.width, size.height, 1.0, where, memory_limit);
+    const std::string picture = without_metadata(bytes);
     std::string why;
-    const auto input = image_formats().open_bytes(bytes, format->name, why);
+    const auto input = image_formats().open_bytes(picture, format->name, why);
     if (!input)
         reject(where, "damaged: " + printable(why));
     return read_opened(*input, where, srgb, memory_limit);

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "gltf_fixture.h"
+#include "scene/picture_parts.h"
 #include "scene/read_texture.h"
 
 namespace brisance::testing {
@@ -58,6 +59,47 @@ TEST(TextureFile, ThatHoldsAbsurdValuesIsDamaged) {
                                           << std::string("\x80\x80\x80\xf0", 4);
     EXPECT_NE(trouble_with(file).find("holds the value"), std::string::npos) << trouble_with(file);
     std::filesystem::remove(file);
+}
+
+// A segment right after the start of a JPEG.
+std::string with_metadata(std::string jpeg, char marker, const std::string& content) {
+    const std::size_t length = content.size() + 2;
+    const std::string size = {static_cast<char>(length >> 8), static_cast<char>(length & 0xff)};
+    return jpeg.insert(2, std::string({'\xff', marker}) + size + content);
+}
+
+// A chunk after the first one of a PNG.
+std::string with_chunk(std::string png, const std::string& type, const std::string& content,
+                       const std::string& checksum = std::string(4, '\0')) {
+    constexpr std::size_t header_ends = 8 + 12 + 13;
+    const std::string size = {0, 0, static_cast<char>(content.size() >> 8), static_cast<char>(content.size() & 0xff)};
+    return png.insert(header_ends, size + type + content + checksum);
+}
+
+// IPTC data that states more bytes than there are: OpenImageIO would read past its end.
+TEST(TextureFile, MetadataIsLeftAloneHoweverDamaged) {
+    const std::vector<std::uint8_t> pixels = {250, 3, 40, 1, 200, 90, 17, 30, 220, 128, 128, 128};
+    const std::string iptc = std::string(
+        "Photoshop 3.0\0"
+        "8BIM\x04\x04\0\0\0\0\xff\xff\x1c\x02\x05\xff\xff",
+        31);
+    const std::string jpeg = encoded(".jpg", 2, 2, 3, pixels), png = encoded(".png", 2, 2, 3, pixels);
+    const auto pixels_of = [](const std::string& picture) {
+        return read_texture(as_bytes(picture), "memory", true, std::uint64_t{1} << 30).bytes;
+    };
+    EXPECT_EQ(without_metadata(with_metadata(jpeg, '\xed', iptc)), without_metadata(jpeg));
+    EXPECT_EQ(pixels_of(with_metadata(jpeg, '\xed', iptc)), pixels_of(jpeg));
+    EXPECT_EQ(pixels_of(with_metadata(jpeg, '\xe1', std::string("Exif\0\0II*\0\xff\xff\xff\x7f", 14))),
+              pixels_of(jpeg));
+    EXPECT_EQ(pixels_of(with_chunk(png, "eXIf", std::string("II*\0\xff\xff\xff\x7f", 8))), pixels_of(png));
+}
+
+// A colour that stands for what is transparent is no metadata: the first of two pixels has it.
+TEST(TextureFile, TransparencyOfAPngIsKept) {
+    const std::string colour("\x00\xfa\x00\x03\x00\x28", 6), checksum = "\x5b\xd1\x59\xce";
+    const std::string png = with_chunk(encoded(".png", 2, 1, 3, {250, 3, 40, 1, 200, 90}), "tRNS", colour, checksum);
+    const Texture texture = read_texture(as_bytes(png), "memory", true, std::uint64_t{1} << 30);
+    EXPECT_EQ(texture.bytes, (std::vector<std::uint8_t>{250, 3, 40, 0, 1, 200, 90, 255}));
 }
 
 TEST(TextureLookup, TexelCentresGiveTheirTexel) {
