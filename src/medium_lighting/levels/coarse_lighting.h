@@ -9,8 +9,8 @@ namespace brisance {
 
 // The medium on the lattice 2^level coarser: mean extinction, mean emission as an emission coefficient, and mean albedo
 // by extinction, with the contrast of the fine medium. Means over coarse hats, interpolated by the same hats, are the
-// field after a blur of (2 - 4^-level) h^2 / 6 per axis, h the coarse spacing. Through clumps without their contrast too
-// little light escapes from between them. A conservative flux between neighbours undoes the blur, as for lights
+// field after a blur of (2 - 4^-level) h^2 / 6 per axis, h the coarse spacing. Through clumps without their contrast
+// too little light escapes from between them. A conservative flux between neighbours undoes the blur, as for lights
 // (lighting_grid/voxel_lights.h).
 Medium medium_to_light(const Medium& fine, int level);
 

@@ -39,8 +39,8 @@ constexpr float kNearlyAllowed = 1.5f;
 // of the unrefined one than on voxels half as wide, 2.45 % being expected without that light.
 constexpr float kLeftByDetail = 0.28f;
 
-// Wider voxels were not measured, and are not chosen.
-constexpr int kWidest = 2;
+// Wider voxels were not measured, and are not chosen; nor those without fire.
+constexpr int kWidest = 2, kWidestWithoutFire = 1;
 // Of the smoke's, above those. Without fire nothing is known of where its light changes.
 constexpr int kSmokeWider = 3, kSmokeWiderWithoutFire = 1;
 // Of light that has scattered twice, over the square of the optical depth of a voxel. Pictures of an explosion, a ball
@@ -79,6 +79,7 @@ public:
                           kErrorOfEmissionInSmoke * unresolved_emission(level));
     }
 
+    int widest_of_first() const { return medium_.emits() ? kWidest : kWidestWithoutFire; }
     float widest_of_smoke() const { return float(medium_.emits() ? kSmokeWider : kSmokeWiderWithoutFire); }
 
 private:
@@ -194,7 +195,7 @@ LightingLevel level_of_first(LatticeErrors& errors, const LightingSettings& sett
         if (next > allowed)
             return between(level, error, next, allowed);
         error = next;
-        if (++level == kWidest)
+        if (++level == errors.widest_of_first())
             return {level, 0.0f, error};
     }
 }
