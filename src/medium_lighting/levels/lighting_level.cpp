@@ -70,7 +70,10 @@ public:
 
     // Relative, of the picture, on voxels 2^level wide; and with the light of their detail.
     float of_first_without_detail(int level) { return std::hypot(of_detail(level), of_small_fire(level)); }
-    float of_first(int level) { return std::hypot(kLeftByDetail * of_detail(level), of_small_fire(level)); }
+    float of_first(int level) {
+        const float left = medium_.emits() ? kLeftByDetail : 1.0f;  // not measured without fire
+        return std::hypot(left * of_detail(level), of_small_fire(level));
+    }
     float of_smoke(int level) {
         if (!albedo_)
             albedo_ = albedo_met(medium_);
