@@ -35,12 +35,12 @@ FirstLight first_light(const LitLattice& lattice, Statistics& statistics, Progre
     }
     if ((input.reflected.lights || input.reflected.cast) && input.surfaces_on_medium) {
         const Gathered arriving = light_from_surfaces(lattice, statistics, progress);
-        out.sources.from_surfaces = lattice.source_function(arriving);
+        out.sources.from_surfaces = lattice.source_function(arriving, LightOrigin::Outside);
         first.add(arriving);
     }
     if (input.surroundings && input.emitters_on_medium) {
         const Gathered arriving = light_from_emitters(lattice, statistics, progress);
-        out.sources.from_emitters = lattice.source_function(arriving);
+        out.sources.from_emitters = lattice.source_function(arriving, LightOrigin::Outside);
         out.sources.emitters_at_nodes = input.emitters_at_nodes;
         first.add(arriving);
     }

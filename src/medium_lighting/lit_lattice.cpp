@@ -6,6 +6,7 @@
 #include "gathering/escape_probability.h"
 #include "lighting_grid/voxel_lights.h"
 #include "medium/phase.h"
+#include "medium_lighting/levels/light_of_detail.h"
 #include "medium_lighting/levels/lighting_level.h"
 #include "medium_lighting/surface_occluders.h"
 #include "scattering/coarse_operator.h"
@@ -29,8 +30,17 @@ MediumLightingInput with_levels_above(MediumLightingInput input, int level) {
     return input;
 }
 
-Medium medium_of(const Medium& fine, int level, LightOf light) {
-    return light == LightOf::Smoke ? medium_to_light_smoke(fine, level) : medium_to_light(fine, level);
+std::unique_ptr<Medium> medium_on(const Medium& fine, int level) {
+    return level > 0 ? std::make_unique<Medium>(medium_to_light(fine, level)) : nullptr;
+}
+
+// Mean radiance over directions.
+std::vector<Rgb> mean_radiance(const Gathered& g, std::size_t n) {
+    std::vector<Rgb> mean(n);
+    for (std::size_t i = 0; i < n; ++i)
+        for (int c = 0; c < 3; ++c)
+            mean[i][c] = g.fluence[c * n + i] / (4.0f * kPi);
+    return mean;
 }
 
 }  // namespace
@@ -52,10 +62,11 @@ std::vector<std::uint8_t> nodes_beside_extinction(const Medium& medium) {
     return needed;
 }
 
-LitLattice::LitLattice(const MediumLightingInput& input, int level, LightOf light)
+LitLattice::LitLattice(const MediumLightingInput& input, int level)
     : input_(with_levels_above(input, level)),
       level_(level),
-      coarse_(level > 0 ? std::make_unique<Medium>(medium_of(input.medium, level, light)) : nullptr),
+      coarse_(medium_on(input.medium, level)),
+      finer_(medium_on(input.medium, level - 1)),
       pyramid_(medium(), ExtinctionPyramid::kMaxLevels),
       needed_(nodes_beside_extinction(medium())),
       depths_(pyramid_, kExteriorRayLevel) {
@@ -105,7 +116,23 @@ NodeWeights LitLattice::escape_likelihood_of(const std::vector<Rgb>& intensity) 
     return escape_likelihood(medium(), depths_, intensity, &likelihood_);
 }
 
-std::vector<Rgb> LitLattice::source_function(const Gathered& g, Interpolation how) const {
+std::vector<Rgb> LitLattice::at_medium_nodes(const std::vector<Rgb>& radiance, const Gathered& gathered,
+                                             LightOrigin origin) const {
+    const BrickLattice& nodes = medium().lattice;
+    if (origin == LightOrigin::Smoke)
+        return light_at_fine_nodes(nodes, radiance, level_, input_.medium.lattice);
+    const Medium& finer = finer_ ? *finer_ : input_.medium;
+    const bool toward_eye = !gathered.scattered.empty();
+    std::vector<Rgb> light = light_at_fine_nodes(nodes, radiance, 1, finer.lattice);
+    const std::vector<Rgb> mean =
+        toward_eye ? light_at_fine_nodes(nodes, mean_radiance(gathered, needed_.size()), 1, finer.lattice) : light;
+    const LightBeforeDetail before{medium(), mean, origin == LightOrigin::Fire,
+                                   toward_eye ? std::optional<vec3>(input_.eye) : std::nullopt};
+    add_light_of_detail(finer, before, nodes_beside_extinction(finer), light);
+    return finer_ ? light_at_fine_nodes(finer.lattice, light, level_ - 1, input_.medium.lattice) : light;
+}
+
+std::vector<Rgb> LitLattice::source_function(const Gathered& g, LightOrigin origin) const {
     const std::size_t n = needed_.size();
     std::vector<Rgb> radiance(n, Rgb(0.0f));
     parallel_for(
@@ -118,7 +145,7 @@ std::vector<Rgb> LitLattice::source_function(const Gathered& g, Interpolation ho
         },
         4096);
     if (level_ > 0)
-        radiance = light_at_fine_nodes(medium().lattice, std::move(radiance), level_, input_.medium.lattice, how);
+        radiance = at_medium_nodes(radiance, g, origin);
     parallel_for(
         radiance.size(), [&](std::size_t i) { radiance[i] *= input_.medium.albedo_at(i); }, 4096);
     return radiance;

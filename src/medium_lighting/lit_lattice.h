@@ -18,17 +18,18 @@ namespace brisance {
 // Per node: whether the camera or the smoke can look up light there, at the corners of voxels with extinction.
 std::vector<std::uint8_t> nodes_beside_extinction(const Medium& medium);
 
-// Which light has a lattice (levels/lighting_level.h).
-enum class LightOf {
-    First,  // light that has not scattered yet
-    Smoke   // light that has
+// Where light at the nodes has come from.
+enum class LightOrigin {
+    Fire,     // the medium's emission
+    Outside,  // surfaces and emitters
+    Smoke     // scattered by the medium
 };
 
 class LitLattice {
 public:
     // Keeps what the input refers to. `level`: light lives on the lattice 2^level coarser than the medium's, in a
-    // medium of mean extinction.
-    LitLattice(const MediumLightingInput& input, int level, LightOf light);
+    // medium of mean extinction (levels/coarse_lighting.h).
+    LitLattice(const MediumLightingInput& input, int level);
     LitLattice(const LitLattice&) = delete;
     LitLattice& operator=(const LitLattice&) = delete;
 
@@ -62,13 +63,19 @@ public:
     // Remembered for other lights at the same nodes; not for several threads.
     NodeWeights escape_likelihood_of(const std::vector<Rgb>& intensity) const;
 
-    // Albedo times the radiance that scatters toward the camera, per node of the input medium [W/(m^2 sr)].
-    std::vector<Rgb> source_function(const Gathered& gathered, Interpolation how = Interpolation::EighthRoots) const;
+    // Albedo times the radiance that scatters toward the camera, per node of the input medium [W/(m^2 sr)]. Light that
+    // has not scattered has the light of detail (levels/light_of_detail.h) of the lattice twice as fine added.
+    std::vector<Rgb> source_function(const Gathered& gathered, LightOrigin origin) const;
 
 private:
+    // From this lattice to the nodes of the input medium.
+    std::vector<Rgb> at_medium_nodes(const std::vector<Rgb>& radiance, const Gathered& gathered,
+                                     LightOrigin origin) const;
+
     MediumLightingInput input_;
     int level_;
     std::unique_ptr<Medium> coarse_;  // null: the input medium itself
+    std::unique_ptr<Medium> finer_;   // on the lattice twice as fine; null: the input medium, or light lives there
     std::unique_ptr<Occluders> surfaces_;
     ExtinctionPyramid pyramid_;
     std::vector<std::uint8_t> needed_;

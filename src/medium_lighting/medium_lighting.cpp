@@ -72,17 +72,17 @@ private:
                 {"smoke_error_of_coarser_level", smoke.error_of_coarser}};
     }
 
-    // Kept by what refers to it alone. The medium's own lattice serves both kinds of light.
-    Lattice lattice(int level, LightOf light) {
-        std::weak_ptr<const LitLattice>& known = lattices_[{level, level > 0 ? light : LightOf::First}];
+    // Kept by what refers to it alone.
+    Lattice lattice(int level) {
+        std::weak_ptr<const LitLattice>& known = lattices_[level];
         Lattice out = known.lock();
         if (!out)
-            known = out = std::make_shared<const LitLattice>(to_.input_, level, light);
+            known = out = std::make_shared<const LitLattice>(to_.input_, level);
         return out;
     }
 
     void first(const ShareOfLevel& of, bool coarser) {
-        Lattice on = lattice(of.level, LightOf::First);
+        Lattice on = lattice(of.level);
         Statistics costs;
         FirstLight light = first_light(*on, costs, progress_);
         note(std::move(costs), coarser);
@@ -95,7 +95,7 @@ private:
 
     void smoke(const ShareOfLevel& of, bool coarser) {
         ScatteredLight once = scattered_once(of.level);
-        Lattice on = lattice(of.level, LightOf::Smoke);
+        Lattice on = lattice(of.level);
         Statistics costs;
         SmokeLight light = light_from_smoke(*on, once, costs, progress_);
         note(std::move(costs), coarser);
@@ -148,7 +148,7 @@ private:
     MediumLighting& to_;
     Statistics& statistics_;
     Progress& progress_;
-    std::map<std::pair<int, LightOf>, std::weak_ptr<const LitLattice>> lattices_;
+    std::map<int, std::weak_ptr<const LitLattice>> lattices_;
     std::vector<Once> once_;  // light scattered once, per lattice of the first light
 };
 

@@ -8,6 +8,7 @@
 #include "lighting_grid/voxel_lights.h"
 #include "medium/coarse_medium.h"
 #include "medium_lighting/levels/coarse_lighting.h"
+#include "medium_lighting/levels/light_of_detail.h"
 #include "medium_lighting/levels/lighting_level.h"
 #include "render/render_frame.h"
 #include "small_view.h"
@@ -40,25 +41,6 @@ RenderedFrame picture_on(const Medium& medium, int level) {
     return render_medium(shot, medium, silent);
 }
 
-TEST(LightingLevel, ExponentialDecayAlongAnAxisIsInterpolatedAsTheCameraSeesIt) {
-    const Medium fine = smooth_fire(1.0f);
-    for (const int level : {1, 2}) {
-        const Medium coarse = medium_to_light(fine, level);
-        const auto light_at = [&](const ivec3& node) { return Rgb(std::exp(-0.1f * float(node.x)), 1.0f, 2.0f); };
-        std::vector<Rgb> light(coarse.lattice.node_count());
-        for (std::size_t i = 0; i < light.size(); ++i)
-            light[i] = light_at(coarse.lattice.node(i) * (1 << level));
-        const std::vector<Rgb> found =
-            light_at_fine_nodes(coarse.lattice, light, level, fine.lattice, Interpolation::EighthRoots);
-        for (std::size_t i = 0; i < found.size(); ++i)
-            if (fine.extinction[i] > 0.0f) {
-                const Rgb wanted = light_at(fine.lattice.node(i));
-                for (int c = 0; c < 3; ++c)
-                    ASSERT_NEAR(found[i][c] / wanted[c], 1.0f, 0.005f) << "level " << level << ", colour " << c;
-            }
-    }
-}
-
 TEST(LightingLevel, LinearLightIsInterpolatedAsItIs) {
     const Medium fine = smooth_fire(1.0f);
     const Medium coarse = medium_to_light(fine, 1);
@@ -68,7 +50,7 @@ TEST(LightingLevel, LinearLightIsInterpolatedAsItIs) {
     std::vector<Rgb> light(coarse.lattice.node_count());
     for (std::size_t i = 0; i < light.size(); ++i)
         light[i] = light_at(coarse.lattice.node(i) * 2);
-    const std::vector<Rgb> found = light_at_fine_nodes(coarse.lattice, light, 1, fine.lattice, Interpolation::Linear);
+    const std::vector<Rgb> found = light_at_fine_nodes(coarse.lattice, light, 1, fine.lattice);
     for (std::size_t i = 0; i < found.size(); ++i)
         for (int c = 0; c < 3 && fine.extinction[i] > 0.0f; ++c)
             ASSERT_NEAR(found[i][c], light_at(fine.lattice.node(i))[c], 1e-3f);
@@ -84,6 +66,81 @@ TEST(LightingLevel, TheMeanMediumEmitsAndExtinguishesAsMuch) {
     };
     EXPECT_NEAR(extinction(coarse) / extinction(fine), 1.0, 1e-4);
     EXPECT_NEAR(total_luminance(voxel_lights(coarse)) / total_luminance(voxel_lights(fine)), 1.0, 1e-4);
+}
+
+double mean_of(const RenderedFrame& frame, const char* layer) {
+    double sum = 0.0;
+    for (const float v : frame.image.layer(layer).pixels)
+        sum += v;
+    return sum;
+}
+
+// Burning clumps two voxels wide, of two thirds more and less smoke: voxels twice as wide blur them. Where dense smoke
+// lights itself more collides, and the rest must be darker. Measured: 1.1 % too much light, and 2.2 % if it is not.
+TEST(LightOfDetail, PathTracerSeesAsMuchLightInClumps) {
+    Recipe r;
+    r.box = cube(-16, 16);
+    r.world_from_index = cubic(0.075);
+    r.density = [](const ivec3& n) {
+        const ivec3 clump = (n + 1) >> 1;
+        const auto hash = static_cast<std::uint32_t>(clump.x * 73856093) ^
+                          static_cast<std::uint32_t>(clump.y * 19349663) ^
+                          static_cast<std::uint32_t>(clump.z * 83492791);
+        return ball(n, dvec3(0.0), 14.0) * (1.0f + ((hash * 2654435761u) >> 31 ? 0.65f : -0.65f));
+    };
+    r.flame = r.density;
+    r.settings.smoke.extinction_per_metre = 4.0f;
+    r.settings.smoke.albedo = Rgb(0.7f);
+    r.settings.fire.convention = EmissionConvention::Direct;
+    const Medium medium = make_medium(r);
+    Shot shot = small_view(24);
+    shot.scattering.bounces = 1;
+    shot.lighting.lattice_level = 1;
+    Progress silent;
+    const RenderedFrame found = render_medium(shot, medium, silent);
+    shot.method = RenderMethod::Path;
+    shot.tracing.samples = 100;
+    const RenderedFrame truth = render_medium(shot, medium, silent);
+    EXPECT_NEAR(mean_of(found, "MV") / mean_of(truth, "MV"), 1.0, 0.017);
+}
+
+// Where the finer lattice knows nothing more, it adds nothing. What the box's sides change scales all light alike.
+TEST(LightOfDetail, LinearFieldsHaveNone) {
+    Recipe r;
+    r.box = cube(-16, 15);
+    r.world_from_index = cubic(0.1);
+    r.density = [](const ivec3& n) { return 2.0f + 0.05f * float(n.x); };
+    r.flame = [](const ivec3& n) { return 2.0f - 0.05f * float(n.y); };
+    r.settings.fire.convention = EmissionConvention::Direct;
+    const Medium fine = make_medium(r), coarse = medium_to_light(fine, 1);
+    const std::size_t n = fine.lattice.node_count();
+    const std::vector<Rgb> mean(n, Rgb(1.0f));
+    std::vector<Rgb> light = mean;
+    add_light_of_detail(fine, {coarse, mean, true}, std::vector<std::uint8_t>(n, 1), light);
+    for (std::size_t i = 0; i < n; ++i) {
+        const bool inside = glm::all(glm::lessThan(glm::abs(fine.lattice.node(i)), ivec3(10)));
+        ASSERT_NEAR(inside ? light[i].x / light[std::size_t(fine.lattice.find_node(ivec3(0)))].x : 1.0f, 1.0f, 1e-4f);
+    }
+}
+
+// A sheet one node thick, of fire or of smoke.
+TEST(LightOfDetail, FireLightsItselfAndSmokeHidesItself) {
+    const auto at_sheet = [](bool fire) {
+        Recipe r;
+        r.box = cube(-16, 15);
+        r.world_from_index = cubic(0.1);
+        r.density = [=](const ivec3& n) { return !fire && n.x == 0 ? 2.0f : 1.0f; };
+        r.flame = [=](const ivec3& n) { return fire && n.x == 0 ? 2.0f : 1.0f; };
+        r.settings.fire.convention = EmissionConvention::Direct;
+        const Medium fine = make_medium(r), coarse = medium_to_light(fine, 1);
+        const std::size_t n = fine.lattice.node_count();
+        const std::vector<Rgb> mean(n, Rgb(1.0f));
+        std::vector<Rgb> light = mean;
+        add_light_of_detail(fine, {coarse, mean, true}, std::vector<std::uint8_t>(n, 1), light);
+        return light[std::size_t(fine.lattice.find_node(ivec3(0)))].x;
+    };
+    EXPECT_GT(at_sheet(true), 1.01f);
+    EXPECT_LT(at_sheet(false), 0.99f);
 }
 
 // Voxels of optical depth 0.15 add less than shadow maps may. Both pictures are of lighting.error=0.02.
@@ -154,7 +211,7 @@ TEST(LightingLevel, PaddingDoesNotMatter) {
 }
 
 // A wave of eight coarse voxels: the means alone have lost a thirteenth of it.
-TEST(LightingLevel, LightOfTheSmokeKnowsTheContrastOfTheExtinction) {
+TEST(LightingLevel, LightKnowsTheContrastOfTheExtinction) {
     Recipe r;
     r.box = cube(-32, 31);
     r.world_from_index = cubic(0.1);
@@ -174,7 +231,7 @@ TEST(LightingLevel, LightOfTheSmokeKnowsTheContrastOfTheExtinction) {
         }
         return product / square;
     };
-    const Medium means = medium_to_light(fine, 1), sharp = medium_to_light_smoke(fine, 1);
+    const Medium means = coarse_medium(fine, 1), sharp = medium_to_light(fine, 1);
     EXPECT_LT(amplitude(means), 0.95);
     EXPECT_NEAR(amplitude(sharp), 1.0, 0.02);
     double sum = 0.0, wanted = 0.0;

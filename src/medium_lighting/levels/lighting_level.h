@@ -3,7 +3,8 @@
 // A picture errs with the square of the optical depth of the voxels on which light is gathered, and by the emission
 // that a coarser lattice cannot represent.
 //
-// - Of light that has not scattered yet the first constant is that of the believed errors
+// - Light that has not scattered yet is given the light of its voxels' detail (light_of_detail.h), which leaves a part
+//   of that error. Of this light the first constant is that of the believed errors
 //   (forecast/expected_errors.cpp), the second was chosen by pictures of one volume. A third part is what light does
 //   around a small fire. Half of lighting.error is allowed.
 // - Whether nodes may be interpolated at all follows from the same error, of the next coarser lattice: from it hidden

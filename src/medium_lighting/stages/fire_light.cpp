@@ -68,7 +68,7 @@ FireLight light_from_fire(const LitLattice& lattice, Statistics& statistics, Pro
     }
     if (out.exterior)
         out.exterior->light_thin_medium(lattice.request(), arriving.light, statistics, progress);
-    out.single = lattice.source_function(arriving.light);
+    out.single = lattice.source_function(arriving.light, LightOrigin::Fire);
     arriving.conserve(lattice.thin_medium().rest());
     out.arriving = std::move(arriving.light);
     return out;

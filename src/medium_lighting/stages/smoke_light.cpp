@@ -236,7 +236,7 @@ Gathered gather_apart(const LitLattice& lattice, std::vector<ScatteredLight> ord
                                                             lattice.input().scattering.alpha, statistics);
             out.exterior->light_thin_medium(lattice.last_request(), g, statistics, progress);
         }
-        out.orders.push_back(lattice.source_function(g, Interpolation::Linear));
+        out.orders.push_back(lattice.source_function(g, LightOrigin::Smoke));
         sum.add(g);
     }
     return sum;
@@ -257,7 +257,7 @@ SmokeLight light_from_smoke(const LitLattice& lattice, const ScatteredLight& onc
         lattice.input().orders_apart
             ? gather_apart(lattice, std::move(orders), flights, out, statistics, progress)
             : gather_together(lattice, std::move(orders.front()), once, bounces, flights, out, statistics, progress);
-    out.multiple = lattice.source_function(sum, Interpolation::Linear);
+    out.multiple = lattice.source_function(sum, LightOrigin::Smoke);
     statistics.stages.push_back(flights.cost(sum));
     return out;
 }
