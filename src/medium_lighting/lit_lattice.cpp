@@ -29,6 +29,18 @@ MediumLightingInput with_levels_above(MediumLightingInput input, int level) {
     return input;
 }
 
+// Suns and skies reach all smoke that smoke does not hide. Lamps and shadows of a set may leave haze to be lit by dense
+// smoke alone, as fire does.
+LitBy lit_by(const MediumLightingInput& input) {
+    if (input.fire || !input.emitters_on_medium || !input.surroundings || input.surroundings->has_surfaces())
+        return LitBy::Fire;
+    const Emitters& emitters = input.surroundings->emitters();
+    for (std::size_t part = 0; part < emitters.choices(); ++part)
+        if (!emitters.is_far(part))
+            return LitBy::Fire;
+    return LitBy::Skies;
+}
+
 Medium medium_of(const Medium& fine, int level, LightOf light) {
     return light == LightOf::Smoke ? medium_to_light_smoke(fine, level) : medium_to_light(fine, level);
 }
@@ -66,7 +78,7 @@ LitLattice::LitLattice(const MediumLightingInput& input, int level, LightOf ligh
     }
     if (input.single || input.multiple)
         thin_medium_ = ThinMedium(medium(), depths_, needed_, {input.eye, input.directional}, input.lighting.error,
-                                  pyramid_.occluders());
+                                  pyramid_.occluders(), lit_by(input));
     if (!thin_medium_.empty())
         pyramid_.set_homogeneous_bricks(&thin_medium_.homogeneous_bricks());
     interpolation_error_ = tolerated_interpolation(medium(), input.lighting);
