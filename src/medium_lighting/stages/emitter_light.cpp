@@ -15,8 +15,8 @@ namespace brisance {
 
 namespace {
 
-// Points on the emitters for a node: on all lamps together, and on each light at infinity. Light from far away differs
-// less between neighbours than what lamps and their shadows send.
+// Points on the emitters for a node: on all lamps together and on each light at infinity, of which that no surface
+// hides needs fewer: its light has no edges.
 constexpr double kOnLamps = 24.0, kOnFar = 8.0;
 // Nodes take most where the camera sees them, and this share of it where smoke hides them. A node's variance counts by
 // the square of the transmittance T to the camera, so that for the least error at equal cost their number is in
@@ -58,7 +58,7 @@ public:
           beyond_(2.0f * local_bounds(medium).diagonal()) {
         const Emitters& emitters = surroundings.emitters();
         for (std::size_t part = 0; part < emitters.choices(); ++part)
-            parts_.push_back({emitters.is_far(part) ? kOnFar : kOnLamps,
+            parts_.push_back({emitters.is_far(part) && !surroundings.has_surfaces() ? kOnFar : kOnLamps,
                               cones_across(emitters.width_of_choice(part), medium.spacing)});
     }
 
