@@ -180,11 +180,16 @@ double Emitters::far_probability() const {
     return tree_.empty() ? 1.0 : double(far_.size()) / double(far_.size() + 1);
 }
 
-std::optional<EmitterSample> Emitters::sample(const LitPoint& point, double choice, Rng& rng) const {
+double Emitters::width_of_choice(std::size_t part) const {
+    const bool of_sun = is_far(part) && !is_sky(part);
+    return of_sun ? 2.0 * std::acos(std::min(far_[part].cosine, 1.0)) : pi;
+}
+
+std::optional<EmitterSample> Emitters::sample(const LitPoint& point, double choice, const glm::dvec2& on) const {
     const double far = far_probability();
     if (choice < far) {
         const auto which = std::min(static_cast<std::size_t>(choice / far * double(far_.size())), far_.size() - 1);
-        std::optional<EmitterSample> s = sample_far(far_[which], rng);
+        std::optional<EmitterSample> s = sample_far(far_[which], on);
         if (!s)
             return s;
         const double probability = far / double(far_.size());
@@ -193,16 +198,16 @@ std::optional<EmitterSample> Emitters::sample(const LitPoint& point, double choi
         s->weight /= float(probability);
         return s;
     }
-    return far < 1.0 ? sample_near(point, (choice - far) / (1.0 - far), rng, 1.0 - far) : std::nullopt;
+    return far < 1.0 ? sample_near(point, (choice - far) / (1.0 - far), on, 1.0 - far) : std::nullopt;
 }
 
-std::optional<EmitterSample> Emitters::sample_near(const LitPoint& point, double choice, Rng& rng,
+std::optional<EmitterSample> Emitters::sample_near(const LitPoint& point, double choice, const glm::dvec2& on,
                                                    double probability) const {
     const std::optional<LightTree::Choice> chosen = tree_.choose(point, std::min(choice, 1.0 - 0x1p-53));
     if (!chosen)
         return std::nullopt;
     probability *= chosen->probability;
-    std::optional<EmitterSample> s = sample_on(near_[chosen->light], point, rng);
+    std::optional<EmitterSample> s = sample_on(near_[chosen->light], point, on);
     if (!s)
         return std::nullopt;
     s->pdf *= probability;
@@ -211,7 +216,7 @@ std::optional<EmitterSample> Emitters::sample_near(const LitPoint& point, double
 }
 
 // A point on that light. None if it contributes nothing.
-std::optional<EmitterSample> Emitters::sample_on(const Near& near, const LitPoint& point, Rng& rng) const {
+std::optional<EmitterSample> Emitters::sample_on(const Near& near, const LitPoint& point, const glm::dvec2& on) const {
     std::optional<EmitterSample> s;
     if (near.light) {
         const dvec3 offset = near.position - point.position;
@@ -222,15 +227,15 @@ std::optional<EmitterSample> Emitters::sample_on(const Near& near, const LitPoin
         s = EmitterSample{direction, distance, near.position, intensity(near, -direction) / float(distance * distance),
                           0.0};
     } else {
-        s = sample_triangle(near, point, rng);
+        s = sample_triangle(near, point, on);
     }
     return !s || s->weight == Rgb(0.0f) ? std::nullopt : s;
 }
 
-std::optional<EmitterSample> Emitters::sample_triangle(const Near& near, const LitPoint& point, Rng& rng) const {
+std::optional<EmitterSample> Emitters::sample_triangle(const Near& near, const LitPoint& point,
+                                                       const glm::dvec2& on) const {
     const Triangle triangle = triangle_of(scene_, near.mesh, near.triangle);
-    const double u = rng.next_double();
-    const vec2 b = sample_barycentric(u, rng.next_double());
+    const vec2 b = sample_barycentric(on.x, on.y);
     const dvec3 position = at(triangle, b), offset = position - point.position;
     const double distance = glm::length(offset);
     if (!(distance > 0.0))
@@ -244,14 +249,13 @@ std::optional<EmitterSample> Emitters::sample_triangle(const Near& near, const L
     return EmitterSample{direction, distance, there.start_toward(point.position), there.emission / float(pdf), pdf};
 }
 
-std::optional<EmitterSample> Emitters::sample_far(const Far& far, Rng& rng) const {
-    const double u = rng.next_double(), v = rng.next_double();
+std::optional<EmitterSample> Emitters::sample_far(const Far& far, const glm::dvec2& on) const {
     EmitterSample s;
     s.distance = kInfinity;
     if (far.environment)
-        s.direction = far.environment->sample(u, v);
+        s.direction = far.environment->sample(on.x, on.y);
     else if (far.solid_angle > 0.0)
-        s.direction = around(far.toward, 1.0 - u * (1.0 - far.cosine), 2.0 * pi * v);
+        s.direction = around(far.toward, 1.0 - on.x * (1.0 - far.cosine), 2.0 * pi * on.y);
     else
         return EmitterSample{far.toward, kInfinity, {}, far.light->power, 0.0};
     s.pdf = pdf_of_far(far, s.direction);
@@ -369,7 +373,7 @@ EmittedParticle Emitters::emit_near(const Near& near, Rng& rng) const {
 }
 
 EmittedParticle Emitters::emit_far(const Far& far, const dvec3& centre, double radius, Rng& rng) const {
-    const std::optional<EmitterSample> s = sample_far(far, rng);
+    const std::optional<EmitterSample> s = sample_far(far, glm::dvec2{rng.next_double(), rng.next_double()});
     if (!s)
         return {{centre, {0, 0, 1}}, Rgb(0.0f)};
     const double r = radius * std::sqrt(rng.next_double()), azimuth = 2.0 * pi * rng.next_double();

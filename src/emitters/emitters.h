@@ -48,13 +48,21 @@ public:
     // The lights at infinity, and all others as one: equal parts of the interval from which sample() chooses. Evenly
     // spaced choices, as many, take one of each.
     std::size_t choices() const { return far_.size() + (tree_.empty() ? 0 : 1); }
+    // The angle that such a part shines from at most, seen from anywhere [rad]: of suns their diameter; else pi.
+    double width_of_choice(std::size_t part) const;
+    bool is_far(std::size_t part) const { return part < far_.size(); }
+    bool is_sky(std::size_t part) const { return is_far(part) && far_[part].environment; }
 
     // Samples one light, chosen for the point, and a point on it. None if it contributes nothing.
     std::optional<EmitterSample> sample(const LitPoint& point, Rng& rng) const {
         return sample(point, rng.next_double(), rng);
     }
-    // The same, where `choice` in [0, 1) chooses the light; it may come from a stratified sequence.
-    std::optional<EmitterSample> sample(const LitPoint& point, double choice, Rng& rng) const;
+    // The same, where `choice` in [0, 1) chooses the light; it may come from a stratified sequence. So may `on`, in
+    // [0, 1)^2, which chooses the point on it.
+    std::optional<EmitterSample> sample(const LitPoint& point, double choice, Rng& rng) const {
+        return sample(point, choice, glm::dvec2{rng.next_double(), rng.next_double()});  // in this order
+    }
+    std::optional<EmitterSample> sample(const LitPoint& point, double choice, const glm::dvec2& on) const;
 
     // The pdf [1/sr] with which sample() would have sampled what a ray from the point sees: a triangle that it hit, or
     // the background. background() is radiance.
@@ -96,12 +104,13 @@ private:
     void add_triangles();
     void add_light(const LightSettings& light, const Texture* picture);
     double far_probability() const;
-    std::optional<EmitterSample> sample_near(const LitPoint& point, double choice, Rng& rng, double probability) const;
+    std::optional<EmitterSample> sample_near(const LitPoint& point, double choice, const glm::dvec2& on,
+                                             double probability) const;
     LightBounds bounds_of(const Near& near) const;
     std::vector<LightBounds> near_bounds() const;  // of near_
-    std::optional<EmitterSample> sample_on(const Near& near, const LitPoint& point, Rng& rng) const;
-    std::optional<EmitterSample> sample_triangle(const Near& near, const LitPoint& point, Rng& rng) const;
-    std::optional<EmitterSample> sample_far(const Far& far, Rng& rng) const;
+    std::optional<EmitterSample> sample_on(const Near& near, const LitPoint& point, const glm::dvec2& on) const;
+    std::optional<EmitterSample> sample_triangle(const Near& near, const LitPoint& point, const glm::dvec2& on) const;
+    std::optional<EmitterSample> sample_far(const Far& far, const glm::dvec2& on) const;
     Rgb intensity(const Near& near, const dvec3& direction) const;
     Rgb radiance_of_far(const Far& far, const dvec3& direction) const;
     double pdf_of_far(const Far& far, const dvec3& direction) const;

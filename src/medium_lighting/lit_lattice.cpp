@@ -43,6 +43,21 @@ std::vector<Rgb> mean_radiance(const Gathered& g, std::size_t n) {
     return mean;
 }
 
+// Skies reach all smoke, and so do suns, but for what dense smoke shades. Lamps and shadows of a set may leave haze to
+// be lit by dense smoke alone, as fire does.
+LitBy lit_by(const MediumLightingInput& input) {
+    if (input.fire || !input.emitters_on_medium || !input.surroundings || input.surroundings->has_surfaces())
+        return LitBy::Fire;
+    const Emitters& emitters = input.surroundings->emitters();
+    bool sky = false;
+    for (std::size_t part = 0; part < emitters.choices(); ++part) {
+        if (!emitters.is_far(part))
+            return LitBy::Fire;
+        sky = sky || emitters.is_sky(part);
+    }
+    return sky ? LitBy::Skies : LitBy::Fire;
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> nodes_beside_extinction(const Medium& medium) {
@@ -77,7 +92,7 @@ LitLattice::LitLattice(const MediumLightingInput& input, int level)
     }
     if (input.single || input.multiple)
         thin_medium_ = ThinMedium(medium(), depths_, needed_, {input.eye, input.directional}, input.lighting.error,
-                                  pyramid_.occluders());
+                                  pyramid_.occluders(), lit_by(input));
     if (!thin_medium_.empty())
         pyramid_.set_homogeneous_bricks(&thin_medium_.homogeneous_bricks());
     interpolation_error_ = tolerated_interpolation(medium(), input.lighting);

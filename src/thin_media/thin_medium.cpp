@@ -1,6 +1,7 @@
 #include "thin_media/thin_medium.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/parallel.h"
 #include "gathering/escape_probability.h"
@@ -47,14 +48,37 @@ using LightPoints = BrickPoints<2>;
 using OpenPoints = BrickPoints<1>;
 static_assert(LightPoints::kCount <= 2 * Receivers::kGroup);
 
+// The part of diffuse light that a half-space of smoke sends back, of albedo a and mean cosine g (H. C. van de Hulst,
+// Multiple Light Scattering, 1980).
+float reflected_by_smoke(float a, float g) {
+    const float s = std::sqrt(std::max(0.0f, (1.0f - a) / (1.0f - g * a)));
+    return (1.0f - s) * (1.0f - 0.139f * s) / (1.0f + 1.17f * s);
+}
+
+// The part of the light in haze that comes from smoke, at most, where suns and skies light all. They light haze as they
+// light the dense smoke beside it. That fills half of the view from the haze, and sends a part of the light back.
+float share_of_smoke_in_haze(const Medium& medium) {
+    double scattering = 0.0, extinction = 0.0;
+    for (std::size_t i = 0; i < medium.extinction.size(); ++i) {
+        scattering += double(medium.extinction[i]) * double(luminance(medium.albedo_at(i)));
+        extinction += medium.extinction[i];
+    }
+    const float albedo = extinction > 0.0 ? float(scattering / extinction) : 0.0f;
+    const float from_smoke = 0.5f * reflected_by_smoke(albedo, medium.mean_cosine);
+    return from_smoke / (1.0f + from_smoke);
+}
+
 // Per node: how far it needs lights for receivers outside; empty: nowhere.
 std::vector<float> thinness(const Medium& medium, const PointDepths& depths, const std::vector<std::uint8_t>& needed,
-                            const vec3& eye, float error) {
+                            const vec3& eye, float error, LitBy lit_by) {
     std::vector<float> thin = unresolved_lights(medium);
     for (std::size_t i = 0; i < needed.size(); ++i)
         thin[i] *= float(needed[i] != 0);
-    const float share = seen_share(medium, depths, thin, eye);
-    // Without these lights, haze is about half as bright: the picture is wrong by half of its share.
+    float share = seen_share(medium, depths, thin, eye);
+    if (share > 0.0f && lit_by == LitBy::Skies)
+        share *= share_of_smoke_in_haze(medium);
+    // Without these lights, light from smoke is about half as bright in haze: the picture is wrong by half of its
+    // share.
     const float counts = glm::smoothstep(error, 2.0f * error, share);
     if (counts == 0.0f)
         return {};
@@ -95,9 +119,9 @@ ThinBricks thin_bricks(const Medium& medium, const std::vector<float>& thin) {
 }  // namespace
 
 ThinMedium::ThinMedium(const Medium& medium, const PointDepths& depths, const std::vector<std::uint8_t>& needed,
-                       const Viewer& viewer, float error, const Occluders* surfaces)
+                       const Viewer& viewer, float error, const Occluders* surfaces, LitBy lit_by)
     : viewer_(viewer) {
-    const std::vector<float> thin = thinness(medium, depths, needed, viewer.eye, error);
+    const std::vector<float> thin = thinness(medium, depths, needed, viewer.eye, error, lit_by);
     if (thin.empty())
         return;
     find_even_bricks(medium, thin, surfaces);

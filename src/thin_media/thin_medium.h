@@ -22,6 +22,10 @@
 
 namespace brisance {
 
+// What lights the smoke: anything that may leave haze in the dark, such as fire behind dense smoke, or a sky that no
+// surfaces hide, with suns or without.
+enum class LitBy { Fire, Skies };
+
 class ThinMedium {
 public:
     ThinMedium() = default;  // no thin medium
@@ -32,9 +36,9 @@ public:
     };
     // Classifies the nodes `needed`. `error`: that the picture may have, relative. Nodes that could change the picture
     // by less than half of it are not treated; the treatment fades in up to twice that. `surfaces`: that part light;
-    // null: none do.
+    // null: none do. Under skies haze has most of its light from there, and needs this less.
     ThinMedium(const Medium& medium, const PointDepths& depths, const std::vector<std::uint8_t>& needed,
-               const Viewer& viewer, float error, const Occluders* surfaces = nullptr);
+               const Viewer& viewer, float error, const Occluders* surfaces = nullptr, LitBy lit_by = LitBy::Fire);
 
     bool empty() const { return weight_.empty(); }
     std::size_t node_count() const;   // nodes that are thin, wholly or in part

@@ -95,12 +95,14 @@ INSTANTIATE_TEST_SUITE_P(Phases, BurstInHaze, ::testing::Values(0.0f, 0.6f));
 
 struct Around {
     explicit Around(const Medium& medium) : pyramid(medium, 4), depths(pyramid, 2) {}
-    ThinMedium haze(const Medium& medium) const {
+    ThinMedium haze(const Medium& medium, float error = 0.02f, LitBy lit_by = LitBy::Fire) const {
         return {medium,
                 depths,
                 std::vector<std::uint8_t>(medium.lattice.node_count(), 1),
                 {vec3(0.5f, -7.0f, 0.3f)},
-                0.02f};
+                error,
+                nullptr,
+                lit_by};
     }
     ExtinctionPyramid pyramid;
     PointDepths depths;
@@ -109,6 +111,23 @@ struct Around {
 TEST(ThinMedium, IsNotPaidForWhereThereIsNone) {
     const Medium medium = make_medium(glowing_ball(20, 3.0f));
     EXPECT_TRUE(Around(medium).haze(medium).empty());
+}
+
+// Smoke of albedo 0.8 sends back R = 0.34 of diffuse light, to half of the directions from which light reaches haze.
+TEST(ThinMedium, CountsLessUnderASkyByWhatSmokeSendsBack) {
+    const Medium medium = burst_in_haze(0.002f);
+    const Around around(medium);
+    const auto largest_error = [&](LitBy lit_by) {
+        double none = 1.0, some = 1e-4;
+        while (none / some > 1.04) {
+            const double error = std::sqrt(none * some);
+            (around.haze(medium, float(error), lit_by).empty() ? none : some) = error;
+        }
+        return some;
+    };
+    const double by_fire = largest_error(LitBy::Fire), under_sky = largest_error(LitBy::Skies);
+    ASSERT_LT(by_fire, 0.95);
+    EXPECT_NEAR(under_sky / by_fire, 0.5 * 0.34 / (1.0 + 0.5 * 0.34), 0.01);
 }
 
 TEST(ThinMedium, HollowsInTheSmokeAreNone) {

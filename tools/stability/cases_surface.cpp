@@ -144,9 +144,9 @@ Case thin_smoke_before_a_wall() {
     Case c;
     c.name = "surface/wall-behind-smoke-of-1e-6";
     c.truth = "single scattering of the wall's light, at this depth all there is (MA)";
-    c.tolerance = {0.03, 0.005, "32 rays from each voxel toward the wall"};
+    c.tolerance = {0.03, 0.005, "24 rays from each voxel toward the wall"};
     c.tolerance.limits["lighting_grid"] = {
-        0.5, "32 points on a lamp 40 m wide, most of them far off, stand for what is 0.15 m away; pixels share voxels"};
+        0.5, "24 points on a lamp 40 m wide, most of them far off, stand for what is 0.15 m away; pixels share voxels"};
     c.scene = [=] {
         media::Recipe r = absorbing_slab(kNodes, kEdge, depth / kNodes);
         r.flame = nullptr;

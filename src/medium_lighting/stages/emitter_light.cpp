@@ -15,10 +15,15 @@ namespace brisance {
 
 namespace {
 
-// Points on the emitters for a node: most where the camera sees it, least where smoke hides it. A node's variance
-// counts by the square of the transmittance T to the camera, so that for the least error at equal cost their number is
-// in proportion to T.
-constexpr float kMost = 32.0f, kLeast = 8.0f, kMostPerTransmittance = 1.5f;
+// Points on the emitters for a node. Surfaces give all light edges: each light at infinity, and all lamps together,
+// take an equal part of kPoints. Without surfaces lamps alone need as many, since the next ones shine unevenly.
+constexpr double kPoints = 24.0, kOnUnhiddenFar = 8.0;
+// Nodes take most where the camera sees them, and this share of it where smoke hides them. A node's variance counts by
+// the square of the transmittance T to the camera, so that for the least error at equal cost their number is in
+// proportion to T.
+constexpr float kLeastShare = 0.25f, kSharePerTransmittance = 1.5f;
+// Width of the cones in which smoke before the camera is looked at for this: it decides about noise alone.
+constexpr float kSeenCone = 0.05f;
 // Width of the cone in which smoke is averaged, over that of the solid angle that a sample stands for. With 0.5 smoke
 // under a sky is 0.8 % too dark, with 0.2 by less than its noise; the time hardly differs.
 constexpr float kConeShare = 0.1f;
@@ -32,15 +37,17 @@ struct NodeRay {
     float widening;  // of the cone that it stands for
 };
 
-// Random number of a node that turns its choices, apart from those of its samples.
-constexpr std::uint64_t kTurn = ~std::uint64_t{0};
-
-// Van der Corput's sequence: the first n of its points are spread evenly, for every n.
-double radical_inverse(int k) {
-    double sum = 0.0, digit = 0.5;
-    for (; k > 0; k /= 2, digit *= 0.5)
-        sum += k % 2 * digit;
+// The radical inverse in a prime base. Of Halton's sequence, which has one for each dimension, the first n points are
+// spread evenly for every n.
+double radical_inverse(int base, int k) {
+    double sum = 0.0, digit = 1.0 / base;
+    for (; k > 0; k /= base, digit /= base)
+        sum += k % base * digit;
     return sum;
+}
+
+double turned(double x, double by) {
+    return x + by - std::floor(x + by);
 }
 
 class NodeSampler {
@@ -48,29 +55,75 @@ public:
     NodeSampler(const Surroundings& surroundings, const Medium& medium)
         : surroundings_(surroundings),
           // Larger than any distance within the medium.
-          beyond_(2.0f * local_bounds(medium).diagonal()) {}
+          beyond_(2.0f * local_bounds(medium).diagonal()) {
+        const Emitters& emitters = surroundings.emitters();
+        for (std::size_t part = 0; part < emitters.choices(); ++part)
+            parts_.push_back({points_on(emitters, part), cones_across(emitters.width_of_choice(part), medium.spacing)});
+    }
 
-    // Appends the rays of a node at `p`. A light without extent has one ray, however often it was sampled. Each light
-    // at infinity, and all others together, take an equal part of `samples`. That need not be a whole number: the last
-    // sample of a part counts for what is left, so that light is continuous in it.
-    void sample(std::size_t node, const vec3& p, float samples, std::vector<NodeRay>& rays) const {
-        const std::size_t first = rays.size(), parts = surroundings_.emitters().choices();
-        const double of_part = std::max(1.0, double(samples) / double(parts));
-        const double turned = Rng(Stream::NodeEmitter, node, kTurn).next_double();
-        const LitPoint point{dvec3(p), dvec3(0.0), LitPoint::Kind::Medium};
-        for (std::size_t part = 0; part < parts; ++part)
-            for (int k = 0; k < of_part; ++k) {
-                Rng rng(Stream::NodeEmitter, node, std::uint64_t{part} << 32 | static_cast<std::uint64_t>(k));
-                const double at = turned + radical_inverse(k), choice = (double(part) + at - std::floor(at)) / parts;
-                const auto found = surroundings_.emitters().sample(point, choice, rng);
-                if (found)
-                    add(ray_to(*found, node, p, std::min(1.0, of_part - k) / (of_part * parts)), first, rays);
-            }
-        const auto hidden = [&](const NodeRay& ray) { return is_hidden(ray); };
-        rays.erase(std::remove_if(rays.begin() + static_cast<std::ptrdiff_t>(first), rays.end(), hidden), rays.end());
+    // Appends the rays of a node at `p`. A light without extent has one ray, however often it was sampled. `share`: of
+    // the most points, in (0, 1]. Their number need not be whole: the last of a part counts for what is left, so that
+    // light is continuous in it.
+    void sample(std::size_t node, const vec3& p, float share, std::vector<NodeRay>& rays) const {
+        for (std::size_t part = 0; part < parts_.size(); ++part)
+            sample_part(part, node, p, share, rays);
     }
 
 private:
+    // Each light at infinity, and all others together.
+    struct Part {
+        double points;  // on it, at most
+        double cones;   // in which smoke before it differs
+    };
+
+    double points_on(const Emitters& emitters, std::size_t part) const {
+        if (surroundings_.has_surfaces())
+            return kPoints / double(emitters.choices());
+        return emitters.is_far(part) ? kOnUnhiddenFar : kPoints;
+    }
+
+    // How many cones of a voxel's width a light fills, seen from the middle of the medium. Within less smoke is the
+    // same.
+    double cones_across(double width, float spacing) const {
+        const double voxels = width * 0.25 * double(beyond_) / double(spacing);
+        return std::max(1.0, voxels * voxels);
+    }
+
+    void sample_part(std::size_t part, std::size_t node, const vec3& p, float share, std::vector<NodeRay>& rays) const {
+        const auto [most, cones] = parts_[part];
+        const double all = double(parts_.size());
+        // Surfaces may hide a part of a light before which smoke is the same.
+        const double points = std::max(1.0, share * (surroundings_.has_surfaces() ? most : std::min(most, cones)));
+        Rng rng(Stream::NodeEmitter, node, part);
+        const double by[3] = {rng.next_double(), rng.next_double(), rng.next_double()};
+        const LitPoint point{dvec3(p), dvec3(0.0), LitPoint::Kind::Medium};
+        const std::size_t first = rays.size();
+        std::array<std::size_t, std::size_t(kPoints)> ray_of_cone{};  // plus 1; 0: none
+        for (int k = 0; k < points; ++k) {
+            const double choice = (double(part) + turned(radical_inverse(2, k), by[0])) / all;
+            // Suns and skies know two dimensions, lamps a third: which of them.
+            const bool far = surroundings_.emitters().is_far(part);
+            const glm::dvec2 on{turned(radical_inverse(far ? 2 : 3, k), by[1]),
+                                turned(radical_inverse(far ? 3 : 5, k), by[2])};
+            const auto found = surroundings_.emitters().sample(point, choice, on);
+            if (!found)
+                continue;
+            const NodeRay ray = ray_to(*found, node, p, std::min(1.0, points - k) / (points * all));
+            const bool has_extent = ray.widening > 0.0f;  // else it is tested once, below
+            if (has_extent && is_hidden(ray))
+                continue;
+            std::size_t& of_cone = ray_of_cone[std::size_t(k) % std::size_t(std::ceil(std::min(cones, kPoints)))];
+            if (has_extent && cones < points && of_cone > 0) {
+                rays[of_cone - 1].light += ray.light;
+                continue;
+            }
+            add(ray, first, rays);
+            of_cone = rays.size();
+        }
+        const auto hidden = [&](const NodeRay& ray) { return ray.widening == 0.0f && is_hidden(ray); };
+        rays.erase(std::remove_if(rays.begin() + static_cast<std::ptrdiff_t>(first), rays.end(), hidden), rays.end());
+    }
+
     static void add(const NodeRay& ray, std::size_t first, std::vector<NodeRay>& rays) {
         NodeRay* const same = ray.widening == 0.0f ? same_delta(rays, first, ray) : nullptr;
         if (same)
@@ -107,6 +160,7 @@ private:
 
     const Surroundings& surroundings_;
     float beyond_;
+    std::vector<Part> parts_;
 };
 
 // Adds the light of single rays to the planes of nodes.
@@ -153,23 +207,27 @@ void add_rays(const ConeDepths& depths, std::vector<NodeRay>& rays, NodeSum& sum
     }
 }
 
-// Samples of the nodes of one brick; 0 where no light is needed. `most`: where nothing hides them.
-std::array<float, BrickLattice::kNodes> samples_of_brick(const ConeDepths& depths, const Medium& medium,
-                                                         const LatticeRequest& request, std::size_t brick,
-                                                         const vec3& eye, float most) {
-    std::array<float, BrickLattice::kNodes> samples{};
+// The share of the most samples that nodes of one brick take; 0 where no light is needed. `most`: where nothing hides
+// them.
+std::array<float, BrickLattice::kNodes> shares_of_brick(const ConeDepths& depths, const Medium& medium,
+                                                        const LatticeRequest& request, std::size_t brick,
+                                                        const vec3& eye, float most) {
+    std::array<float, BrickLattice::kNodes> shares{};
     std::array<ConeDepths::Segment, ConeDepths::kCones> segments;
     std::array<float, ConeDepths::kCones> depth;
     for (int first = 0; first < BrickLattice::kNodes; first += ConeDepths::kCones) {
+        const auto* needed = &(*request.needed)[brick * BrickLattice::kNodes + first];
+        if (std::none_of(needed, needed + ConeDepths::kCones, [](std::uint8_t n) { return n != 0; }))
+            continue;
         for (int k = 0; k < ConeDepths::kCones; ++k)
             segments[k] = {medium.local_of_node(medium.lattice.node(brick * BrickLattice::kNodes + first + k)), eye};
-        depths.along(segments, ConeDepths::kCones, 0.0f, depth);
+        depths.along(segments, ConeDepths::kCones, kSeenCone, depth);
         for (int k = 0; k < ConeDepths::kCones; ++k)
-            if ((*request.needed)[brick * BrickLattice::kNodes + first + k])
-                samples[first + k] =
-                    std::max(kLeast, most * std::min(1.0f, kMostPerTransmittance * std::exp(-depth[k])));
+            if (needed[k])
+                shares[first + k] =
+                    std::max(kLeastShare, most * std::min(1.0f, kSharePerTransmittance * std::exp(-depth[k])));
     }
-    return samples;
+    return shares;
 }
 
 }  // namespace
@@ -182,15 +240,15 @@ Gathered gather_from_emitters(const Surroundings& surroundings, const Extinction
     const ConeDepths depths(pyramid);
     const NodeSampler sampler(surroundings, medium);
     NodeSum sum(medium, request, out);
-    const float most = std::lerp(kLeast, kMost, seen);
+    const float most = std::lerp(kLeastShare, 1.0f, seen);
     parallel_for(
         medium.lattice.brick_count(),
         [&](std::size_t b) {
             std::vector<NodeRay> rays;
-            const auto samples = samples_of_brick(depths, medium, request, b, eye, most);
+            const auto shares = shares_of_brick(depths, medium, request, b, eye, most);
             for (int n = 0; n < BrickLattice::kNodes; ++n)
-                if (const std::size_t node = b * BrickLattice::kNodes + n; samples[n] > 0.0f)
-                    sampler.sample(node, medium.local_of_node(medium.lattice.node(node)), samples[n], rays);
+                if (const std::size_t node = b * BrickLattice::kNodes + n; shares[n] > 0.0f)
+                    sampler.sample(node, medium.local_of_node(medium.lattice.node(node)), shares[n], rays);
             add_rays(depths, rays, sum);
         },
         1);
