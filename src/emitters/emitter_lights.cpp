@@ -44,22 +44,22 @@ EmitterLights::EmitterLights(const Emitters& emitters, double distance)
 }
 
 std::optional<EmitterSample> EmitterLights::sample(std::size_t light, const LitPoint& point, Rng& rng) const {
-    const glm::dvec2 on{rng.next_double(), rng.next_double()};  // in this order
     const std::size_t near = emitters_.near_.size();
     if (light >= near)
-        return sample_far(far_[light - near], on);
-    std::optional<EmitterSample> s = emitters_.sample_on(emitters_.near_[light], point, on);
+        return sample_far(far_[light - near], rng);
+    std::optional<EmitterSample> s = emitters_.sample_on(emitters_.near_[light], point, rng);
     if (s && s->pdf > 0.0)
         s->pdf *= (1.0 - emitters_.far_probability()) * emitters_.tree_.probability(point, light);
     return s;
 }
 
-std::optional<EmitterSample> EmitterLights::sample_far(const Far& far, const glm::dvec2& on) const {
+std::optional<EmitterSample> EmitterLights::sample_far(const Far& far, PointNumbers on) const {
     const Emitters::Far& light = emitters_.far_[far.light];
     std::optional<EmitterSample> s;
     if (far.sky) {
         const SkyPart& part = far.sky->parts()[far.part];
-        s = EmitterSample{far.sky->sample(part, on.x, on.y), std::numeric_limits<double>::infinity(), {}};
+        const glm::dvec2 u = on();
+        s = EmitterSample{far.sky->sample(part, u.x, u.y), std::numeric_limits<double>::infinity(), {}};
         s->weight = emitters_.radiance_of_far(light, s->direction) * float(far.sky->solid_angle(part));
         s->pdf = 1.0;
     } else {

@@ -35,7 +35,7 @@ private:
         const SkyParts* sky = nullptr;  // null: the whole light
         std::size_t part = 0;
     };
-    std::optional<EmitterSample> sample_far(const Far& far, const glm::dvec2& on) const;
+    std::optional<EmitterSample> sample_far(const Far& far, PointNumbers on) const;
 
     const Emitters& emitters_;
     std::vector<std::unique_ptr<SkyParts>> skies_;

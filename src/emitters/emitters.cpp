@@ -185,7 +185,7 @@ double Emitters::width_of_choice(std::size_t part) const {
     return of_sun ? 2.0 * std::acos(std::min(far_[part].cosine, 1.0)) : pi;
 }
 
-std::optional<EmitterSample> Emitters::sample(const LitPoint& point, double choice, const glm::dvec2& on) const {
+std::optional<EmitterSample> Emitters::sample(const LitPoint& point, double choice, PointNumbers on) const {
     const double far = far_probability();
     if (choice < far) {
         const auto which = std::min(static_cast<std::size_t>(choice / far * double(far_.size())), far_.size() - 1);
@@ -201,7 +201,7 @@ std::optional<EmitterSample> Emitters::sample(const LitPoint& point, double choi
     return far < 1.0 ? sample_near(point, (choice - far) / (1.0 - far), on, 1.0 - far) : std::nullopt;
 }
 
-std::optional<EmitterSample> Emitters::sample_near(const LitPoint& point, double choice, const glm::dvec2& on,
+std::optional<EmitterSample> Emitters::sample_near(const LitPoint& point, double choice, PointNumbers on,
                                                    double probability) const {
     const std::optional<LightTree::Choice> chosen = tree_.choose(point, std::min(choice, 1.0 - 0x1p-53));
     if (!chosen)
@@ -216,7 +216,7 @@ std::optional<EmitterSample> Emitters::sample_near(const LitPoint& point, double
 }
 
 // A point on that light. None if it contributes nothing.
-std::optional<EmitterSample> Emitters::sample_on(const Near& near, const LitPoint& point, const glm::dvec2& on) const {
+std::optional<EmitterSample> Emitters::sample_on(const Near& near, const LitPoint& point, PointNumbers on) const {
     std::optional<EmitterSample> s;
     if (near.light) {
         const dvec3 offset = near.position - point.position;
@@ -232,10 +232,10 @@ std::optional<EmitterSample> Emitters::sample_on(const Near& near, const LitPoin
     return !s || s->weight == Rgb(0.0f) ? std::nullopt : s;
 }
 
-std::optional<EmitterSample> Emitters::sample_triangle(const Near& near, const LitPoint& point,
-                                                       const glm::dvec2& on) const {
+std::optional<EmitterSample> Emitters::sample_triangle(const Near& near, const LitPoint& point, PointNumbers on) const {
     const Triangle triangle = triangle_of(scene_, near.mesh, near.triangle);
-    const vec2 b = sample_barycentric(on.x, on.y);
+    const glm::dvec2 u = on();
+    const vec2 b = sample_barycentric(u.x, u.y);
     const dvec3 position = at(triangle, b), offset = position - point.position;
     const double distance = glm::length(offset);
     if (!(distance > 0.0))
@@ -249,13 +249,14 @@ std::optional<EmitterSample> Emitters::sample_triangle(const Near& near, const L
     return EmitterSample{direction, distance, there.start_toward(point.position), there.emission / float(pdf), pdf};
 }
 
-std::optional<EmitterSample> Emitters::sample_far(const Far& far, const glm::dvec2& on) const {
+std::optional<EmitterSample> Emitters::sample_far(const Far& far, PointNumbers on) const {
     EmitterSample s;
     s.distance = kInfinity;
+    const glm::dvec2 u = on();
     if (far.environment)
-        s.direction = far.environment->sample(on.x, on.y);
+        s.direction = far.environment->sample(u.x, u.y);
     else if (far.solid_angle > 0.0)
-        s.direction = around(far.toward, 1.0 - on.x * (1.0 - far.cosine), 2.0 * pi * on.y);
+        s.direction = around(far.toward, 1.0 - u.x * (1.0 - far.cosine), 2.0 * pi * u.y);
     else
         return EmitterSample{far.toward, kInfinity, {}, far.light->power, 0.0};
     s.pdf = pdf_of_far(far, s.direction);
@@ -373,7 +374,7 @@ EmittedParticle Emitters::emit_near(const Near& near, Rng& rng) const {
 }
 
 EmittedParticle Emitters::emit_far(const Far& far, const dvec3& centre, double radius, Rng& rng) const {
-    const std::optional<EmitterSample> s = sample_far(far, glm::dvec2{rng.next_double(), rng.next_double()});
+    const std::optional<EmitterSample> s = sample_far(far, rng);
     if (!s)
         return {{centre, {0, 0, 1}}, Rgb(0.0f)};
     const double r = radius * std::sqrt(rng.next_double()), azimuth = 2.0 * pi * rng.next_double();

@@ -35,6 +35,20 @@ struct PointEmitter {
     double intensity;  // largest, luminance [W/sr]
 };
 
+// Two numbers in [0, 1) that choose a point on a light with extent: given, or drawn where it has any.
+class PointNumbers {
+public:
+    PointNumbers(Rng& rng) : rng_(&rng) {}
+    PointNumbers(const glm::dvec2& given) : given_(given) {}
+    glm::dvec2 operator()() const {
+        return rng_ ? glm::dvec2{rng_->next_double(), rng_->next_double()} : given_;  // in this order
+    }
+
+private:
+    Rng* rng_ = nullptr;
+    glm::dvec2 given_{0.0};
+};
+
 class Emitters {
 public:
     // Keeps references. `pictures`: per light, of environments that have one. Lights' positions are world coordinates.
@@ -57,12 +71,9 @@ public:
     std::optional<EmitterSample> sample(const LitPoint& point, Rng& rng) const {
         return sample(point, rng.next_double(), rng);
     }
-    // The same, where `choice` in [0, 1) chooses the light; it may come from a stratified sequence. So may `on`, in
-    // [0, 1)^2, which chooses the point on it.
-    std::optional<EmitterSample> sample(const LitPoint& point, double choice, Rng& rng) const {
-        return sample(point, choice, glm::dvec2{rng.next_double(), rng.next_double()});  // in this order
-    }
-    std::optional<EmitterSample> sample(const LitPoint& point, double choice, const glm::dvec2& on) const;
+    // The same, where `choice` in [0, 1) chooses the light, and `on` the point on it; both may come from a stratified
+    // sequence.
+    std::optional<EmitterSample> sample(const LitPoint& point, double choice, PointNumbers on) const;
 
     // The pdf [1/sr] with which sample() would have sampled what a ray from the point sees: a triangle that it hit, or
     // the background. background() is radiance.
@@ -104,13 +115,13 @@ private:
     void add_triangles();
     void add_light(const LightSettings& light, const Texture* picture);
     double far_probability() const;
-    std::optional<EmitterSample> sample_near(const LitPoint& point, double choice, const glm::dvec2& on,
+    std::optional<EmitterSample> sample_near(const LitPoint& point, double choice, PointNumbers on,
                                              double probability) const;
     LightBounds bounds_of(const Near& near) const;
     std::vector<LightBounds> near_bounds() const;  // of near_
-    std::optional<EmitterSample> sample_on(const Near& near, const LitPoint& point, const glm::dvec2& on) const;
-    std::optional<EmitterSample> sample_triangle(const Near& near, const LitPoint& point, const glm::dvec2& on) const;
-    std::optional<EmitterSample> sample_far(const Far& far, const glm::dvec2& on) const;
+    std::optional<EmitterSample> sample_on(const Near& near, const LitPoint& point, PointNumbers on) const;
+    std::optional<EmitterSample> sample_triangle(const Near& near, const LitPoint& point, PointNumbers on) const;
+    std::optional<EmitterSample> sample_far(const Far& far, PointNumbers on) const;
     Rgb intensity(const Near& near, const dvec3& direction) const;
     Rgb radiance_of_far(const Far& far, const dvec3& direction) const;
     double pdf_of_far(const Far& far, const dvec3& direction) const;
