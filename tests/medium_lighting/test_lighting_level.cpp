@@ -104,6 +104,16 @@ TEST(LightOfDetail, PathTracerSeesAsMuchLightInClumps) {
     EXPECT_NEAR(mean_of(found, "MV") / mean_of(truth, "MV"), 1.0, 0.017);
 }
 
+// The fire's light of radiance 1 on voxels twice as wide, at the medium's own nodes.
+std::vector<Rgb> even_light_with_detail(const Medium& fine) {
+    const Medium coarse = medium_to_light(fine, 1);
+    const std::size_t n = fine.lattice.node_count();
+    const std::vector<Rgb> mean(n, Rgb(1.0f));
+    std::vector<Rgb> light = mean;
+    add_light_of_detail(fine, {coarse, mean, true}, std::vector<std::uint8_t>(n, 1), light);
+    return light;
+}
+
 // Where the finer lattice knows nothing more, it adds nothing. What the box's sides change scales all light alike.
 TEST(LightOfDetail, LinearFieldsHaveNone) {
     Recipe r;
@@ -112,12 +122,9 @@ TEST(LightOfDetail, LinearFieldsHaveNone) {
     r.density = [](const ivec3& n) { return 2.0f + 0.05f * float(n.x); };
     r.flame = [](const ivec3& n) { return 2.0f - 0.05f * float(n.y); };
     r.settings.fire.convention = EmissionConvention::Direct;
-    const Medium fine = make_medium(r), coarse = medium_to_light(fine, 1);
-    const std::size_t n = fine.lattice.node_count();
-    const std::vector<Rgb> mean(n, Rgb(1.0f));
-    std::vector<Rgb> light = mean;
-    add_light_of_detail(fine, {coarse, mean, true}, std::vector<std::uint8_t>(n, 1), light);
-    for (std::size_t i = 0; i < n; ++i) {
+    const Medium fine = make_medium(r);
+    const std::vector<Rgb> light = even_light_with_detail(fine);
+    for (std::size_t i = 0; i < light.size(); ++i) {
         const bool inside = glm::all(glm::lessThan(glm::abs(fine.lattice.node(i)), ivec3(10)));
         ASSERT_NEAR(inside ? light[i].x / light[std::size_t(fine.lattice.find_node(ivec3(0)))].x : 1.0f, 1.0f, 1e-4f);
     }
@@ -132,12 +139,8 @@ TEST(LightOfDetail, FireLightsItselfAndSmokeHidesItself) {
         r.density = [=](const ivec3& n) { return !fire && n.x == 0 ? 2.0f : 1.0f; };
         r.flame = [=](const ivec3& n) { return fire && n.x == 0 ? 2.0f : 1.0f; };
         r.settings.fire.convention = EmissionConvention::Direct;
-        const Medium fine = make_medium(r), coarse = medium_to_light(fine, 1);
-        const std::size_t n = fine.lattice.node_count();
-        const std::vector<Rgb> mean(n, Rgb(1.0f));
-        std::vector<Rgb> light = mean;
-        add_light_of_detail(fine, {coarse, mean, true}, std::vector<std::uint8_t>(n, 1), light);
-        return light[std::size_t(fine.lattice.find_node(ivec3(0)))].x;
+        const Medium fine = make_medium(r);
+        return even_light_with_detail(fine)[std::size_t(fine.lattice.find_node(ivec3(0)))].x;
     };
     EXPECT_GT(at_sheet(true), 1.01f);
     EXPECT_LT(at_sheet(false), 0.99f);
