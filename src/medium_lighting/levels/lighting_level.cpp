@@ -217,25 +217,47 @@ float allowed_of_smoke(float error) {
     return error <= kUsual ? error : std::sqrt(kUsual * error);
 }
 
-LightingLevel level_of_smoke(LatticeErrors& errors, const LightingSettings& settings, const LightingLevel& first) {
-    if (settings.smoke_lattice_level >= 0)
-        return {std::max(settings.smoke_lattice_level, first.level)};
-    if (settings.lattice_level >= 0 || settings.interpolation >= 0.0f)
-        return {first.level};
-    // Both as a level and a share of the next in one number.
-    const float finest = float(first.level) + first.share_of_coarser, widest = finest + errors.widest_of_smoke();
+// Both as a level and a share of the next in one number.
+float position(const LightingLevel& level) {
+    return float(level.level) + level.share_of_coarser;
+}
+
+// The widest voxels that the error of the smoke's light allows, from a level on.
+LightingLevel smoke_by_error(LatticeErrors& errors, const LightingSettings& settings, int from, float widest) {
     const float most = allowed_of_smoke(settings.error);
-    int allowed = first.level;
+    int allowed = from;
     float error = errors.of_smoke(allowed), next = errors.of_smoke(allowed + 1);
     while (float(allowed) < widest && next <= most) {
         ++allowed;
         error = std::exchange(next, errors.of_smoke(allowed + 1));
     }
-    const LightingLevel by_error = between(allowed, error, next, most);
-    const float at = without_traces(std::clamp(float(allowed) + by_error.share_of_coarser, finest, widest));
+    return between(allowed, error, next, most);
+}
+
+// Light of the smoke follows from that on the lattice of the first, and has nothing finer.
+LightingLevel no_wider_than_smoke(LatticeErrors& errors, const LightingSettings& settings, const LightingLevel& first) {
+    const bool stated =
+        settings.lattice_level >= 0 || settings.smoke_lattice_level >= 0 || settings.interpolation >= 0.0f;
+    if (stated || position(first) == 0.0f)
+        return first;
+    const float most = without_traces(position(smoke_by_error(errors, settings, 0, position(first))));
+    if (position(first) <= most)
+        return first;
+    const int level = static_cast<int>(most);
+    return {level, most - float(level), errors.of_first(level), errors.of_first(level + 1)};
+}
+
+LightingLevel level_of_smoke(LatticeErrors& errors, const LightingSettings& settings, const LightingLevel& first) {
+    if (settings.smoke_lattice_level >= 0)
+        return {std::max(settings.smoke_lattice_level, first.level)};
+    if (settings.lattice_level >= 0 || settings.interpolation >= 0.0f)
+        return {first.level};
+    const float finest = position(first), widest = finest + errors.widest_of_smoke();
+    const LightingLevel by_error = smoke_by_error(errors, settings, first.level, widest);
+    const float at = without_traces(std::clamp(position(by_error), finest, widest));
     const int level = static_cast<int>(at);
-    return {level, at - float(level), level == allowed ? error : errors.of_smoke(level),
-            level == allowed ? next : errors.of_smoke(level + 1)};
+    return {level, at - float(level), level == by_error.level ? by_error.error : errors.of_smoke(level),
+            level == by_error.level ? by_error.error_of_coarser : errors.of_smoke(level + 1)};
 }
 
 }  // namespace
@@ -254,7 +276,7 @@ LightingLevels lighting_levels(const MediumLightingInput& input) {
 
 LightingLevels lighting_levels(const Medium& medium, const LightingSettings& settings) {
     LatticeErrors errors(medium);
-    const LightingLevel first = level_of_first(errors, settings);
+    const LightingLevel first = no_wider_than_smoke(errors, settings, level_of_first(errors, settings));
     return {first, level_of_smoke(errors, settings, first), interpolation_of(errors, settings, first.level)};
 }
 

@@ -6,7 +6,8 @@
 // - Light that has not scattered yet is given the light of its voxels' detail (light_of_detail.h), which leaves a part
 //   of that error. Of this light the first constant is that of the believed errors
 //   (forecast/expected_errors.cpp), the second was chosen by pictures of one volume. A third part is what light does
-//   around a small fire. Half of lighting.error is allowed.
+//   around a small fire. Half of lighting.error is allowed. Its voxels are no wider than the errors of the smoke's
+//   light allow, which could not be finer.
 // - Whether nodes may be interpolated at all follows from the same error, of the next coarser lattice: from it hidden
 //   smoke is lit. How many are is decided node by node, by what the picture shows (adaptive_gather.h).
 // - Light of the smoke is smooth where smoke is thin, whatever the fire does. Its voxels are the widest whose whole
