@@ -146,6 +146,34 @@ TEST(LightOfDetail, FireLightsItselfAndSmokeHidesItself) {
     EXPECT_LT(at_sheet(false), 0.99f);
 }
 
+Medium large_smooth_fire(float extinction) {
+    Recipe r;
+    r.box = cube(-24, 24);
+    r.world_from_index = cubic(0.075);
+    r.density = [](const ivec3& n) { return std::max(0.0f, 1.0f - glm::dot(vec3(n), vec3(n)) / 400.0f); };
+    r.flame = r.density;
+    r.settings.smoke.extinction_per_metre = extinction;
+    r.settings.smoke.albedo = Rgb(0.7f);
+    r.settings.fire.convention = EmissionConvention::Direct;
+    return make_medium(r);
+}
+
+// From thin to dense, whatever the first light alone would be content with. Drafts allow sqrt(0.02 * 0.05).
+TEST(LightingLevel, NoLatticeIsWiderThanLightOfTheSmokeAllows) {
+    bool wider = false;
+    for (float extinction = 0.5f; extinction < 64.0f; extinction *= 1.3f) {
+        LightingSettings draft;
+        draft.error = 0.05f;
+        const LightingLevels levels = lighting_levels(large_smooth_fire(extinction), draft);
+        wider = wider || levels.first.level > 0;
+        if (levels.smoke.level > 0)
+            EXPECT_LE(levels.smoke.error, 0.0317f) << "extinction " << extinction;
+        EXPECT_LE(float(levels.first.level) + levels.first.share_of_coarser,
+                  float(levels.smoke.level) + levels.smoke.share_of_coarser);
+    }
+    EXPECT_TRUE(wider);
+}
+
 // Voxels of optical depth 0.15 add less than shadow maps may. Both pictures are of lighting.error=0.02.
 TEST(LightingLevel, SmoothFireInThinSmokeNeedsNoFineLattice) {
     const Medium medium = smooth_fire(1.0f);
