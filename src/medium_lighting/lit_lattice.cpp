@@ -81,7 +81,6 @@ LitLattice::LitLattice(const MediumLightingInput& input, int level)
     : input_(with_levels_above(input, level)),
       level_(level),
       coarse_(medium_on(input.medium, level)),
-      finer_(medium_on(input.medium, level - 1)),
       pyramid_(medium(), ExtinctionPyramid::kMaxLevels),
       needed_(nodes_beside_extinction(medium())),
       depths_(pyramid_, kExteriorRayLevel) {
@@ -131,12 +130,18 @@ NodeWeights LitLattice::escape_likelihood_of(const std::vector<Rgb>& intensity) 
     return escape_likelihood(medium(), depths_, intensity, &likelihood_);
 }
 
+const Medium& LitLattice::finer() const {
+    if (level_ > 1 && !finer_)
+        finer_ = medium_on(input_.medium, level_ - 1);
+    return finer_ ? *finer_ : input_.medium;
+}
+
 std::vector<Rgb> LitLattice::at_medium_nodes(const std::vector<Rgb>& radiance, const Gathered& gathered,
                                              LightOrigin origin) const {
     const BrickLattice& nodes = medium().lattice;
     if (origin == LightOrigin::Smoke)
         return light_at_fine_nodes(nodes, radiance, level_, input_.medium.lattice);
-    const Medium& finer = finer_ ? *finer_ : input_.medium;
+    const Medium& finer = this->finer();
     const bool toward_eye = !gathered.scattered.empty();
     std::vector<Rgb> light = light_at_fine_nodes(nodes, radiance, 1, finer.lattice);
     const std::vector<Rgb> mean =

@@ -72,10 +72,12 @@ private:
     std::vector<Rgb> at_medium_nodes(const std::vector<Rgb>& radiance, const Gathered& gathered,
                                      LightOrigin origin) const;
 
+    const Medium& finer() const;  // the medium on the lattice twice as fine, where this one is coarser
+
     MediumLightingInput input_;
     int level_;
-    std::unique_ptr<Medium> coarse_;  // null: the input medium itself
-    std::unique_ptr<Medium> finer_;   // on the lattice twice as fine; null: the input medium, or light lives there
+    std::unique_ptr<Medium> coarse_;         // null: the input medium itself
+    mutable std::unique_ptr<Medium> finer_;  // made by the first call of finer()
     std::unique_ptr<Occluders> surfaces_;
     ExtinctionPyramid pyramid_;
     std::vector<std::uint8_t> needed_;

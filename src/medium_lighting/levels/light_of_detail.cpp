@@ -20,13 +20,14 @@ constexpr float kLeft = 0.2f;
 // over coarse voxels are nearly 0, not exactly.
 constexpr float kReach = 1.0f;
 
-// Lights of the detail, per node [W/sr].
-std::vector<Rgb> lights_of_detail(const Medium& fine, const LightBeforeDetail& before) {
+// Lights of the detail, per node [W/sr]. `emission`: per node; empty: the light is not the fire's.
+std::vector<Rgb> lights_of_detail(const Medium& fine, const std::vector<Rgb>& emission,
+                                  const LightBeforeDetail& before) {
     const std::vector<float> extinction =
         scalars_at_fine_nodes(before.coarse.lattice, before.coarse.extinction, 1, fine.lattice);
-    const bool burns = before.of_fire && fine.emits();
-    std::vector<Rgb> lights = burns ? emission_of(fine) : std::vector<Rgb>(fine.extinction.size(), Rgb(0.0f));
-    const std::vector<Rgb> emission =
+    const bool burns = !emission.empty();
+    std::vector<Rgb> lights(fine.extinction.size());
+    const std::vector<Rgb> known =
         burns ? light_at_fine_nodes(before.coarse.lattice, before.coarse.emission, 1, fine.lattice)
               : std::vector<Rgb>{};
     parallel_for(
@@ -34,7 +35,7 @@ std::vector<Rgb> lights_of_detail(const Medium& fine, const LightBeforeDetail& b
         [&](std::size_t i) {
             Rgb light = (extinction[i] - fine.extinction[i]) * before.mean[i];
             if (burns)
-                light += lights[i] - emission[i];
+                light += emission[i] - known[i];
             lights[i] = fine.voxel_volume * light;
         },
         4096);
@@ -43,9 +44,9 @@ std::vector<Rgb> lights_of_detail(const Medium& fine, const LightBeforeDetail& b
 
 // The factor for all light of the medium's own emission with which as much collides and escapes as is emitted; `more`:
 // the fluence that detail adds.
-Rgb conserving_factor(const Medium& fine, const std::vector<std::uint8_t>& needed, const std::vector<float>& more) {
-    const std::vector<Rgb> emission = emission_of(fine);
-    const std::size_t n = fine.extinction.size();
+Rgb conserving_factor(const Medium& fine, const std::vector<Rgb>& emission, const std::vector<std::uint8_t>& needed,
+                      const std::vector<float>& more) {
+    const std::size_t n = emission.size();
     dvec3 emitted(0.0), collided(0.0);
     for (std::size_t i = 0; i < n; ++i) {
         emitted += 4.0 * double(kPi) * dvec3(emission[i]);
@@ -63,7 +64,8 @@ Rgb conserving_factor(const Medium& fine, const std::vector<std::uint8_t>& neede
 
 void add_light_of_detail(const Medium& fine, const LightBeforeDetail& before, const std::vector<std::uint8_t>& needed,
                          std::vector<Rgb>& radiance) {
-    const std::vector<Rgb> lights = lights_of_detail(fine, before);
+    const std::vector<Rgb> emission = before.of_fire && fine.emits() ? emission_of(fine) : std::vector<Rgb>{};
+    const std::vector<Rgb> lights = lights_of_detail(fine, emission, before);
     NearField::Input in{&fine.lattice, &fine.extinction, &lights, nullptr, before.eye, fine.reference_node};
     in.mean_cosine = fine.mean_cosine;
     in.needed = &needed;
@@ -71,7 +73,7 @@ void add_light_of_detail(const Medium& fine, const LightBeforeDetail& before, co
     Gathered more;
     more.resize(n, before.eye.has_value(), false);
     NearField(fine.local_from_index, kReach * fine.spacing, true).gather(in, more);
-    const Rgb factor = before.of_fire ? conserving_factor(fine, needed, more.fluence) : Rgb(1.0f);
+    const Rgb factor = conserving_factor(fine, emission, needed, more.fluence);
     const std::vector<float>& found = before.eye ? more.scattered : more.fluence;
     const float unit = before.eye ? 1.0f : 1.0f / (4.0f * kPi);
     parallel_for(

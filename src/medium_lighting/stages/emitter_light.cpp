@@ -92,6 +92,8 @@ private:
     void sample_part(std::size_t part, std::size_t node, const vec3& p, float share, std::vector<NodeRay>& rays) const {
         const auto [most, cones] = parts_[part];
         const double all = double(parts_.size());
+        const auto counted_cones = std::size_t(std::ceil(std::min(cones, kPoints)));
+        const bool far = surroundings_.emitters().is_far(part);
         // Surfaces may hide a part of a light before which smoke is the same.
         const double points = std::max(1.0, share * (surroundings_.has_surfaces() ? most : std::min(most, cones)));
         Rng rng(Stream::NodeEmitter, node, part);
@@ -102,7 +104,6 @@ private:
         for (int k = 0; k < points; ++k) {
             const double choice = (double(part) + turned(radical_inverse(2, k), by[0])) / all;
             // Suns and skies know two dimensions, lamps a third: which of them.
-            const bool far = surroundings_.emitters().is_far(part);
             const glm::dvec2 on{turned(radical_inverse(far ? 2 : 3, k), by[1]),
                                 turned(radical_inverse(far ? 3 : 5, k), by[2])};
             const auto found = surroundings_.emitters().sample(point, choice, on);
@@ -112,7 +113,7 @@ private:
             const bool has_extent = ray.widening > 0.0f;  // else it is tested once, below
             if (has_extent && is_hidden(ray))
                 continue;
-            std::size_t& of_cone = ray_of_cone[std::size_t(k) % std::size_t(std::ceil(std::min(cones, kPoints)))];
+            std::size_t& of_cone = ray_of_cone[std::size_t(k) % counted_cones];
             if (has_extent && cones < points && of_cone > 0) {
                 rays[of_cone - 1].light += ray.light;
                 continue;
