@@ -20,9 +20,10 @@ struct PixelRay {
     Ray ray;
 };
 
-// Light along a ray up to `end` [m]: MM, MA where the field does not hold it, and MV where it is not the field's.
+// Light along a ray up to `end` [m]: MM, MA where the field does not hold it, and MV and MS where they are not the
+// field's.
 struct LightOnRay {
-    Rgb scattered{0.0f}, emitters{0.0f}, fire{0.0f};
+    Rgb scattered{0.0f}, emitters{0.0f}, fire{0.0f}, surfaces{0.0f};
 };
 using LightRays = std::function<LightOnRay(const PixelRay& ray, double end)>;
 
@@ -37,10 +38,11 @@ struct PictureSettings {
     CellSet layers = {Cell::V};                  // ... of these cells
     const Surroundings* surroundings = nullptr;  // rays end at its surfaces
     LightRays light_rays = {};                   // empty: the field holds MM and MA
-    bool fire_by_rays = false;  // light_rays own MV: the field's, of which MM may be made, is not shown
-    // A field of single scattering, or null. Where forward peaks count as no scattering (medium/similar_medium.h), MV
-    // and MA of the main field hold light that scattered more than once. This field then holds the light that scattered
-    // once, and the rest counts as MM.
+    CellSet by_rays =
+        {};  // those of MV, MS and MA that light_rays own: the field's, of which MM may be made, is hidden
+    // A field of single scattering, or null. Where forward peaks count as no scattering (medium/similar_medium.h), MV,
+    // MS and MA of the main field hold light that scattered more than once. This field then holds the light that
+    // scattered once, and the rest counts as MM; of MS where rays own that, which it then has to hold.
     const SourceField* once = nullptr;
     float once_by_rays = 0.0f;     // the share of its MA in whose place light_rays come
     int pass = 0;                  // index among averaged pictures, each with its own random numbers

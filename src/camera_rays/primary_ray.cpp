@@ -6,25 +6,45 @@
 
 namespace brisance {
 
+namespace {
+
+// Takes out light that scattered once, in whose place other light comes. What the field holds beyond that has scattered
+// more than once. `once`: of the field of single scattering; null: there is none, and nothing beyond.
+void leave_to_rays(const CellSet& cells, const CellSum* once, RaySum& sum) {
+    if (cells.contains(Cell::MV)) {
+        sum.cells.at(Cell::MV) = once ? sum.cells.at(Cell::MV) - sum.once_from_fire : Rgb(0.0f);
+        sum.once_from_fire = Rgb(0.0f);
+    }
+    if (cells.contains(Cell::MA)) {
+        sum.cells.at(Cell::MA) = once ? sum.cells.at(Cell::MA) - sum.once_from_emitters : Rgb(0.0f);
+        sum.once_from_emitters = Rgb(0.0f);
+    }
+    if (cells.contains(Cell::MS)) {
+        if (once)
+            sum.cells.at(Cell::MM) += sum.cells.at(Cell::MS) - once->at(Cell::MS);
+        sum.cells.at(Cell::MS) = Rgb(0.0f);
+    }
+}
+
+}  // namespace
+
 RaySum medium_along(const SourceField& field, const PixelRay& ray, double end, const PictureSettings& settings) {
     RaySum sum = integrate(field, ray.ray, settings.parts, end);
+    CellSum once;
     if (settings.once) {
-        const CellSum once = integrate(*settings.once, ray.ray, settings.parts, end).cells;
+        once = integrate(*settings.once, ray.ray, settings.parts, end).cells;
         sum.once_from_fire = once.at(Cell::MV);
         const Rgb by_rays = settings.once_by_rays * once.at(Cell::MA);
         sum.once_from_emitters = once.at(Cell::MA) - by_rays;
         sum.cells.at(Cell::MA) -= by_rays;
     }
-    if (settings.fire_by_rays) {
-        // What remains has scattered more than once.
-        sum.cells.at(Cell::MV) = settings.once ? sum.cells.at(Cell::MV) - sum.once_from_fire : Rgb(0.0f);
-        sum.once_from_fire = Rgb(0.0f);
-    }
+    leave_to_rays(settings.by_rays, settings.once ? &once : nullptr, sum);
     if (settings.light_rays) {
         const LightOnRay more = settings.light_rays(ray, end);
         sum.cells.at(Cell::MM) += more.scattered;
         sum.cells.at(Cell::MA) += more.emitters;
         sum.cells.at(Cell::MV) += more.fire;
+        sum.cells.at(Cell::MS) += more.surfaces;
         sum.once_from_emitters += more.emitters;
         sum.once_from_fire += more.fire;
     }

@@ -13,12 +13,13 @@
 #include <cstdint>
 #include <vector>
 
-#include "transport/direct_light.h"
+#include "transport/gather_points.h"
 
 namespace brisance {
 
 class FireLights {
 public:
+    using Light = Rgb;
     // Keeps a reference to the scene.
     explicit FireLights(const DirectLight& scene);
     FireLights(const FireLights&) = delete;
@@ -38,6 +39,9 @@ public:
 
     // What the vertex scatters of a light that was chosen with that probability [W/(m^2 sr)].
     Rgb estimate(std::size_t light, double probability, const PathVertex& vertex, Rng& rng) const;
+    Rgb estimate(std::size_t light, double probability, const GatherPoint& point, Rng& rng) const {
+        return estimate(light, probability, point.vertex, rng);
+    }
 
     std::uint64_t bytes() const { return lights_.size() * (sizeof(Voxel) + sizeof(double)); }
 

@@ -22,16 +22,7 @@ Rgb SampledFire::along(const RayMedium& seen, const Ray& ray, Rng& rng) const {
     points.clear();
     if (seen.empty() || lights_.size() == 0)
         return Rgb(0.0f);
-    const double shift = rng.next_double();
-    const auto part = float(seen.opacity() / points_);
-    for (int i = 0; i < points_; ++i) {
-        const std::optional<Collision> c = seen.collision_at(seen.sample_flight((i + shift) / points_));
-        if (!c)
-            continue;
-        const Rgb weight = part * scene_.field().albedo(c->brick, c->position);
-        if (weight != Rgb(0.0f))
-            points.push_back({scene_.in_smoke(ray, *c), weight, scene_.field().extinction(c->brick, c->position)});
-    }
+    add_flight_ends(scene_, seen, ray, points_, rng.next_double(), points);
     return gatherer_->at(points, rng);
 }
 

@@ -1,16 +1,14 @@
 // Light of the fire, gathered from its single lights: MV along a ray of the camera, and SV at a point of a surface.
 //
-// The points on a ray are stratified ends of free flights. With opacity O of the ray and n points of albedo a, every
-// one counts by O a / n. A point of a surface is asked by itself: it is the one gather point of its camera ray. Both
-// are unbiased where the gatherer is; the number of points trades noise for time.
+// The points on a ray are stratified ends of free flights (transport/gather_points.h). A point of a surface is asked by
+// itself: it is the one gather point of its camera ray. Both are unbiased where the gatherer is; the number of points
+// trades noise for time.
 #pragma once
 
 #include <memory>
 
 #include "fire_lights/fire_lights.h"
-#include "fire_lights/gather_points.h"
 #include "fire_lights/samplings.h"
-#include "tracking/ray_medium.h"
 
 namespace brisance {
 

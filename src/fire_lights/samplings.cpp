@@ -2,12 +2,15 @@
 
 #include <algorithm>
 
-#include "fire_lights/multidimensional_lightcuts.h"
-#include "fire_lights/single_points.h"
+#include "fire_lights/fire_lights.h"
+#include "transport/multidimensional_lightcuts.h"
 
 namespace brisance {
 
 namespace {
+
+template <class Way>
+using AtEach = AtEachPoint<FireLights, Way>;
 
 template <class Gatherer>
 std::unique_ptr<FireGatherer> made(const FireLights& lights, const FireLightSettings& settings) {
@@ -18,14 +21,14 @@ std::unique_ptr<FireGatherer> made(const FireLights& lights, const FireLightSett
 
 const std::vector<FireLightSampling>& fire_light_samplings() {
     static const std::vector<FireLightSampling> table = {
-        {"all", "every light, at every point", made<AtEachPoint<EveryLight>>, true},
-        {"intensity", "a light by intensity", made<AtEachPoint<ChosenLights<ByIntensity>>>},
-        {"light_tree", "a light by a tree of bounds", made<AtEachPoint<ChosenLights<ByTree>>>},
+        {"all", "every light, at every point", made<AtEach<EveryLight>>, true},
+        {"intensity", "a light by intensity", made<AtEach<ChosenLights<ByIntensity>>>},
+        {"light_tree", "a light by a tree of bounds", made<AtEach<ChosenLights<ByTree>>>},
         {"lightcuts", "one light for each node of a cut through a tree, the same for all points",
-         made<AtEachPoint<CutOfRepresentatives>>},
-        {"stochastic_lightcuts", "a random light of each node of a small cut", made<AtEachPoint<CutOfRandomLights>>},
+         made<AtEach<CutOfRepresentatives>>},
+        {"stochastic_lightcuts", "a random light of each node of a small cut", made<AtEach<CutOfRandomLights>>},
         {"multidimensional_lightcuts", "one cut for all points of a ray and all lights",
-         made<MultidimensionalLightcuts>}};
+         made<MultidimensionalLightcuts<FireLights>>}};
     return table;
 }
 

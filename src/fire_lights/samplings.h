@@ -7,12 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "fire_lights/gather_points.h"
 #include "fire_lights/settings.h"
+#include "transport/gather_points.h"
 
 namespace brisance {
 
 class FireLights;
+using FireGatherer = PointGatherer<Rgb>;
 
 struct FireLightSampling {
     const char* name;

@@ -71,7 +71,7 @@ public:
         const double gathered = square(maps_) + square(interpolation_);
         if (cell == "V" || cell == "A")
             return {cell, limited(kErrorOfRays + kErrorOfBurningVoxels * std::pow(depth_, 3.0)), kSpreadOfRest};
-        if ((cell == "MV" || cell == "SV") && plan_.fire_sampling)
+        if ((cell == "MV" && plan_.on_rays.contains(Cell::MV)) || (cell == "SV" && plan_.fire_lights_on_surfaces()))
             return {cell, kErrorOfOtherMethods, kSpreadOfRest};
         if (cell == "MV")
             return {cell, limited(std::hypot(std::sqrt(gathered), error_of_voxels(float(depth_)) + coarse_light_)),

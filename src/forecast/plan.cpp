@@ -91,7 +91,7 @@ void skip_without_emission(const Plan& plan, const Shot& shot, const Medium& med
 // and through panes the light of the fire is theirs.
 bool needs_hierarchies(const Plan& plan, const Surroundings* surroundings) {
     const auto transmits = [](const SceneMaterial& m) { return m.surface.transmission > 0.0f; };
-    const bool at_nodes = plan.fire_sampling ? plan.multiple || plan.needs(Cell::SM) : plan.single;
+    const bool at_nodes = plan.on_rays.contains(Cell::MV) ? plan.multiple || plan.needs(Cell::SM) : plan.single;
     if (!plan.fire_lights_on_surfaces())
         return at_nodes || plan.needs(Cell::SV);
     return at_nodes ||
@@ -110,10 +110,17 @@ std::string why_no_hierarchies(const Plan& plan) {
 void choose_samplings(Plan& plan, const Shot& shot) {
     if (shot.method == RenderMethod::Path)
         return;
-    if (plan.surfaces && (plan.needs(Cell::SV) || plan.needs(Cell::SS) || plan.needs(Cell::SA)))
+    const bool lit_surfaces = plan.needs(Cell::SV) || plan.needs(Cell::SS) || plan.needs(Cell::SA),
+               lit_smoke = plan.single || plan.needs(Cell::MA);
+    if (lit_surfaces || (lit_smoke && shot.unified_lights.smoke))
         plan.unified_sampling = find_unified_light_sampling(shot.unified_lights.sampling);
-    if (plan.single || (plan.needs(Cell::SV) && !plan.unified_sampling))
+    const bool together = plan.unified_sampling && shot.unified_lights.smoke;
+    if ((plan.single && !together) || (plan.needs(Cell::SV) && !plan.unified_sampling))
         plan.fire_sampling = find_fire_light_sampling(shot.fire_lights.sampling);
+    plan.on_rays.set(Cell::MV, plan.single && (plan.fire_sampling || together));
+    plan.on_rays.set(Cell::MA, plan.needs(Cell::MA) && together);
+    // Without virtual lights nothing stands for the surfaces there.
+    plan.on_rays.set(Cell::MS, plan.needs(Cell::MS) && together && shot.virtual_lights.count > 0);
 }
 
 void skip_with_emission(const Plan& plan, const Shot& shot, const Medium& medium, const Surroundings* surroundings,

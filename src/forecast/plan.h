@@ -30,16 +30,20 @@ struct Plan {
     StageCost choice_cost;          // of the choice; no name: there was none to make
     // How MV and, on the base of surfaces, SV are gathered from the fire's single lights; null: from hierarchies.
     const FireLightSampling* fire_sampling = nullptr;
-    // How lights of all kinds are chosen together on surfaces: SV of the base, and SS and SA; null: each by itself.
+    // How lights of all kinds are chosen together on surfaces, for SV of the base, SS and SA, and in smoke, if they are
+    // (on_rays); null: each by itself.
     const UnifiedLightSampling* unified_sampling = nullptr;
+    // Those of MV, MS and MA that single lights send along the camera's rays, so that what nodes hold of them is not
+    // seen.
+    CellSet on_rays;
     // Of MS: what particles carry of the light that virtual lights would hold.
     float reflected_by_particles = 0.0f;
     bool surfaces = false;  // there are some
     bool emitters = false;  // there are lights, emissive surfaces or an environment
     CellSet needed;         // the cells that can be other than zero, those above among them
     std::vector<SkippedPart> skipped;
-    // Whether MV is gathered along the camera's rays, so that nodes need not hold it.
-    bool fire_on_rays() const { return fire_sampling && single; }
+    bool lights_on_rays() const { return on_rays != CellSet{}; }
+    bool unified_in_smoke() const { return unified_sampling && !fire_sampling && lights_on_rays(); }
     // Whether single lights of the fire own SV of the base.
     bool fire_lights_on_surfaces() const { return fire_sampling || unified_sampling; }
     bool needs(Cell cell) const { return needed.contains(cell); }

@@ -16,7 +16,9 @@ struct RayLightsMethod {
     static constexpr const char* kHelp = "virtual ray lights, unbiased and noisy";
     static constexpr bool kThinsLights = true;  // for what the camera sees
     static std::vector<SettingKey<Settings>> keys();
-    static std::vector<MethodPreset> presets() { return {{kName, {}}}; }
+    static std::vector<MethodPreset> presets() {
+        return {{kName, {}}, {"ray_lights_tabulated", {"sampling=tabulated"}}, {"ray_beams", {"radius=auto"}}};
+    }
     static int passes(const Settings& settings) { return settings.passes; }
     static MadeInScattering make(const InScatteringRequest& request, const Settings& settings);
 };

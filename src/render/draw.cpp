@@ -30,8 +30,8 @@ std::string why_no_order_layers(const DrawInput& input) {
         return "output.layers.bounces with a scene needs method = path; left out";
     if (input.plan.scattering_method)
         return "output.layers.bounces needs scattering.method = lighting_grid; left out";
-    if (input.plan.fire_on_rays() && !input.shot.output.cell_layers)
-        return "output.layers.bounces with fire_lights.sampling needs output.layers.cells; left out";
+    if (input.plan.on_rays.contains(Cell::MV) && !input.shot.output.cell_layers)
+        return "output.layers.bounces with single lights of the fire needs output.layers.cells; left out";
     return {};
 }
 

@@ -27,7 +27,7 @@ constexpr std::pair<Cell, SharedBounce::Apart> kSharedCells[] = {
 // the layers of bounces have to add up, nor where moments of the shutter share the rays of a pixel.
 bool looks_twice(const DrawInput& input, bool moments) {
     const Plan& plan = input.plan;
-    return !moments && !plan.scattering_method && !plan.fire_on_rays() && plan.emitters_by_rays == 0.0f &&
+    return !moments && !plan.scattering_method && !plan.lights_on_rays() && plan.emitters_by_rays == 0.0f &&
            !input.shot.output.bounce_layers;
 }
 
@@ -46,10 +46,28 @@ PictureSettings picture_settings(const DrawInput& input, const ManyLights& light
     settings.edge_refinement = camera.edge_refinement;
     settings.cells = input.shot.output.cell_layers;
     settings.layers = input.plan.needed;
-    settings.fire_by_rays = input.plan.fire_on_rays();
+    settings.by_rays = input.plan.on_rays;
     if (!input.medium.lattice.empty())
         settings.layers.set(Cell::V, true);
     return settings;
+}
+
+// Those of the plan's on_rays; empty where it has none.
+ManyLightsOnRay many_lights_on_rays(const Plan& plan, const MomentLights& lights) {
+    if (const UnifiedLights* const all = lights.unified_in_smoke())
+        return [all](const RayMedium& seen, const PixelRay& r, LightOnRay& light) {
+            Rng rng = all->ray_rng(r.pixel, r.number);
+            const LightBySender found = all->along(seen, r.ray, rng);
+            light.fire += found.fire;
+            light.surfaces += found.surfaces;
+            light.emitters += found.emitters;
+        };
+    if (plan.on_rays.contains(Cell::MV))
+        return [fire = lights.fire()](const RayMedium& seen, const PixelRay& r, LightOnRay& light) {
+            Rng rng = fire->rng(r.pixel, r.number);
+            light.fire += fire->along(seen, r.ray, rng);
+        };
+    return {};
 }
 
 // Rays of a pixel are divided among the moments of the shutter.
@@ -194,8 +212,9 @@ std::vector<SharedBounce::Apart> FramePicture::told_of_shared(const InScattering
 Image FramePicture::picture(const InScattering* estimator, int number, const MomentLights& lights, const Camera& camera,
                             const Surroundings* surroundings) {
     settings_.pass = number;
-    settings_.light_rays = light_rays_by(estimator, lights.direct(), lights.field(), input_.plan.emitters_by_rays,
-                                         input_.plan.fire_on_rays() ? lights.fire() : nullptr);
+    settings_.light_rays = light_rays_by(estimator, lights.direct(), lights.field(),
+                                         input_.plan.on_rays.contains(Cell::MA) ? 0.0f : input_.plan.emitters_by_rays,
+                                         many_lights_on_rays(input_.plan, lights));
     settings_.surroundings = surroundings;
     settings_.once = lights.once();
     settings_.once_by_rays = takes_peaks_for_straight(input_) ? input_.plan.emitters_by_rays : 0.0f;
@@ -281,7 +300,7 @@ void FramePicture::add_order_layers(Image& image) {
     settings.cells = true;
     settings.once = nullptr;
     settings.light_rays = {};
-    settings.fire_by_rays = false;
+    settings.by_rays = {};
     const auto add = [&](const std::string& name, const Layer& from) {
         Layer layer = from;
         layer.name = name;

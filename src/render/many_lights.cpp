@@ -69,7 +69,7 @@ bool lights_medium(const Plan& plan) {
 // or beside an MV or MA that is not the lighting's.
 bool wants_single_scattering_apart(const DrawInput& input) {
     return takes_peaks_for_straight(input) &&
-           (input.shot.output.cell_layers || input.plan.fire_on_rays() || input.plan.emitters_by_rays > 0.0f);
+           (input.shot.output.cell_layers || input.plan.lights_on_rays() || input.plan.emitters_by_rays > 0.0f);
 }
 
 }  // namespace
@@ -118,6 +118,13 @@ LitMedium::LitMedium(const DrawInput& input, const Plan& plan, int bounces, cons
     field_.emplace(input.medium, lighting_ ? lighting_->at_nodes() : none, similar(), forward_);
 }
 
+std::unique_ptr<UnifiedLights> unified_lights(const DrawInput& input, const DirectLight& scene,
+                                              const DirectLight* through, const VirtualLights* virtual_lights) {
+    return std::make_unique<UnifiedLights>(scene, through ? *through : scene, virtual_lights,
+                                           input.shot.virtual_lights.point_bound, input.plan.needed,
+                                           *input.plan.unified_sampling, input.shot.unified_lights);
+}
+
 ManyLights::ManyLights(const DrawInput& input, Statistics& statistics, Progress& progress) {
     const Plan& plan = input.plan;
     const Shot& shot = input.shot;
@@ -128,7 +135,7 @@ ManyLights::ManyLights(const DrawInput& input, Statistics& statistics, Progress&
     }
     if (shot.virtual_lights.count > 0 && (plan.needs(Cell::SS) || plan.needs(Cell::MS)))
         virtual_lights_ = place_virtual_lights(input, paths_->direct(), statistics, progress);
-    if ((plan.scattering_method || plan.emitters_by_rays > 0.0f || plan.fire_sampling) && !paths_)
+    if ((plan.scattering_method || plan.emitters_by_rays > 0.0f || plan.lights_on_rays()) && !paths_)
         own_direct_.emplace(input.medium, shot.tracing, input.surroundings);
     if (plan.fire_sampling)
         make_fire_lights(input, statistics, progress);
@@ -173,13 +180,17 @@ void ManyLights::make_unified(const DrawInput& input, Statistics& statistics, Pr
     progress.stage("lights of all kinds");
     const Stopwatch watch;
     const UnifiedLightSampling& sampling = *input.plan.unified_sampling;
-    unified_ = std::make_unique<UnifiedLights>(*direct(), similar_direct_ ? *similar_direct_ : *direct(),
-                                               virtual_lights(), input.shot.virtual_lights.point_bound,
-                                               input.plan.needed, sampling, input.shot.unified_lights);
+    unified_ = unified_lights(input, *direct(), similar_direct_ ? &*similar_direct_ : nullptr, virtual_lights());
+    if (input.plan.unified_in_smoke()) {
+        if (similar_direct_)
+            own_unified_in_smoke_ = unified_lights(input, *direct(), nullptr, virtual_lights());
+        unified_in_smoke_ = own_unified_in_smoke_ ? own_unified_in_smoke_.get() : unified_.get();
+    }
     const LightsOfAllKinds& lights = unified_->lights();
     statistics.stages.push_back({"lights of all kinds",
                                  watch.seconds(),
-                                 unified_->bytes() + (similar_direct_ ? similar_direct_->bytes() : 0),
+                                 unified_->bytes() + (own_unified_in_smoke_ ? own_unified_in_smoke_->bytes() : 0) +
+                                     (similar_direct_ ? similar_direct_->bytes() : 0),
                                  {{"sampling", sampling.name},
                                   {"virtual_lights", lights.virtual_lights()},
                                   {"voxels", lights.voxels()},
@@ -197,9 +208,11 @@ bool ManyLights::grid_lights_surfaces_by_fire(const DrawInput& input) const {
 
 void ManyLights::light_medium(const DrawInput& input, Statistics& statistics, Progress& progress) {
     Plan plan = input.plan.scattering_method ? without_scattering_method(input.plan) : input.plan;
-    // Nodes that nothing but MV asks for need no light of the fire. MM begins with it, and mirrors show it.
-    if (plan.fire_sampling && !plan.multiple && !input.plan.needs(Cell::SM))
-        plan.single = false;
+    // Nodes that nothing but MV and MA ask for need no light. MM begins with it, and mirrors show it.
+    if (!plan.multiple && !input.plan.needs(Cell::SM)) {
+        plan.single = plan.single && !plan.on_rays.contains(Cell::MV);
+        plan.needed.set(Cell::MA, plan.needs(Cell::MA) && !plan.on_rays.contains(Cell::MA));
+    }
     plan.needed.set(Cell::SV, grid_lights_surfaces_by_fire(input));
     const int bounces =
         input.plan.scattering_method ? bounces_beside_scattering_method(input.plan) : input.shot.scattering.bounces;
@@ -210,18 +223,23 @@ void ManyLights::light_medium(const DrawInput& input, Statistics& statistics, Pr
             reflecting_ = points_of_virtual_lights(*shining, 1.0f - cast);
         cast_.emplace(paths_->direct(), shining, input.shot.virtual_lights, cast);
     }
-    const ReflectedLight reflected{reflecting_ ? &*reflecting_ : nullptr, cast_ && !cast_->empty() ? &*cast_ : nullptr};
-    medium_ = std::make_unique<LitMedium>(input, plan, bounces, reflected, input.shot.output.bounce_layers, statistics,
-                                          progress);
+    medium_ = std::make_unique<LitMedium>(input, plan, bounces, reflected(), input.shot.output.bounce_layers,
+                                          statistics, progress);
+}
+
+ReflectedLight ManyLights::reflected() const {
+    return {reflecting_ ? &*reflecting_ : nullptr, cast_ && !cast_->empty() ? &*cast_ : nullptr};
 }
 
 void ManyLights::light_medium_once(const DrawInput& input, Statistics& statistics, Progress& progress) {
     Plan plan = input.plan;
     plan.multiple = false;
-    for (const Cell cell : {Cell::V, Cell::A, Cell::MM, Cell::MS, Cell::SV, Cell::SM, Cell::SS, Cell::SA})
+    for (const Cell cell : {Cell::V, Cell::A, Cell::MM, Cell::SV, Cell::SM, Cell::SS, Cell::SA})
         plan.needed.set(cell, false);
+    plan.needed.set(Cell::MS, plan.on_rays.contains(Cell::MS));
     Statistics costs;
-    once_ = std::make_unique<LitMedium>(input, plan, 1, ReflectedLight{}, false, costs, progress);
+    once_ = std::make_unique<LitMedium>(input, plan, 1, plan.needs(Cell::MS) ? reflected() : ReflectedLight{}, false,
+                                        costs, progress);
     for (StageCost& stage : costs.stages) {
         stage.name += ", for its own layer";
         statistics.stages.push_back(std::move(stage));

@@ -49,6 +49,11 @@ private:
     std::optional<SourceField> field_;
 };
 
+// By the plan's choice among lights of all kinds. `through`: what the fire shines through; null: as the others.
+// `virtual_lights`: null: there are none. Keeps references.
+std::unique_ptr<UnifiedLights> unified_lights(const DrawInput& input, const DirectLight& scene,
+                                              const DirectLight* through, const VirtualLights* virtual_lights);
+
 class ManyLights {
 public:
     ManyLights(const DrawInput& input, Statistics& statistics, Progress& progress);
@@ -68,6 +73,8 @@ public:
     }
     // Lights of all kinds together, which own SV on the base of surfaces, and SS and SA; null: each kind by itself.
     const UnifiedLights* unified() const { return unified_.get(); }
+    // The same along the camera's rays, where they own the plan's on_rays; else null.
+    const UnifiedLights* unified_in_smoke() const { return unified_in_smoke_; }
     // Whether the latter shine through the medium in which medium() is lit, and not through the medium itself.
     bool surfaces_see_similar() const { return similar_direct_.has_value(); }
     // Field of single scattering, where MV and MA of medium() hold more (PictureSettings::once); else null.
@@ -78,6 +85,7 @@ private:
     void make_fire_in_similar(const DrawInput& input, Statistics& statistics);
     void make_unified(const DrawInput& input, Statistics& statistics, Progress& progress);
     bool grid_lights_surfaces_by_fire(const DrawInput& input) const;
+    ReflectedLight reflected() const;
     void light_medium(const DrawInput& input, Statistics& statistics, Progress& progress);
     void light_medium_once(const DrawInput& input, Statistics& statistics, Progress& progress);
 
@@ -90,7 +98,8 @@ private:
     std::unique_ptr<LitMedium> medium_, once_;
     std::optional<DirectLight> similar_direct_;
     std::optional<SampledFire> fire_in_similar_;
-    std::unique_ptr<UnifiedLights> unified_;
+    std::unique_ptr<UnifiedLights> unified_, own_unified_in_smoke_;
+    const UnifiedLights* unified_in_smoke_ = nullptr;
 };
 
 }  // namespace brisance

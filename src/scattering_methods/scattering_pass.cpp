@@ -92,8 +92,8 @@ Image mean_of_passes(const ScatteringMethod& method, const ScatteringMethodSetti
 }
 
 LightRays light_rays_by(const InScattering* estimator, const DirectLight* scene, const SourceField& field,
-                        float emitters, const SampledFire* fire) {
-    if (!estimator && emitters == 0.0f && !fire)
+                        float emitters, const ManyLightsOnRay& many_lights) {
+    if (!estimator && emitters == 0.0f && !many_lights)
         return {};
     return [=, &field](const PixelRay& r, double end) {
         thread_local RayMedium seen;
@@ -108,10 +108,8 @@ LightRays light_rays_by(const InScattering* estimator, const DirectLight* scene,
             guide_by_emitters(field, r.ray, end, guide);
             light.emitters = emitters * emitters_along_ray(*scene, seen, r.ray, kEmitterPoints, rng, &guide);
         }
-        if (fire) {
-            Rng of_fire = fire->rng(r.pixel, r.number);
-            light.fire = fire->along(seen, r.ray, of_fire);
-        }
+        if (many_lights)
+            many_lights(seen, r, light);
         return light;
     };
 }

@@ -10,9 +10,9 @@
 
 #include "camera/camera.h"
 #include "camera_rays/picture.h"
-#include "fire_lights/sampled_fire.h"
 #include "scattering_methods/methods.h"
 #include "statistics/statistics.h"
+#include "tracking/ray_medium.h"
 #include "transport/direct_light.h"
 
 namespace brisance {
@@ -25,9 +25,12 @@ Image mean_of_passes(const ScatteringMethod& method, const ScatteringMethodSetti
                      const DirectLight& scene, const Camera& camera, const DrawPass& draw, double& seconds,
                      Statistics& statistics, Progress& progress);
 
-// MM by the estimator, or null, the share `emitters` of MA, and MV by the fire's lights, or null; empty where there is
-// nothing of that. `field` guides MA. Keeps references to all.
+// Adds light that many single lights send to the medium on a ray, `seen`.
+using ManyLightsOnRay = std::function<void(const RayMedium& seen, const PixelRay& ray, LightOnRay& light)>;
+
+// MM by the estimator, or null, the share `emitters` of MA, and what many lights add, or empty; empty where there is
+// nothing of that. `field` guides MA. Keeps references to all but `many_lights`.
 LightRays light_rays_by(const InScattering* estimator, const DirectLight* scene, const SourceField& field,
-                        float emitters, const SampledFire* fire = nullptr);
+                        float emitters, const ManyLightsOnRay& many_lights = {});
 
 }  // namespace brisance

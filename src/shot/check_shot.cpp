@@ -74,6 +74,9 @@ void check_fire_lights(const Given& given, const Shot& shot) {
 std::string why_not_unified(const Shot& shot, const std::string& key) {
     if (key == "lighting.clusters" && shot.lighting.clusters > 0)
         return "lamps in the place of the fire need lighting.clusters=0";
+    if (key == "fire_lights.sampling" && shot.unified_lights.smoke && shot.fire_lights.sampling != kFireByHierarchy)
+        return "the fire's lights are among those of all kinds, on surfaces and in smoke: fire_lights.sampling=" +
+               std::string(kFireByHierarchy) + ", or unified_lights.smoke=false";
     if (key == "virtual_lights.resampling_neighbours" && shot.virtual_lights.resampling_neighbours > 0)
         return "pixels reuse what virtual lights alone have chosen: resampling_neighbours=0";
     if (key == "output.layers.bound" && shot.output.bound_layers)
@@ -84,7 +87,8 @@ std::string why_not_unified(const Shot& shot, const std::string& key) {
 void check_unified_lights(const Given& given, const Shot& shot) {
     if (shot.unified_lights.sampling == kLightsApart)
         return;
-    for (const char* key : {"lighting.clusters", "virtual_lights.resampling_neighbours", "output.layers.bound"})
+    for (const char* key :
+         {"lighting.clusters", "fire_lights.sampling", "virtual_lights.resampling_neighbours", "output.layers.bound"})
         if (const std::string why = why_not_unified(shot, key); !why.empty())
             reject(given, given.contains(key) ? key : "unified_lights.sampling",
                    fmt::format("does not go with unified_lights.sampling={}: {}; or unified_lights.sampling={}",

@@ -10,18 +10,6 @@ namespace brisance {
 
 namespace {
 
-// Emitters on a ray that samples the phase function.
-Rgb by_phase(const DirectLight& scene, const PathVertex& vertex, Rng& rng) {
-    const std::optional<PathVertex::Sample> sample = vertex.sample(rng);
-    if (!sample)
-        return Rgb(0.0f);
-    const RaySegment segment = scene.segment_along(vertex.leaving(sample->wi));
-    const Rgb emitted = scene.at_end(segment, sample->pdf, sample->delta, &vertex);
-    if (emitted == Rgb(0.0f))
-        return emitted;
-    return sample->weight * emitted * float(scene.lines().transmittance(segment.ray, segment.end, rng));
-}
-
 // With more lamps, free flights alone sample the points.
 constexpr std::size_t kMostLamps = 8;
 
@@ -124,6 +112,17 @@ bool aims_at_lamps(const DirectLight& scene) {
     return lamps > 0 && lamps <= kMostLamps;
 }
 
+Rgb emitters_by_phase(const DirectLight& scene, const PathVertex& vertex, Rng& rng) {
+    const std::optional<PathVertex::Sample> sample = vertex.sample(rng);
+    if (!sample)
+        return Rgb(0.0f);
+    const RaySegment segment = scene.segment_along(vertex.leaving(sample->wi));
+    const Rgb emitted = scene.at_end(segment, sample->pdf, sample->delta, &vertex);
+    if (emitted == Rgb(0.0f))
+        return emitted;
+    return sample->weight * emitted * float(scene.lines().transmittance(segment.ray, segment.end, rng));
+}
+
 Rgb emitters_along_ray(const DirectLight& scene, const RayMedium& seen, const Ray& ray, int points, Rng& rng,
                        const StepDensity* guide) {
     Rgb sum(0.0f);
@@ -160,7 +159,7 @@ Rgb emitters_along_ray(const DirectLight& scene, const RayMedium& seen, const Ra
             continue;
         const PathVertex vertex = scene.in_smoke(ray, *c);
         sum += scene.field().albedo(c->brick, c->position) * float(weight) *
-               (scene.from_emitters(vertex, rng) + by_phase(scene, vertex, rng));
+               (scene.from_emitters(vertex, rng) + emitters_by_phase(scene, vertex, rng));
     }
     return sum / float(points);
 }

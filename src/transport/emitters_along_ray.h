@@ -19,6 +19,10 @@ namespace brisance {
 // Whether there are lamps by which points are sampled.
 bool aims_at_lamps(const DirectLight& scene);
 
+// Of a vertex in smoke, what comes from emitters on a ray that samples the phase function: the other of two techniques
+// than points on emitters (DirectLight::from_sample()), weighted against that [W/(m^2 sr)]. There must be surroundings.
+Rgb emitters_by_phase(const DirectLight& scene, const PathVertex& vertex, Rng& rng);
+
 // [W/(m^2 sr)]. The scene must have emitters; `seen`: the medium on `ray`; `guide`: about where on the ray their light
 // scatters, by the distance from its origin [m], or null.
 Rgb emitters_along_ray(const DirectLight& scene, const RayMedium& seen, const Ray& ray, int points, Rng& rng,

@@ -66,6 +66,8 @@ public:
         const double one = tree_.lights(tree_.leaf(representatives_[node])).intensity();
         return one > 0.0 ? float(tree_.lights(node).intensity() / one) : 0.0f;
     }
+    // At which the lights of a node count as being, however near they are (LightLimits) [m^2]; 0: without limits.
+    double least2(std::uint32_t node) const { return limits_.empty() ? 0.0 : double(limits_[node].least2); }
     double error() const { return error_; }
     std::size_t most() const { return most_; }
 

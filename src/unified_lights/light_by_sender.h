@@ -1,4 +1,4 @@
-// Light that a surface scatters, by what sent it there: a cell of the ledger each.
+// Light that a surface or smoke scatters, by what sent it there: a cell of the ledger each.
 #pragma once
 
 #include "core/vec.h"
@@ -6,7 +6,7 @@
 namespace brisance {
 
 struct LightBySender {
-    Rgb surfaces{0.0f}, fire{0.0f}, emitters{0.0f};  // SS, SV, SA [W/(m^2 sr)]
+    Rgb surfaces{0.0f}, fire{0.0f}, emitters{0.0f};  // SS, SV, SA; MS, MV, MA [W/(m^2 sr)]
 
     LightBySender() = default;
     explicit LightBySender(const Rgb& of_each) : surfaces(of_each), fire(of_each), emitters(of_each) {}
@@ -18,6 +18,12 @@ struct LightBySender {
         return *this;
     }
     friend LightBySender operator*(LightBySender a, float factor) {
+        a.surfaces *= factor;
+        a.fire *= factor;
+        a.emitters *= factor;
+        return a;
+    }
+    friend LightBySender operator*(const Rgb& factor, LightBySender a) {
         a.surfaces *= factor;
         a.fire *= factor;
         a.emitters *= factor;

@@ -5,19 +5,27 @@
 
 namespace brisance {
 
+namespace {
+
+bool wants(const CellSet& wanted, Sender sender) {
+    return wanted.contains(cell_of(true, sender)) || wanted.contains(cell_of(false, sender));
+}
+
+}  // namespace
+
 LightsOfAllKinds::LightsOfAllKinds(const DirectLight& scene, const DirectLight& through,
                                    const VirtualLights* virtual_lights, double point_bound, const CellSet& wanted)
     : scene_(scene),
-      virtual_lights_(virtual_lights && wanted.contains(Cell::SS) && !virtual_lights->lights().empty() ? virtual_lights
-                                                                                                       : nullptr),
+      virtual_lights_(virtual_lights && wants(wanted, Sender::S) && !virtual_lights->lights().empty() ? virtual_lights
+                                                                                                      : nullptr),
       point_bound_(point_bound),
       fire_(through) {
     if (virtual_lights_) {
         single_ = virtual_lights_->each_light();
         first_voxel_ = virtual_lights_->lights().size();
     }
-    first_emitter_ = first_voxel_ + (wanted.contains(Cell::SV) ? fire_.size() : 0);
-    if (wanted.contains(Cell::SA) && scene.has_emitters())
+    first_emitter_ = first_voxel_ + (wants(wanted, Sender::V) ? fire_.size() : 0);
+    if (wants(wanted, Sender::A) && scene.has_emitters())
         emitters_.emplace(scene.surroundings()->emitters(), ball_around(scene).radius);
 }
 
@@ -55,16 +63,17 @@ std::vector<double> LightsOfAllKinds::least_squared_distances() const {
     return out;
 }
 
-LightBySender LightsOfAllKinds::estimate(std::size_t light, double probability, const UnifiedReceiver& receiver,
+LightBySender LightsOfAllKinds::estimate(std::size_t light, double probability, const GatherPoint& point,
                                          Rng& rng) const {
+    const PathVertex& vertex = point.vertex;
     LightBySender out;
     if (light < first_voxel_) {
-        out.surfaces = single_->estimate(light, probability, receiver.vertex, rng).light;
+        out.surfaces = single_->estimate(light, probability, vertex, rng).light;
     } else if (light < first_emitter_) {
-        if (receiver.base)
-            out.fire = fire_.estimate(light - first_voxel_, probability, *receiver.base, rng);
-    } else if (const auto sample = emitters_->sample(light - first_emitter_, receiver.vertex.lit(), rng)) {
-        out.emitters = scene_.from_sample(receiver.vertex, *sample, rng) / float(probability);
+        if (const PathVertex* const lit = vertex.on_surface() ? point.base : &vertex)
+            out.fire = fire_.estimate(light - first_voxel_, probability, *lit, rng);
+    } else if (const auto sample = emitters_->sample(light - first_emitter_, vertex.lit(), rng)) {
+        out.emitters = scene_.from_sample(vertex, *sample, rng) / float(probability);
     }
     return out;
 }

@@ -18,17 +18,13 @@
 
 namespace brisance {
 
-// A point of a surface that many lights shine on.
-struct UnifiedReceiver {
-    const PathVertex& vertex;  // all lobes
-    const PathVertex* base;    // the Lambert base, which alone is lit by the fire's lights; null: there is none
-};
-
 class LightsOfAllKinds {
 public:
+    using Light = LightBySender;
+
     // Keeps references. `through`: the medium that the fire shines through, and whose fire it is. `virtual_lights`:
-    // null: there are none. `point_bound`: of those that are points [1/m^2]. Of `wanted` the cells SS, SV and SA count:
-    // lights of others are left out.
+    // null: there are none. `point_bound`: of those that are points [1/m^2]. `wanted`: lights that send nothing to its
+    // cells of the rows S and M are left out.
     LightsOfAllKinds(const DirectLight& scene, const DirectLight& through, const VirtualLights* virtual_lights,
                      double point_bound, const CellSet& wanted);
 
@@ -46,8 +42,9 @@ public:
     // Of the smoke there, 0 outside [1/m].
     double extinction_at(const dvec3& position) const { return fire_.extinction_at(position); }
 
-    // What the receiver scatters of a light that was chosen with that probability.
-    LightBySender estimate(std::size_t light, double probability, const UnifiedReceiver& receiver, Rng& rng) const;
+    // What the point scatters of a light that was chosen with that probability. The fire's lights shine on the base of
+    // surfaces alone.
+    LightBySender estimate(std::size_t light, double probability, const GatherPoint& point, Rng& rng) const;
 
     std::uint64_t bytes() const { return fire_.bytes() + (emitters_ ? emitters_->bytes() : 0); }
 

@@ -2,45 +2,32 @@
 
 #include <algorithm>
 
-#include "transport/light_gathering.h"
+#include "transport/multidimensional_lightcuts.h"
 
 namespace brisance {
 
 namespace {
 
 template <class Way>
-class ByWay : public UnifiedGatherer {
-public:
-    ByWay(const LightsOfAllKinds& lights, const UnifiedLightSettings& settings)
-        : lights_(lights), way_(lights, settings) {}
-    LightBySender at(const UnifiedReceiver& receiver, Rng& rng) const override {
-        const double extinction = lights_.extinction_at(receiver.vertex.position());
-        return way_.at(receiver.vertex, extinction, rng, [&](std::size_t light, double probability) {
-            return lights_.estimate(light, probability, receiver, rng);
-        });
-    }
-    std::uint64_t bytes() const override { return way_.bytes(); }
+using AtEach = AtEachPoint<LightsOfAllKinds, Way>;
 
-private:
-    const LightsOfAllKinds& lights_;
-    Way way_;
-};
-
-template <class Way>
+template <class Gatherer>
 std::unique_ptr<UnifiedGatherer> made(const LightsOfAllKinds& lights, const UnifiedLightSettings& settings) {
-    return std::make_unique<ByWay<Way>>(lights, settings);
+    return std::make_unique<Gatherer>(lights, settings);
 }
 
 }  // namespace
 
 const std::vector<UnifiedLightSampling>& unified_light_samplings() {
     static const std::vector<UnifiedLightSampling> table = {
-        {"all", "every light", made<EveryLight>, true},
-        {"intensity", "a light by intensity", made<ChosenLights<ByIntensity>>},
-        {"light_tree", "a light by a tree of bounds", made<ChosenLights<ByTree>>},
+        {"all", "every light", made<AtEach<EveryLight>>, true},
+        {"intensity", "a light by intensity", made<AtEach<ChosenLights<ByIntensity>>>},
+        {"light_tree", "a light by a tree of bounds", made<AtEach<ChosenLights<ByTree>>>},
         {"lightcuts", "one light for each node of a cut through a tree, the same for all points",
-         made<CutOfRepresentatives>},
-        {"stochastic_lightcuts", "a random light of each node of a small cut", made<CutOfRandomLights>}};
+         made<AtEach<CutOfRepresentatives>>},
+        {"stochastic_lightcuts", "a random light of each node of a small cut", made<AtEach<CutOfRandomLights>>},
+        {"multidimensional_lightcuts", "one cut for all points of a ray and all lights",
+         made<MultidimensionalLightcuts<LightsOfAllKinds>>}};
     return table;
 }
 

@@ -11,13 +11,7 @@
 
 namespace brisance {
 
-class UnifiedGatherer {
-public:
-    virtual ~UnifiedGatherer() = default;
-    // One estimate of what the receiver scatters of all lights.
-    virtual LightBySender at(const UnifiedReceiver& receiver, Rng& rng) const = 0;
-    virtual std::uint64_t bytes() const = 0;
-};
+using UnifiedGatherer = PointGatherer<LightBySender>;
 
 struct UnifiedLightSampling {
     const char* name;

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "core/error.h"
+#include "virtual_lights/baselines.h"
 #include "virtual_lights/choices.h"
 #include "virtual_lights/compensations.h"
 #include "virtual_lights/flux/deposit_flux.h"
@@ -74,73 +75,6 @@ constexpr std::tuple kGatherers = {
     Row<Lightcuts>{"lightcuts", "one light for each node of a cut through a tree, the same for all vertices"},
     Row<StochasticLightcuts>{"stochastic_lightcuts", "a random light of each node of a small cut"},
     Row<AllLights>{"all", "every light"}};
-
-// The settings of one preset with those of another, which has its name and its help.
-TechniquePreset changed(const TechniquePreset& from, const TechniquePreset& by) {
-    TechniquePreset out{by.name, by.help, from.settings};
-    for (const auto& [key, value] : by.settings) {
-        const auto same = std::find_if(out.settings.begin(), out.settings.end(),
-                                       [&, &k = key](const auto& setting) { return setting.first == k; });
-        if (same != out.settings.end())
-            same->second = value;
-        else
-            out.settings.emplace_back(key, value);
-    }
-    return out;
-}
-
-// Baselines of the literature, beside virtual blue noise lighting with every gatherer: by name, help, and what differs
-// from instant radiosity.
-const std::vector<TechniquePreset>& baselines() {
-    static const std::vector<TechniquePreset> differences = {
-        {"rich_vsl",
-         "rich virtual spherical lights",
-         {{"placement", "relaxed_light_paths"}, {"flux", "gathered"}, {"kind", "sphere"}}},
-        {"vsl", "virtual spherical lights", {{"kind", "sphere"}}},
-        {"vsl_cone",
-         "virtual spherical lights sampled by their cone",
-         {{"kind", "sphere"}, {"sphere_sampling", "cone"}}},
-        {"vsl_vertex",
-         "virtual spherical lights sampled by the BSDF at the vertex",
-         {{"kind", "sphere"}, {"sphere_sampling", "vertex"}}},
-        {"vsl_light",
-         "virtual spherical lights sampled by the BSDF at the light",
-         {{"kind", "sphere"}, {"sphere_sampling", "light"}}},
-        {"vpl", "virtual point lights", {}},
-        {"vpl_diffuse", "virtual point lights of Lambert bases alone", {{"kind", "diffuse_point"}}},
-        {"vpl_compensated",
-         "virtual point lights with a bounded geometry term, compensated by paths",
-         {{"point_bound_of", "both_cosines"}, {"compensation", "exact"}}},
-        {"vpl_screen_space",
-         "the same lights, compensated by what other pixels show",
-         {{"point_bound_of", "both_cosines"}, {"compensation", "screen_space"}}},
-        {"vpl_lightcuts", "virtual point lights by lightcuts", {{"sampling", "lightcuts"}}},
-        {"vpl_stochastic_lightcuts",
-         "virtual point lights by stochastic lightcuts",
-         {{"sampling", "stochastic_lightcuts"}}},
-        {"vpl_rejection",
-         "virtual point lights, rejected where the camera does not see them",
-         {{"placement", "rejection"}}},
-        {"vpl_metropolis", "Metropolis instant radiosity", {{"placement", "metropolis"}}},
-        {"vpl_bidirectional",
-         "bidirectional instant radiosity, with rich lights",
-         {{"placement", "bidirectional"}, {"flux", "gathered"}}}};
-    static const std::vector<TechniquePreset> all = [] {
-        const TechniquePreset instant_radiosity{"",
-                                                "",
-                                                {{"placement", "light_paths"},
-                                                 {"flux", "own"},
-                                                 {"kind", "point"},
-                                                 {"sampling", "power"},
-                                                 {"path_extension", "false"},
-                                                 {"sharing_radius", "0"}}};
-        std::vector<TechniquePreset> out;
-        for (const TechniquePreset& other : differences)
-            out.push_back(changed(instant_radiosity, other));
-        return out;
-    }();
-    return all;
-}
 
 constexpr std::size_t kFluxCount = std::tuple_size_v<decltype(kFluxes)>;
 constexpr std::size_t kKindCount = std::tuple_size_v<decltype(kKinds)>;
@@ -301,8 +235,8 @@ std::string reuse_complaint(const Chosen& c, int neighbours) {
            light_gatherers()[c.gatherer].name + " goes with resampling_neighbours=0";
 }
 
-// Neighbours whose choices a preset reuses.
-constexpr const char* kNeighbours = "4";
+// Neighbours whose choices presets reuse, and the rounds of one of them.
+constexpr const char *kNeighbours = "4", *kRounds = "3";
 
 std::vector<TechniquePreset> make_presets() {
     std::vector<TechniquePreset> out;
@@ -319,6 +253,10 @@ std::vector<TechniquePreset> make_presets() {
             out.push_back({"vbnl_" + name + "_reused",
                            "vbnl_" + name + ", where pixels reuse what others around them chose",
                            {{"sampling", name}, {"resampling_neighbours", kNeighbours}}});
+            out.push_back(
+                {"vbnl_" + name + "_rounds",
+                 "the same in several rounds, each of what the one before has kept",
+                 {{"sampling", name}, {"resampling_neighbours", kNeighbours}, {"resampling_rounds", kRounds}}});
         }
     out.insert(out.end(), baselines().begin(), baselines().end());
     return out;

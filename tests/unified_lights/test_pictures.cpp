@@ -1,5 +1,5 @@
-// Pictures whose SV, SS and SA come from lights of all kinds together: layers add up, other cells stay, and what does
-// not go together is refused.
+// Pictures whose cells come from lights of all kinds together, on surfaces and in smoke: layers add up, other cells
+// stay, and what does not go together is refused.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -87,27 +87,42 @@ class UnifiedPictures : public ::testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(Samplings, UnifiedPictures, ::testing::ValuesIn(all_samplings()),
                          [](const auto& sampling) { return sampling.param; });
 
-// Cells add up to the picture, pixel by pixel, also behind the mirror; those of the smoke are as without.
-TEST_P(UnifiedPictures, AddUp) {
-    const Medium medium = smoke();
-    const Surroundings set = set_with_lights();
-    const Image unified = rendered(small_shot(GetParam()), medium, &set).image;
-    const Image apart = rendered(small_shot(kApart), medium, &set).image;
-    const Layer& beauty = unified.layer("");
-    const std::size_t channels = beauty.channels.size(), pixels = beauty.pixels.size() / channels;
+std::vector<double> sum_of_cells(const Image& image, std::size_t pixels) {
     std::vector<double> sums(pixels * 3, 0.0);
-    for (const Layer& layer : unified.layers)
+    for (const Layer& layer : image.layers)
         if (std::find(kCellNames.begin(), kCellNames.end(), layer.name) != kCellNames.end())
             for (std::size_t p = 0; p < pixels; ++p)
                 for (std::size_t c = 0; c < 3; ++c)
                     sums[3 * p + c] += layer.pixels[p * layer.channels.size() + c];
+    return sums;
+}
+
+// Cells add up to the picture, pixel by pixel, also behind the mirror. MM remains the grid's, whose series begins with
+// MV, MS and MA of its nodes, and SM too.
+TEST_P(UnifiedPictures, AddUp) {
+    const Medium medium = smoke();
+    const Surroundings set = set_with_lights();
+    Shot shot = small_shot(GetParam());
+    const Image unified = rendered(shot, medium, &set).image;
+    shot.unified_lights.smoke = false;
+    const Image on_surfaces = rendered(shot, medium, &set).image;
+    const Image apart = rendered(small_shot(kApart), medium, &set).image;
+    const Layer& beauty = unified.layer("");
+    const std::size_t channels = beauty.channels.size(), pixels = beauty.pixels.size() / channels;
+    const std::vector<double> sums = sum_of_cells(unified, pixels);
     for (std::size_t p = 0; p < pixels; ++p)
         for (std::size_t c = 0; c < 3; ++c)
             ASSERT_NEAR(beauty.pixels[p * channels + c], sums[3 * p + c], 1e-5 * (1.0 + sums[3 * p + c])) << p;
-    for (const char* cell : {"V", "A", "MV", "MM", "MA", "MS"})
+    for (const char* cell : {"V", "A", "MM"})
         EXPECT_EQ(unified.layer(cell).pixels, apart.layer(cell).pixels) << cell;
-    for (const char* cell : {"SV", "SS", "SA"})
+    for (const char* cell : {"MV", "MA", "MS"}) {
         EXPECT_NE(unified.layer(cell).pixels, apart.layer(cell).pixels) << cell;
+        EXPECT_EQ(on_surfaces.layer(cell).pixels, apart.layer(cell).pixels) << cell;
+    }
+    for (const char* cell : {"SV", "SS", "SA"}) {
+        EXPECT_NE(unified.layer(cell).pixels, apart.layer(cell).pixels) << cell;
+        EXPECT_EQ(unified.layer(cell).pixels, on_surfaces.layer(cell).pixels) << cell;
+    }
 }
 
 TEST_P(UnifiedPictures, AreTheSameOnAnyNumberOfThreads) {
@@ -127,6 +142,7 @@ TEST(UnifiedPlans, OwnTheFireOnSurfaces) {
     Shot shot = small_shot("stochastic_lightcuts");
     shot.scattering.bounces = 1;
     shot.fire_lights.sampling = "light_tree";
+    shot.unified_lights.smoke = false;
     const Plan plan = plan_cells(shot, medium, &set);
     ASSERT_NE(plan.unified_sampling, nullptr);
     EXPECT_TRUE(plan.fire_lights_on_surfaces());
@@ -138,15 +154,31 @@ TEST(UnifiedPlans, OwnTheFireOnSurfaces) {
     };
     EXPECT_EQ(stages("lights of all kinds"), 1);
     EXPECT_EQ(stages("lights for surfaces"), 0);
-    EXPECT_EQ(plan_cells(shot, medium).unified_sampling, nullptr) << "no surfaces";
+    EXPECT_EQ(plan_cells(shot, medium).unified_sampling, nullptr) << "no surfaces, and not in smoke";
     shot.method = RenderMethod::Path;
     EXPECT_EQ(plan_cells(shot, medium, &set).unified_sampling, nullptr);
 }
 
+// In smoke as well, with what nodes hold left to MM; without virtual lights nothing stands for surfaces there.
+TEST(UnifiedPlans, OwnTheSmokeOfRays) {
+    const Medium medium = smoke();
+    const Surroundings set = set_with_lights();
+    Shot shot = small_shot("light_tree");
+    const auto owned = [&](const Surroundings* around) { return plan_cells(shot, medium, around).on_rays; };
+    EXPECT_EQ(owned(&set), (CellSet{Cell::MV, Cell::MS, Cell::MA}));
+    EXPECT_EQ(owned(nullptr), (CellSet{Cell::MV}));
+    EXPECT_EQ(plan_cells(shot, medium, &set).fire_sampling, nullptr);
+    shot.virtual_lights.count = 0;
+    EXPECT_EQ(owned(&set), (CellSet{Cell::MV, Cell::MA}));
+    shot.unified_lights.smoke = false;
+    EXPECT_EQ(owned(&set), CellSet{});
+}
+
 TEST(UnifiedPlans, RefuseWhatDoesNotGoTogether) {
-    const auto refusal = [](const std::string& other) {
+    const auto refusal = [](const std::string& other, const std::string& more = {}) {
         try {
-            parse_shot(R"({"volume": {"file": "a.vdb"}, "unified_lights": {"sampling": "lightcuts"}, )" + other + "}",
+            parse_shot(R"({"volume": {"file": "a.vdb"}, "unified_lights": {"sampling": "lightcuts")" + more + "}, " +
+                           other + "}",
                        "a.json", "folder");
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), ExitCode::Usage);
@@ -162,7 +194,10 @@ TEST(UnifiedPlans, RefuseWhatDoesNotGoTogether) {
                          "output": {"layers": {"bound": true}})")
                   .find("output.layers.bound=false"),
               std::string::npos);
-    EXPECT_EQ(refusal(R"("fire_lights": {"sampling": "all"})"), "");
+    const std::string of_fire = refusal(R"("fire_lights": {"sampling": "all"})");
+    EXPECT_NE(of_fire.find("fire_lights.sampling=hierarchy"), std::string::npos) << of_fire;
+    EXPECT_NE(of_fire.find("unified_lights.smoke=false"), std::string::npos) << of_fire;
+    EXPECT_EQ(refusal(R"("fire_lights": {"sampling": "all"})", R"(, "smoke": false)"), "");
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ void add_unified_lights(std::vector<BuiltIn>& methods) {
         method.name = std::string("unified_") + row.name;
         method.settings.insert(method.settings.end(),
                                {"scattering.method=lighting_grid", std::string("unified_lights.sampling=") + row.name});
-        method.cells = {Cell::SV, Cell::SS, Cell::SA};
+        method.cells = {Cell::MV, Cell::MS, Cell::MA, Cell::SV, Cell::SS, Cell::SA};
         methods.push_back(std::move(method));
     }
 }

@@ -66,6 +66,8 @@ MethodForecast forecast(const Shot& shot, const Medium& medium, const Plan& plan
         return grid_since("scattering.method is " + plan.scattering_choice);
     if (plan.fire_sampling)
         return grid_since(std::string("fire_lights.sampling is ") + plan.fire_sampling->name);
+    if (plan.unified_sampling)
+        return grid_since(std::string("unified_lights.sampling is ") + plan.unified_sampling->name);
     if (!plan.single)
         return grid_since("no light is scattered");
     if (!fits_in_memory(shot, medium, plan))

@@ -99,7 +99,8 @@ void add_seconds(FrameForecast& out, const Shot& shot, const FrameInput& input, 
     std::optional<double> core;
     if (shot.method == RenderMethod::Path)
         core = path_seconds(shot, input);
-    else if (!plan.surfaces && !plan.emitters && !plan.scattering_method && !plan.fire_sampling)
+    else if (!plan.surfaces && !plan.emitters && !plan.scattering_method && !plan.fire_sampling &&
+             !plan.unified_sampling)
         core = (1.0 + shot.certify.belief) * grid_seconds(shot, CountedMedium(input.medium), plan, input.camera);
     else
         out.why_no_seconds = "surfaces, lamps and other scattering methods are not forecast for the lighting grid";

@@ -89,7 +89,7 @@ Option path_option(const Timing& t, const Surroundings* surroundings) {
 
 // Whether the lighting grid's time is known.
 bool grid_is_forecast(const Plan& plan) {
-    return !plan.surfaces && !plan.emitters && !plan.scattering_method && !plan.fire_sampling;
+    return !plan.surfaces && !plan.emitters && !plan.scattering_method && !plan.fire_sampling && !plan.unified_sampling;
 }
 
 // None: nothing can be forecast.

@@ -28,7 +28,8 @@ MomentLights::MomentLights(const ManyLights& lights)
       direct_(lights.direct()),
       fire_(lights.fire()),
       fire_on_surfaces_(lights.fire_on_surfaces()),
-      unified_(lights.unified()) {}
+      unified_(lights.unified()),
+      unified_in_smoke_(lights.unified_in_smoke()) {}
 
 MomentLights::MomentLights(const DrawInput& input, const ManyLights& lights, const OpenShutter& shutter,
                            const Instant& lit, const Instant& moment)
@@ -82,11 +83,14 @@ void MomentLights::follow_fire(const DrawInput& input, const ManyLights& lights)
 }
 
 void MomentLights::follow_unified(const DrawInput& input, const ManyLights& lights) {
-    own_unified_ =
-        std::make_unique<UnifiedLights>(*direct_, own_similar_direct_ ? *own_similar_direct_ : *direct_,
-                                        lights.virtual_lights(), input.shot.virtual_lights.point_bound,
-                                        input.plan.needed, *input.plan.unified_sampling, input.shot.unified_lights);
+    const DirectLight* const similar = own_similar_direct_ ? &*own_similar_direct_ : nullptr;
+    own_unified_ = unified_lights(input, *direct_, similar, lights.virtual_lights());
     unified_ = own_unified_.get();
+    if (!lights.unified_in_smoke())
+        return;
+    if (similar)
+        own_unified_in_smoke_ = unified_lights(input, *direct_, nullptr, lights.virtual_lights());
+    unified_in_smoke_ = similar ? own_unified_in_smoke_.get() : unified_;
 }
 
 }  // namespace brisance

@@ -42,6 +42,7 @@ public:
     const SampledFire* fire() const { return fire_; }
     const SampledFire* fire_on_surfaces() const { return fire_on_surfaces_; }
     const UnifiedLights* unified() const { return unified_; }
+    const UnifiedLights* unified_in_smoke() const { return unified_in_smoke_; }
 
 private:
     void follow_paths(const DrawInput& input, const ManyLights& lights, const Instant& moment);
@@ -58,8 +59,8 @@ private:
     std::optional<DirectLight> own_similar_direct_;
     std::optional<SampledFire> own_fire_, own_fire_in_similar_;
     const SampledFire *fire_, *fire_on_surfaces_;
-    std::unique_ptr<UnifiedLights> own_unified_;
-    const UnifiedLights* unified_;
+    std::unique_ptr<UnifiedLights> own_unified_, own_unified_in_smoke_;
+    const UnifiedLights *unified_, *unified_in_smoke_;
 };
 
 }  // namespace brisance

@@ -58,7 +58,8 @@ Sections all_sections() {
         sections.emplace_back(method.name, method.product + ", of scattering.method " + method.name);
     const Sections rest = {
         {"virtual_lights", "light that surfaces reflect onto surfaces and smoke"},
-        {"unified_lights", "light on surfaces, from all of virtual lights, fire and emitters chosen together"},
+        {"unified_lights",
+         "light on surfaces and in smoke, from all of virtual lights, fire and emitters chosen together"},
         {"tracing", "the reference path tracer (method path)"},
         {"certify", "how far the finished frame is from the truth"},
         {"output", "what is written"},
