@@ -104,14 +104,81 @@ void walk_parts(const SourceField& field, const Ray& ray, int parts, double end,
     walk_voxels(field, ray, visit_parts, end);
 }
 
-}  // namespace
+// What add_part() sums where the medium alone sends light, and it scatters in the medium itself: records as a whole.
+class OwnLight {
+public:
+    explicit OwnLight(bool direct_emission) : direct_(direct_emission) {}
 
-RaySum integrate(const SourceField& field, const Ray& ray, int parts, double end) {
+    // Returns whether what lies behind can be seen.
+    bool add(const SourceRecord& r, float length, float distance) {
+        const float extinction = r.value[SourceRecord::Extinction], tau = extinction * length, mean = phi1(tau);
+        const float path = transmittance_ * length * mean, opacity = path * extinction;
+        transmittance_ *= 1.0f - tau * mean;
+        depth_ += tau;
+        for (int i = 0; i < quads_of<SourceRecord>(); ++i)
+            seen_[i] += opacity * quad(r, i);
+        if (direct_)
+            emission_ += slot(r.value, SourceRecord::V) * path;
+        opacity_ += opacity;
+        distance_ += opacity * distance;
+        return depth_ < kOpaqueDepth;
+    }
+
+    RaySum sum() const {
+        SourceRecord seen;
+        std::memcpy(seen.value, seen_, sizeof(seen_));
+        RaySum out;
+        out.depth = out.similar_depth = depth_;
+        out.cells.at(Cell::V) = direct_ ? emission_ : slot(seen.value, SourceRecord::V);
+        out.cells.at(Cell::MV) = slot(seen.value, SourceRecord::MV);
+        out.cells.at(Cell::MM) = slot(seen.value, SourceRecord::MM);
+        out.albedo_sum = Rgb(seen.value[SourceRecord::Albedo]);
+        out.distance_weight = opacity_;
+        out.distance_sum = distance_;
+        return out;
+    }
+
+private:
+    bool direct_;
+    float transmittance_ = 1.0f, depth_ = 0.0f, opacity_ = 0.0f, distance_ = 0.0f;
+    Quad seen_[quads_of<SourceRecord>()] = {};  // records, each times its part's opacity
+    Rgb emission_{0.0f};
+};
+
+RaySum integrate_own_light(const SourceField& field, const Ray& ray, int parts, double end) {
+    OwnLight light(field.direct_emission());
+    const auto visit_brick = [&](const VoxelSegment& brick) {
+        const SourceRecord* const records = field.own_records(brick.brick);
+        return walk_cubes<1>(brick, [&](const VoxelSegment& s) {
+            const double length = s.end - s.begin;
+            const int n = std::max(parts, parts_of(field, s, static_cast<float>(length)));
+            const auto of_part = static_cast<float>(length / n);
+            for (int k = 0; k < n; ++k) {
+                const double t = s.begin + length * position_in_part(k, n);
+                if (!light.add(interpolated(records, position_in_brick(s, t)), of_part, static_cast<float>(t)))
+                    return false;
+            }
+            return true;
+        });
+    };
+    walk_bricks(field.bricks(), lattice_ray(field.bricks(), field.medium(), ray, end), visit_brick);
+    return light.sum();
+}
+
+RaySum integrate_all_light(const SourceField& field, const Ray& ray, int parts, double end) {
     RaySum sum;
     walk_parts(field, ray, parts, end, [&](const Part& part) {
         add_part(sum, field, part);
         return sum.similar_depth < kOpaqueDepth;
     });
+    return sum;
+}
+
+}  // namespace
+
+RaySum integrate(const SourceField& field, const Ray& ray, int parts, double end) {
+    const bool own = !field.has_outside() && !field.has_similar();
+    RaySum sum = (own ? integrate_own_light : integrate_all_light)(field, ray, parts, end);
     sum.alpha = -std::expm1(-sum.depth);
     sum.through = 1.0f - sum.alpha;
     return sum;
