@@ -11,6 +11,7 @@
 #include "suite/contest.h"
 #include "suite/suite.h"
 #include "suite/suite_report.h"
+#include "unified_lights/samplings.h"
 
 namespace brisance {
 namespace {
@@ -86,6 +87,9 @@ TEST(SuiteMethods, OfASceneFollowFromItsCells) {
     for (const FireLightSampling& row : fire_light_samplings())
         if (!row.asks_every_light)
             of_fire.insert(std::string("fire_") + row.name);
+    for (const UnifiedLightSampling& row : unified_light_samplings())  // one tree, with the fire alone in it
+        if (!row.asks_every_light)
+            of_fire.insert(std::string("unified_") + row.name);
     EXPECT_EQ(single, of_fire);
     const std::set<std::string> room = labels_of(owners_of(methods, {Cell::SS}));
     EXPECT_TRUE(room.contains("vbnl"));

@@ -145,9 +145,13 @@ std::vector<Method> suite_methods(const SuiteSize& size, const std::vector<std::
         options.budgets.push_back(method.label + ":" + budget_of(size, method));
     std::vector<Method> methods = parse_methods(options);
     for (Method& method : methods) {
-        if (!owns(method, name_of(Cell::MV)) && !method.scatters_grid)
-            add_settings(owns(method, name_of(Cell::SS)) ? size.beside_fire_of_surfaces : size.beside_fire, method);
-        if (!owns(method, name_of(Cell::MM)))
+        const bool scatters = owns(method, name_of(Cell::MM));
+        // Paths between surfaces see the smoke of the grid, also where the camera's rays gather the fire themselves.
+        if (!scatters && owns(method, name_of(Cell::SS)))
+            add_settings(size.beside_fire_of_surfaces, method);
+        else if (!owns(method, name_of(Cell::MV)) && !method.scatters_grid)
+            add_settings(size.beside_fire, method);
+        if (!scatters)
             add_settings(size.beside_scattering, method);
     }
     return methods;
