@@ -287,8 +287,18 @@ std::optional<Plane> plane_of(const SurfaceReceiver& r, float voxel) {
     return Plane{ivec3(glm::round(r.normal / kNormalStep)), std::int64_t(std::floor(offset + kOffsetShift))};
 }
 
+// Calls after which a plane that none of them met is forgotten: rows of a picture, and what mirrors show from them,
+// come in calls of their own and meet each other's planes again.
+constexpr std::uint64_t kCallsKept = 16;
+
+struct KnownPlane {
+    LitPlane plane;
+    std::uint64_t last_met;  // call
+};
+
 struct Planes {
-    std::map<Plane, LitPlane> lit;
+    std::map<Plane, KnownPlane> lit;
+    std::uint64_t call = 0;
 };
 
 }  // namespace lit_planes
@@ -308,18 +318,19 @@ std::vector<std::uint32_t> PlanarLight::interpolate(std::vector<SurfaceReceiver>
             seen[*plane].push_back(i);
         else
             alone.push_back(i);
-    std::erase_if(planes_->lit, [&](const auto& known) {
-        const auto now = seen.find(known.first);
-        return now == seen.end() || now->second.size() < kWorthACell;
-    });
+    const std::uint64_t call = ++planes_->call;
     std::vector<LitPlane*> busy;
     for (const auto& [plane, on_plane] : seen)
         if (on_plane.size() < kWorthACell) {
             alone.insert(alone.end(), on_plane.begin(), on_plane.end());
         } else {
-            busy.push_back(&planes_->lit.try_emplace(plane, plane, medium_).first->second);
-            busy.back()->begin(receivers, on_plane);
+            KnownPlane& known =
+                planes_->lit.try_emplace(plane, KnownPlane{LitPlane(plane, medium_), call}).first->second;
+            known.last_met = call;
+            known.plane.begin(receivers, on_plane);
+            busy.push_back(&known.plane);
         }
+    std::erase_if(planes_->lit, [&](const auto& known) { return call - known.second.last_met > kCallsKept; });
     while (!busy.empty()) {
         std::vector<SurfaceReceiver> points;
         for (LitPlane* plane : busy)
@@ -330,8 +341,8 @@ std::vector<std::uint32_t> PlanarLight::interpolate(std::vector<SurfaceReceiver>
             lit = plane->answer(lit, receivers);
         std::erase_if(busy, [](const LitPlane* plane) { return plane->done(); });
     }
-    for (auto& [plane, lit] : planes_->lit) {
-        const std::vector<std::uint32_t> rest = lit.take_alone();
+    for (auto& [at, known] : planes_->lit) {
+        const std::vector<std::uint32_t> rest = known.plane.take_alone();
         alone.insert(alone.end(), rest.begin(), rest.end());
     }
     return alone;

@@ -4,8 +4,8 @@
 // smoke. It is therefore gathered at the points of a lattice on the plane and interpolated, cell by cell: a cell whose
 // corners do not predict the points between them is divided, as in irradiance caching (Ward, Rubinstein and Clear,
 // SIGGRAPH 1988), but by what was measured. The lattice is fixed in space, so that it stays where it is when the camera
-// moves, and what one part of a picture has found serves the next. Receivers that share a cell with few others are
-// gathered themselves.
+// moves, and what one part of a picture has found serves the next, with what mirrors show in between. Receivers that
+// share a cell with few others are gathered themselves.
 #pragma once
 
 #include <functional>

@@ -148,6 +148,23 @@ TEST(PlanarReceivers, FarAwayOrWithoutAPlaceAreGatheredThemselves) {
     EXPECT_EQ(light.gathered, odd.size());
 }
 
+// Rows of a picture and what mirrors show from them come in turns, on planes of their own.
+TEST(PlanarReceivers, KeepWhatOtherCallsDoNotMeet) {
+    const Medium medium = small_ball();
+    const PointLight light{{0.0f, 0.0f, 0.5f}};
+    const std::vector<SurfaceReceiver> floor = square(100, 0.06f, {-3.0f, -3.0f, -2.0f}, {1, 0, 0}, {0, 1, 0}),
+                                       wall = square(100, 0.06f, {-3.0f, 2.5f, -2.0f}, {1, 0, 0}, {0, 0, 1});
+    PlanarLight planes(medium);
+    std::vector<SurfaceReceiver> once = floor, between = wall, again = floor;
+    planes.light(once, light.gatherer());
+    planes.light(between, light.gatherer());
+    const std::size_t before = light.gathered;
+    planes.light(again, light.gatherer());
+    EXPECT_EQ(light.gathered, before);
+    for (std::size_t i = 0; i < floor.size(); ++i)
+        EXPECT_EQ(again[i].fire[0], once[i].fire[0]);
+}
+
 TEST(PlanarReceivers, NoneCostNothing) {
     const Medium medium = small_ball();
     std::vector<SurfaceReceiver> none;
