@@ -82,26 +82,34 @@ int parts_of(const SourceField& field, const VoxelSegment& s, float length) {
     return depth <= kThickVoxel ? 1 : (depth <= 2.0f * kThickVoxel ? kThickVoxelParts : kOpaqueVoxelParts);
 }
 
-// Visits every part of every voxel until visit(part) returns false.
+// Visits the parts of a voxel until visit(position in the brick, length, distance) returns false.
+template <class Visit>
+bool visit_parts(const SourceField& field, const VoxelSegment& s, int parts, const Visit& visit) {
+    const double length = s.end - s.begin;
+    const int n = std::max(parts, parts_of(field, s, static_cast<float>(length)));
+    const auto of_part = static_cast<float>(length / n);
+    for (int k = 0; k < n; ++k) {
+        const double t = s.begin + length * position_in_part(k, n);
+        if (!visit(position_in_brick(s, t), of_part, static_cast<float>(t)))
+            return false;
+    }
+    return true;
+}
+
+// The same of every voxel, with what the field holds there.
 template <class Visit>
 void walk_parts(const SourceField& field, const Ray& ray, int parts, double end, const Visit& visit) {
-    const auto visit_parts = [&](const VoxelSegment& s) {
-        const double length = s.end - s.begin;
-        const int n = std::max(parts, parts_of(field, s, static_cast<float>(length)));
-        for (int k = 0; k < n; ++k) {
-            const double t = s.begin + length * position_in_part(k, n);
-            const vec3 p = position_in_brick(s, t);
-            Part part{field.sample(s.brick, p), {}, {}, static_cast<float>(length / n), static_cast<float>(t)};
+    const auto visit_voxel = [&](const VoxelSegment& s) {
+        return visit_parts(field, s, parts, [&](const vec3& p, float length, float distance) {
+            Part part{field.sample(s.brick, p), {}, {}, length, distance};
             if (field.has_outside())
                 part.outside = field.sample_outside(s.brick, p);
             if (field.has_similar())
                 part.similar = field.sample_similar(s.brick, p);
-            if (!visit(part))
-                return false;
-        }
-        return true;
+            return visit(part);
+        });
     };
-    walk_voxels(field, ray, visit_parts, end);
+    walk_voxels(field, ray, visit_voxel, end);
 }
 
 // What add_part() sums where the medium alone sends light, and it scatters in the medium itself: records as a whole.
@@ -150,15 +158,9 @@ RaySum integrate_own_light(const SourceField& field, const Ray& ray, int parts, 
     const auto visit_brick = [&](const VoxelSegment& brick) {
         const SourceRecord* const records = field.own_records(brick.brick);
         return walk_cubes<1>(brick, [&](const VoxelSegment& s) {
-            const double length = s.end - s.begin;
-            const int n = std::max(parts, parts_of(field, s, static_cast<float>(length)));
-            const auto of_part = static_cast<float>(length / n);
-            for (int k = 0; k < n; ++k) {
-                const double t = s.begin + length * position_in_part(k, n);
-                if (!light.add(interpolated(records, position_in_brick(s, t)), of_part, static_cast<float>(t)))
-                    return false;
-            }
-            return true;
+            return visit_parts(field, s, parts, [&](const vec3& p, float length, float distance) {
+                return light.add(interpolated(records, p), length, distance);
+            });
         });
     };
     walk_bricks(field.bricks(), lattice_ray(field.bricks(), field.medium(), ray, end), visit_brick);

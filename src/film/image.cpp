@@ -17,4 +17,12 @@ const Layer& Image::layer(const std::string& name) const {
                                                name.empty() ? "beauty" : name, there.empty() ? "none" : there));
 }
 
+void add_to_mean(Image& mean, const Image& next, int count) {
+    for (std::size_t l = 0; l < mean.layers.size(); ++l)
+        for (std::size_t i = 0; i < mean.layers[l].pixels.size(); ++i) {
+            float& pixel = mean.layers[l].pixels[i];
+            pixel += (next.layers[l].pixels[i] - pixel) / float(count);
+        }
+}
+
 }  // namespace brisance

@@ -27,6 +27,9 @@ struct Image {
     Layer& layer(const std::string& name) { return const_cast<Layer&>(std::as_const(*this).layer(name)); }
 };
 
+// `next` is picture number `count` of those that `mean` becomes the mean of; all have the same layers.
+void add_to_mean(Image& mean, const Image& next, int count);
+
 // What the header of the EXR records.
 struct ImageMetadata {
     int frame = 0;

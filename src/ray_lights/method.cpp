@@ -1,5 +1,6 @@
 #include "ray_lights/method.h"
 
+#include "light_selection/thin_lights.h"
 #include "ray_lights/pair_sampling.h"
 #include "ray_lights/ray_lights.h"
 
@@ -30,6 +31,9 @@ std::vector<SettingKey<RayLightSettings>> RayLightsMethod::keys() {
                     &S::paths),
         setting_key("count", "pieces of their flights that are kept, on average: the important ones",
                     whole(1, 100000000), &S::count),
+        setting_key("roulette_visibility",
+                    "among those that compete for `count`, ones that surfaces hide from rays of the camera count less",
+                    flag(), &S::roulette_visibility),
         setting_key("samples", "ray lights sampled for every ray of the camera, and for every surface it meets",
                     whole(1, 65536), &S::samples),
         setting_key("length", "short: to the particle's next collision; long: to where the smoke or a surface ends it",
@@ -53,8 +57,13 @@ MadeInScattering RayLightsMethod::make(const InScatteringRequest& request, const
                                     request.bounces, request.receivers);
     const RayLightReport& r = lights->report();
     MadeInScattering made{nullptr, lights->bytes(), {}, lights->radius()};
-    made.detail = {{"particles", r.paths}, {"flights", r.flights},       {"pieces", r.pieces},
-                   {"lights", r.lights},   {"not_finite", r.not_finite}, {"last_radius", lights->radius()}};
+    made.detail = {{"particles", r.paths},
+                   {"flights", r.flights},
+                   {"pieces", r.pieces},
+                   {"lights", r.lights},
+                   {"acceptance", acceptance(r.lights, r.pieces)},
+                   {"not_finite", r.not_finite},
+                   {"last_radius", lights->radius()}};
     made.estimator = std::move(lights);
     return made;
 }

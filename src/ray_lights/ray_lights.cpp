@@ -54,8 +54,9 @@ RayLights::RayLights(const DirectLight& scene, const RayLightSettings& settings,
       settings_(settings),
       sampling_(pair_sampling(settings.sampling)),
       lights_(thickened(thin_lights(trace_ray_lights(scene, settings, bounces, report_), receivers,
-                                    static_cast<std::size_t>(settings.count), scene.field().mean_cosine(),
-                                    Stream::RayLightRoulette, settings.seed),
+                                    {static_cast<std::size_t>(settings.count), scene.field().mean_cosine(),
+                                     settings.roulette_visibility ? scene.occluders() : nullptr,
+                                     Stream::RayLightRoulette, settings.seed}),
                         settings.radius, scene.field())),
       tree_(boxes_of(lights_), scene.field().mean_cosine()) {
     report_.lights = lights_.size();

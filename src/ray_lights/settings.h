@@ -17,9 +17,10 @@ enum class RaySampling {
 };
 
 struct RayLightSettings {
-    int paths = 16384;   // particles that are followed
-    int count = 131072;  // mean number of pieces of rays that are kept
-    int samples = 4;     // lights evaluated per camera ray and per point of a surface
+    int paths = 16384;                 // particles that are followed
+    int count = 131072;                // mean number of pieces of rays that are kept
+    bool roulette_visibility = false;  // what surfaces hide from the camera's rays is kept less often
+    int samples = 4;                   // lights evaluated per camera ray and per point of a surface
     RayLength length = RayLength::Short;
     RaySampling sampling = RaySampling::ClosedForm;
     std::uint32_t seed = 0;

@@ -17,11 +17,19 @@ namespace brisance {
 namespace {
 
 // What virtual lights cannot do is said, not left out in silence.
-void check_surroundings(const Shot& shot) {
+void check_surroundings(const Shot& shot, const Plan& plan) {
     if (shot.scattering.bounces > 1)
         throw Error(ExitCode::Usage,
                     "scattering.bounces: with a scene it may be 0, 1 or \"all\", as virtual lights hold light of all "
                     "orders; other numbers need method path");
+    if (shot.virtual_lights.passes > 1 && plan.scattering_method)
+        throw Error(ExitCode::Usage,
+                    "virtual_lights.passes above 1 need scattering.method=lighting_grid: other methods "
+                    "have passes of their own");
+    if (shot.virtual_lights.passes > 1 && plan.unified_sampling)
+        throw Error(ExitCode::Usage,
+                    "virtual_lights.passes above 1 need unified_lights.sampling=none: its tree holds "
+                    "the lights of one pass");
 }
 
 // What keeps orders of scattering from having layers; empty: nothing does.
@@ -78,11 +86,12 @@ void check_memory_to_light(const DrawInput& input) {
 
 // The picture of a frame, or of a stretch of its shutter, and the lights that it is made with.
 Drawn draw_lit(const DrawInput& input, const LitStretch* stretch, Statistics& statistics, Progress& progress) {
-    const ManyLights lights(input, statistics, progress);
+    ManyLights lights(input, statistics, progress);
     progress.stage("camera");
     const Stopwatch watch;
     FramePicture picture(input, lights, stretch, progress);
-    Drawn out{picture.draw(statistics), std::nullopt, picture.samples_per_pixel(), picture.bound_costs()};
+    const auto place_again = [&](int pass) { lights.place_again(input, pass, statistics, progress); };
+    Drawn out{picture.draw(statistics, place_again), std::nullopt, picture.samples_per_pixel(), picture.bound_costs()};
     add_layers(out.image, input, lights, picture, progress);
     statistics.stages.push_back({"camera",
                                  watch.seconds() - picture.seconds_on_estimators(),
@@ -156,7 +165,7 @@ Drawn draw_mixed(const DrawInput& input, Statistics& statistics, Progress& progr
 
 Drawn draw_by_many_lights(const DrawInput& input, Statistics& statistics, Progress& progress) {
     if (input.surroundings)
-        check_surroundings(input.shot);
+        check_surroundings(input.shot, input.plan);
     if (input.plan.single || input.plan.multiple)
         check_memory_to_light(input);
     Drawn out = (input.plan.mixed() ? draw_mixed : draw_one)(input, statistics, progress);

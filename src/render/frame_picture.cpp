@@ -1,11 +1,14 @@
 #include "render/frame_picture.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "camera/pixel_samples.h"
 #include "camera_rays/moment_mean.h"
 #include "core/cpu_clock.h"
+#include "core/stopwatch.h"
 #include "render/bound_layers.h"
 #include "scattering_methods/scattering_pass.h"
 #include "surface_lighting/surface_shader.h"
@@ -126,14 +129,30 @@ FramePicture::FramePicture(const DrawInput& input, const ManyLights& lights, con
 
 double FramePicture::samples_per_pixel() const {
     const ScatteringMethod* const method = input_.plan.scattering_method;
-    return double(rays_of_pixel()) * (method ? method->passes(input_.shot.scattering_methods) : 1) *
+    return double(rays_of_pixel()) * (method ? method->passes(input_.shot.scattering_methods) : light_passes()) *
            double(stretch_ ? stretch_->shutter.moments().size() : 1);
 }
 
-Image FramePicture::draw(Statistics& statistics) {
+int FramePicture::light_passes() const {
+    return lights_.virtual_lights() && input_.plan.needs(Cell::SS) ? input_.shot.virtual_lights.passes : 1;
+}
+
+Image FramePicture::mean_of_light_passes(const std::function<void(int pass)>& place_again) {
+    Image mean = pass(nullptr, 0);
+    for (int k = 1; k < light_passes(); ++k) {
+        const Stopwatch watch;
+        place_again(k);
+        seconds_on_estimators_ += watch.seconds();
+        progress_.stage(fmt::format("camera, pass {} of {}", k + 1, light_passes()));
+        add_to_mean(mean, pass(nullptr, k), k + 1);
+    }
+    return mean;
+}
+
+Image FramePicture::draw(Statistics& statistics, const std::function<void(int pass)>& place_again) {
     const ScatteringMethod* const method = input_.plan.scattering_method;
     if (!method)
-        return pass(nullptr, 0);
+        return mean_of_light_passes(place_again);
     return mean_of_passes(
         *method, input_.shot.scattering_methods, input_.shot.scattering.bounces, *lights_.direct(), input_.camera,
         [&](const InScattering& estimator, int number) { return pass(&estimator, number); }, seconds_on_estimators_,

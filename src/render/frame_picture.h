@@ -1,6 +1,7 @@
 // The picture of a frame from its lights: once, or pass by pass, at one moment or at several.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -25,7 +26,8 @@ public:
     // `stretch`: null where nothing moves. Keeps references.
     FramePicture(const DrawInput& input, const ManyLights& lights, const LitStretch* stretch, Progress& progress);
 
-    Image draw(Statistics& statistics);
+    // `place_again`: makes `lights` those of another pass of virtual lights, before each but the first.
+    Image draw(Statistics& statistics, const std::function<void(int pass)>& place_again);
     // The layers bounce1, bounce2, ... of one order of scattering each. `image`: as drawn.
     void add_order_layers(Image& image);
 
@@ -40,6 +42,8 @@ private:
     Image mean_of_moments(const Draw& draw);
     int rays_of_pixel() const { return settings_.samples_per_axis * settings_.samples_per_axis; }  // at one moment
     Image pass(const InScattering* estimator, int number);
+    int light_passes() const;
+    Image mean_of_light_passes(const std::function<void(int pass)>& place_again);
     Image picture(const InScattering* estimator, int number, const MomentLights& lights, const Camera& camera,
                   const Surroundings* surroundings);
     std::optional<LightReuse> light_reuse(const Camera& camera, SharedBounce* shared, BoundAccount* bound) const;

@@ -1,5 +1,7 @@
 #include "render/many_lights.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "base_lighting/panes.h"
@@ -10,21 +12,22 @@ namespace brisance {
 
 namespace {
 
-std::unique_ptr<VirtualLights> place_virtual_lights(const DrawInput& input, const DirectLight& scene,
+std::unique_ptr<VirtualLights> place_virtual_lights(const DrawInput& input, const DirectLight& scene, int pass,
                                                     Statistics& statistics, Progress& progress) {
-    progress.stage("virtual lights");
+    const std::string stage = pass == 0 ? "virtual lights" : fmt::format("virtual lights, pass {}", pass + 1);
+    progress.stage(stage);
     const Stopwatch watch;
     const Camera& camera = input.camera;
     const CameraSettings& c = camera.settings();
     const double per_axis = c.samples_per_axis > 0 ? c.samples_per_axis : kSurfaceSamples;
     const PixelCamera pixels{c.width, c.height, [&](double x, double y) { return camera.ray(x, y); },
                              double(c.width) * c.height * per_axis * per_axis};
-    VirtualLightSettings settings = input.shot.virtual_lights;
+    VirtualLightSettings settings = settings_of_pass(input.shot.virtual_lights, pass);
     settings.picture_error = input.shot.lighting.error;
     auto lights = std::make_unique<VirtualLights>(scene, pixels, settings, input.light_positions);
     const VirtualLightReport& r = lights->report();
     statistics.stages.push_back(
-        {"virtual lights",
+        {stage,
          watch.seconds(),
          r.bytes + r.photon_bytes,
          {{"candidates", r.candidates},
@@ -134,7 +137,7 @@ ManyLights::ManyLights(const DrawInput& input, Statistics& statistics, Progress&
                        traces ? Guiding::Allowed : Guiding::Off);
     }
     if (shot.virtual_lights.count > 0 && (plan.needs(Cell::SS) || plan.needs(Cell::MS)))
-        virtual_lights_ = place_virtual_lights(input, paths_->direct(), statistics, progress);
+        virtual_lights_ = place_virtual_lights(input, paths_->direct(), 0, statistics, progress);
     if ((plan.scattering_method || plan.emitters_by_rays > 0.0f || plan.lights_on_rays()) && !paths_)
         own_direct_.emplace(input.medium, shot.tracing, input.surroundings);
     if (plan.fire_sampling)
@@ -146,6 +149,13 @@ ManyLights::ManyLights(const DrawInput& input, Statistics& statistics, Progress&
         make_unified(input, statistics, progress);
     if (wants_single_scattering_apart(input))
         light_medium_once(input, statistics, progress);
+}
+
+void ManyLights::place_again(const DrawInput& input, int pass, Statistics& statistics, Progress& progress) {
+    std::unique_ptr<VirtualLights> placed = place_virtual_lights(input, paths_->direct(), pass, statistics, progress);
+    if (!first_virtual_lights_)
+        first_virtual_lights_ = std::move(virtual_lights_);
+    virtual_lights_ = std::move(placed);
 }
 
 void ManyLights::make_fire_lights(const DrawInput& input, Statistics& statistics, Progress& progress) {
@@ -208,10 +218,11 @@ bool ManyLights::grid_lights_surfaces_by_fire(const DrawInput& input) const {
 
 void ManyLights::light_medium(const DrawInput& input, Statistics& statistics, Progress& progress) {
     Plan plan = input.plan.scattering_method ? without_scattering_method(input.plan) : input.plan;
-    // Nodes that nothing but MV and MA ask for need no light. MM begins with it, and mirrors show it.
+    // Nodes that only cells on rays ask for need no light. MM begins with it, and mirrors show it.
     if (!plan.multiple && !input.plan.needs(Cell::SM)) {
         plan.single = plan.single && !plan.on_rays.contains(Cell::MV);
-        plan.needed.set(Cell::MA, plan.needs(Cell::MA) && !plan.on_rays.contains(Cell::MA));
+        for (const Cell cell : {Cell::MA, Cell::MS})
+            plan.needed.set(cell, plan.needs(cell) && !plan.on_rays.contains(cell));
     }
     plan.needed.set(Cell::SV, grid_lights_surfaces_by_fire(input));
     const int bounces =

@@ -60,6 +60,9 @@ public:
     ManyLights(const ManyLights&) = delete;
     ManyLights& operator=(const ManyLights&) = delete;
 
+    // Other virtual lights for surfaces: those of a pass. The smoke keeps the light of the first.
+    void place_again(const DrawInput& input, int pass, Statistics& statistics, Progress& progress);
+
     const PathTracer* paths() const { return paths_ ? &*paths_ : nullptr; }  // null: no surfaces
     // What paths and estimators along rays look up; null where nothing does.
     const DirectLight* direct() const { return paths_ ? &paths_->direct() : own_direct_ ? &*own_direct_ : nullptr; }
@@ -92,7 +95,7 @@ private:
     std::optional<PathTracer> paths_;
     std::optional<DirectLight> own_direct_;
     std::optional<SampledFire> fire_;
-    std::unique_ptr<VirtualLights> virtual_lights_;
+    std::unique_ptr<VirtualLights> virtual_lights_, first_virtual_lights_;  // the first, where there are others now
     std::optional<PointsOfSides> reflecting_;
     std::optional<SpecularPhotons> cast_;
     std::unique_ptr<LitMedium> medium_, once_;

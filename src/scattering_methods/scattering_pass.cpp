@@ -48,15 +48,6 @@ void add(StageCost& to, const MadeInScattering& pass, double seconds) {
     }
 }
 
-// Of `count` pictures, one after another.
-void add_to_mean(Image& mean, const Image& next, int count) {
-    for (std::size_t l = 0; l < mean.layers.size(); ++l)
-        for (std::size_t i = 0; i < mean.layers[l].pixels.size(); ++i) {
-            float& pixel = mean.layers[l].pixels[i];
-            pixel += (next.layers[l].pixels[i] - pixel) / float(count);
-        }
-}
-
 }  // namespace
 
 Image mean_of_passes(const ScatteringMethod& method, const ScatteringMethodSettings& settings, int bounces,

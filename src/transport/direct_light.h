@@ -23,6 +23,10 @@ public:
     const TrackingField& field() const { return field_; }
     const FireDirections& fire() const { return fire_; }
     const LineTracker& lines() const { return lines_; }
+    // Of the surfaces; null: there are none.
+    const Intersector* occluders() const {
+        return surroundings_ && surroundings_->has_surfaces() ? &surroundings_->intersector() : nullptr;
+    }
     bool has_emitters() const { return surroundings_ && !surroundings_->emitters().empty(); }
     // Whether there are surfaces and lights.
     bool lights_surfaces() const {

@@ -1,11 +1,15 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/rng.h"
+#include "light_selection/progressive_radius.h"
 #include "virtual_lights/choices.h"
 
 namespace brisance {
 
 namespace {
+
+constexpr Stream kPasses = stream_of("virtual_lights/passes");
 
 [[noreturn]] void refuse(const std::string& what) {
     throw Error(ExitCode::Usage, "virtual lights: " + what);
@@ -23,9 +27,12 @@ void require_in(const SettingRange<T>& range, T value, const char* name) {
 void check(const VirtualLightSettings& s) {
     using R = VirtualLightRanges;
     require_in(R::count, s.count, "count");
+    require_in(R::passes, s.passes, "passes");
     require_in(R::window, s.window, "window");
     require_in(R::point_bound, s.point_bound, "point_bound");
+    require_in(R::contribution_bound, s.contribution_bound, "contribution_bound");
     require_in(R::sphere_neighbours, s.sphere_neighbours, "sphere_neighbours");
+    require_in(R::sphere_shrinking, s.sphere_shrinking, "sphere_shrinking");
     require_in(R::sphere_samples, s.sphere_samples, "sphere_samples");
     require_in(R::candidates_per_pixel, s.candidates_per_pixel, "candidates_per_pixel");
     require_in(R::neighbours, s.neighbours, "neighbours");
@@ -46,10 +53,21 @@ void check(const VirtualLightSettings& s) {
     require_in(R::sharing_radius, s.sharing_radius, "sharing_radius");
     require_in(R::n_min, s.n_min, "n_min");
     require_in(R::n_max, s.n_max, "n_max");
+    if (s.passes > 1 && s.window > 0)
+        refuse("passes above 1 have positions of their own, and a window shares them among frames; set one of the two");
     if (!(s.n_max >= s.n_min))
         refuse("n_max must not be below n_min");
     if (const std::string reason = why_not_together(s); !reason.empty())
         refuse(reason);
+}
+
+VirtualLightSettings settings_of_pass(VirtualLightSettings settings, int pass) {
+    if (pass == 0)
+        return settings;
+    settings.sphere_scale = radius_shrunk(pass, settings.sphere_shrinking);
+    settings.seed = static_cast<std::uint32_t>(
+        Rng(kPasses, settings.seed, static_cast<std::uint64_t>(pass)).next_double() * 0x1p31);
+    return settings;
 }
 
 }  // namespace brisance

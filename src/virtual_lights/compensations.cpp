@@ -34,6 +34,17 @@ std::string compensation_complaint(const VirtualLightSettings& s) {
         "compensation " + compensations_that([](const CompensationChoice& other) { return !other.needs_bound; }));
 }
 
+// What it finds is what a bound on geometry takes: where a path ends no one knows which lights were cut to what.
+std::string contribution_complaint(const VirtualLightSettings& s) {
+    const CompensationChoice& choice = choice_of(s.compensation);
+    if (s.contribution_bound == kUnbounded || !choice.needs_bound)
+        return {};
+    return "compensation " + choice.name +
+           " needs contribution_bound=none: it knows what the bound on geometry takes; contribution_bound goes with "
+           "compensation " +
+           compensations_that([](const CompensationChoice& other) { return !other.needs_bound; });
+}
+
 std::string pixels_complaint(const VirtualLightSettings& s) {
     const CompensationChoice& choice = choice_of(s.compensation);
     if (s.resampling_neighbours == 0 || !choice.reads_pixels)

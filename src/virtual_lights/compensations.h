@@ -16,6 +16,9 @@ std::string compensations_that(const std::function<bool(const CompensationChoice
 // Why the compensation does not go with the kind of light, with what would do; empty where it does.
 std::string compensation_complaint(const VirtualLightSettings& settings);
 
+// Why the compensation does not go with a bound on contributions, with what would do; empty where it does.
+std::string contribution_complaint(const VirtualLightSettings& settings);
+
 // Why the compensation does not go with reuse among pixels, with what would do; empty where it does.
 std::string pixels_complaint(const VirtualLightSettings& settings);
 

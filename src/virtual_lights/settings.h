@@ -22,6 +22,9 @@ enum class BoundedTerm {
     BothCosines   // the whole geometry term
 };
 
+// No light is above it.
+inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
 // What makes up for the light that the bound takes away.
 enum class BoundCompensation : std::uint8_t {
     None,
@@ -36,15 +39,19 @@ inline constexpr int kMostAutomaticPhotons = 1000000;
 // Placement, flux, kind and sampling are names; choices.h lists them and says which go together.
 struct VirtualLightSettings {
     int count = 12000;  // virtual lights; 0: none, all surface light is found by paths
+    int passes = 1;     // pictures that are averaged, each with lights of its own
     int window = 0;     // of a sequence: frames from one set of positions to the next; 0: each frame has its own
     std::string placement = "blue_noise";
     std::string flux = "gathered";
     std::string kind = "patch";
     double point_bound = 100.0;  // kind point: upper bound on cosine over squared distance [1/m^2]
     BoundedTerm point_bound_of = BoundedTerm::LightCosine;
+    double contribution_bound = kUnbounded;  // kind point: upper bound on what a light adds to a vertex, luminance
     BoundCompensation compensation = BoundCompensation::None;  // kind point: of what the bound takes away
-    int sphere_neighbours = 10;  // kind sphere: its radius is the distance to the neighbour of this number
-    int sphere_samples = 4;      // kind sphere: directions sampled for each light
+    int sphere_neighbours = 10;     // kind sphere: its radius is the distance to the neighbour of this number
+    double sphere_shrinking = 0.7;  // kind sphere: alpha of radius_shrunk() over passes; 1: the radius stays
+    double sphere_scale = 1.0;      // ... and by how much the radius has shrunk, no key of its own
+    int sphere_samples = 4;         // kind sphere: directions sampled for each light
     SphereSampling sphere_sampling = SphereSampling::Combined;
     double candidates_per_pixel = 0.25;  // camera paths; never fewer than eight per light
     double importance_floor = 0.05;      // placements rejection, metropolis: share of lights that no one needs to see
@@ -73,6 +80,10 @@ struct VirtualLightSettings {
     std::uint32_t seed = 0;       // other seeds draw other random numbers
 };
 
+// Those of a pass, counted from 0: with a seed of its own, and spheres that shrink from pass to pass, so that the mean
+// of many passes has neither their blur nor their noise. It is consistent where the kind loses nothing to a bound.
+VirtualLightSettings settings_of_pass(VirtualLightSettings settings, int pass);
+
 // The values that a setting may have, both ends included unless the flag says otherwise.
 template <class T>
 struct SettingRange {
@@ -86,9 +97,12 @@ struct SettingRange {
 struct VirtualLightRanges {
     static constexpr double kUnlimited = std::numeric_limits<double>::infinity();
     static constexpr SettingRange<int> count{0, 100000000};
+    static constexpr SettingRange<int> passes{1, 65536};
     static constexpr SettingRange<int> window{0, 100000};
     static constexpr SettingRange<double> point_bound{0.0, kUnlimited, true};
+    static constexpr SettingRange<double> contribution_bound{0.0, kUnlimited, true};
     static constexpr SettingRange<int> sphere_neighbours{1, 100000};
+    static constexpr SettingRange<double> sphere_shrinking{0.0, 1.0, true};
     static constexpr SettingRange<int> sphere_samples{1, 65536};
     static constexpr SettingRange<double> candidates_per_pixel{0.0, 1000.0};
     static constexpr SettingRange<int> neighbours{1, 100000};

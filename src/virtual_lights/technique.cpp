@@ -227,6 +227,12 @@ std::string extension_complaint(const Chosen& c, bool path_extension) {
            " goes with path_extension=false";
 }
 
+// Any other kind would ignore it.
+std::string contribution_kind_complaint(const VirtualLightSettings& s) {
+    return s.contribution_bound == kUnbounded ? std::string()
+                                              : why_no_bound(s, "contribution_bound", "contribution_bound=none");
+}
+
 std::string reuse_complaint(const Chosen& c, int neighbours) {
     if (neighbours == 0 || kResamples[c.gatherer])
         return {};
@@ -315,8 +321,8 @@ std::string why_not_together(const VirtualLightSettings& settings) {
     std::string out;
     for (const std::string& complaint :
          {flux_complaint(c), kind_complaint(c), gatherer_complaint(c), extension_complaint(c, settings.path_extension),
-          compensation_complaint(settings), pixels_complaint(settings),
-          reuse_complaint(c, settings.resampling_neighbours)})
+          compensation_complaint(settings), contribution_complaint(settings), contribution_kind_complaint(settings),
+          pixels_complaint(settings), reuse_complaint(c, settings.resampling_neighbours)})
         if (!complaint.empty())
             out += (out.empty() ? "" : "; and ") + complaint;
     return out;

@@ -1,5 +1,6 @@
 #include "volumetric_vpls/method.h"
 
+#include "light_selection/thin_lights.h"
 #include "volumetric_vpls/volumetric_vpls.h"
 
 namespace brisance {
@@ -11,6 +12,9 @@ std::vector<SettingKey<VolumetricVplSettings>> VolumetricVplsMethod::keys() {
                     &S::paths),
         setting_key("count", "collisions that are kept, on average: the important ones", whole(1, 100000000),
                     &S::count),
+        setting_key("roulette_visibility",
+                    "among those that compete for `count`, ones that surfaces hide from rays of the camera count less",
+                    flag(), &S::roulette_visibility),
         setting_key("samples", "point lights sampled for every ray of the camera, and for every surface it meets",
                     whole(1, 65536), &S::samples),
         setting_key("bound_per_metre2",
@@ -43,6 +47,7 @@ MadeInScattering VolumetricVplsMethod::make(const InScatteringRequest& request, 
                    {"flights", r.flights},
                    {"collisions", r.collisions},
                    {"lights", r.lights},
+                   {"acceptance", acceptance(r.lights, r.collisions)},
                    {"not_finite", r.not_finite},
                    {"bound_per_metre2", lights->bound().per_metre2()},
                    {"bound_radius_metres", lights->bound().radius()}};

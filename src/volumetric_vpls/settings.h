@@ -14,10 +14,11 @@ enum class BiasCompensation {
 constexpr double kAutomaticBound = -1.0;
 
 struct VolumetricVplSettings {
-    int paths = 65536;               // particles that are followed
-    int count = 131072;              // mean number of collisions kept as lights
-    int samples = 4;                 // lights evaluated per camera ray and per point of a surface
-    double bound = kAutomaticBound;  // of 1 / distance^2 [1/m^2]; 0: unbounded
+    int paths = 65536;                 // particles that are followed
+    int count = 131072;                // mean number of collisions kept as lights
+    bool roulette_visibility = false;  // what surfaces hide from the camera's rays is kept less often
+    int samples = 4;                   // lights evaluated per camera ray and per point of a surface
+    double bound = kAutomaticBound;    // of 1 / distance^2 [1/m^2]; 0: unbounded
     BiasCompensation compensation = BiasCompensation::Exact;
     int compensation_samples = 1;  // paths or local estimates per camera ray and per point of a surface
     std::uint32_t seed = 0;

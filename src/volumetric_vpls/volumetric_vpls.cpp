@@ -10,8 +10,9 @@ VolumetricVpls::VolumetricVpls(const DirectLight& scene, const VolumetricVplSett
       samples_(settings.samples),
       sum_(scene,
            thin_lights(trace_vpls(scene, settings, bounces, report_), receivers,
-                       static_cast<std::size_t>(settings.count), scene.field().mean_cosine(),
-                       Stream::VolumetricVplRoulette, settings.seed),
+                       {static_cast<std::size_t>(settings.count), scene.field().mean_cosine(),
+                        settings.roulette_visibility ? scene.occluders() : nullptr, Stream::VolumetricVplRoulette,
+                        settings.seed}),
            bound_of(settings, scene.field()), bounces),
       compensation_(scene, sum_, settings, bounces) {
     report_.lights = lights().size();

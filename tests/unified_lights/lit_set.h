@@ -55,6 +55,18 @@ inline std::vector<LightSettings> lamp_sun_and_sky() {
     return {lamp, sun, sky};
 }
 
+// Of what `draw` gives, which is called with the numbers from 0 to times - 1: over the square of its mean.
+template <class Draw>
+double relative_variance(int times, const Draw& draw) {
+    double sum = 0.0, square = 0.0;
+    for (int i = 0; i < times; ++i) {
+        const double x = draw(std::uint64_t(i));
+        sum += x / times;
+        square += x * x / times;
+    }
+    return square / (sum * sum) - 1.0;
+}
+
 // The lights of instant radiosity, the rays of a camera that looks down on the floor.
 struct LitSet {
     explicit LitSet(const Recipe& recipe, Scene set, std::vector<LightSettings> lamps = {}, int virtual_count = 40)

@@ -101,19 +101,15 @@ TEST(UnifiedSmoke, SharesSamplesOutByWhatShines) {
     while (smoke.seen.empty() || smoke.seen.opacity() < 0.3)
         smoke = SeenSmoke(set.stage.scene(), set.stage.ray(rays));
     const auto variance = [&](const std::vector<const UnifiedLights*>& parts) {
-        constexpr int kTimes = 4000;
-        double sum = 0.0, square = 0.0;
-        for (int i = 0; i < kTimes; ++i) {
+        return relative_variance(4000, [&](std::uint64_t i) {
             double light = 0.0;
             std::uint32_t number = 0;
             for (const UnifiedLights* part : parts) {
-                Rng rng = part->ray_rng(number++, std::uint64_t(i));
+                Rng rng = part->ray_rng(number++, i);
                 light += luminance(part->along(smoke.seen, smoke.ray, rng));
             }
-            sum += light / kTimes;
-            square += light * light / kTimes;
-        }
-        return square / (sum * sum) - 1.0;
+            return light;
+        });
     };
     const double together = variance({&all}), apart = variance({&surfaces, &fire, &emitters});
     std::printf("relative variance together %.3g, apart %.3g\n", together, apart);

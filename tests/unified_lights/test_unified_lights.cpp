@@ -198,19 +198,15 @@ TEST(UnifiedLights, ShareSamplesOutByWhatShines) {
             double out = 0.0;
             for (const double x : {0.2, 0.5, 0.8}) {
                 const PathVertex v = set.vertex({x, 0.4, 0.0}), b = set.base({x, 0.4, 0.0});
-                constexpr int kTimes = 3000;
-                double sum = 0.0, square = 0.0;
-                for (int i = 0; i < kTimes; ++i) {
+                out += relative_variance(3000, [&](std::uint64_t i) {
                     double light = 0.0;
                     std::uint32_t number = 0;
                     for (const UnifiedLights* part : parts) {
-                        Rng rng = part->rng(number++, std::uint64_t(i));
+                        Rng rng = part->rng(number++, i);
                         light += luminance(part->at({v, &b}, rng));
                     }
-                    sum += light / kTimes;
-                    square += light * light / kTimes;
-                }
-                out += square / (sum * sum) - 1.0;
+                    return light;
+                });
             }
             return out;
         };

@@ -129,6 +129,41 @@ TEST(PlainPoints, LoseLessByABoundOnBothCosines) {
     EXPECT_LT(both.value, truth.value - kSigmas * std::hypot(both.error, truth.error));
 }
 
+// A bound on what a light adds takes more the smaller it is, and nothing where no light adds as much. Narrow lobes of a
+// glossy floor, whose geometry is harmless, lose to it as well.
+TEST(PlainPoints, LoseWhatABoundOnContributionsTakes) {
+    const Room room(glossy_room());
+    VirtualLightSettings settings = of_photons("point");
+    settings.count = 60;
+    settings.sampling = "all";
+    settings.point_bound = 1e9;
+    // Of the same rays and lights at every bound.
+    const auto mean = [&] {
+        const VirtualLights lights = room.lights(settings);
+        constexpr int kSamples = 4096;
+        double sum = 0.0;
+        for (int i = 0; i < kSamples; ++i) {
+            Rng rng(Stream::Path, 1, std::uint64_t(i));
+            const double x = rng.next_double(), y = rng.next_double();
+            sum += luminance(room.by_lights(lights, x, y, rng)) / kSamples;
+        }
+        return sum;
+    };
+    const double unbounded = mean();
+    settings.contribution_bound = 1e9;
+    EXPECT_EQ(mean(), unbounded);
+    double before = unbounded;
+    for (const double share : {1.0, 0.1, 0.01}) {  // of what all lights add together
+        settings.contribution_bound = share * unbounded;
+        const double bounded = mean();
+        EXPECT_LT(bounded, before) << share;
+        EXPECT_LT(bounded, 60.0 * settings.contribution_bound) << share;
+        EXPECT_GT(bounded, 0.0) << share;
+        before = bounded;
+    }
+    EXPECT_LT(before, 0.6 * unbounded);
+}
+
 // T = T_b + T_r: what the bound takes away paths find again, whatever the bound is on.
 TEST(PlainPoints, AreUnbiasedWithCompensation) {
     for (const SceneSettings& scene : {coloured_room(), glossy_room()}) {
@@ -158,6 +193,28 @@ TEST(DiffusePoints, LoseWhatIsNotLambert) {
 TEST(PlainSpheres, KeepTheirEnergy) {
     const Room room(two_plates());
     expect_same(over_sets_of_lights(room, of_photons("sphere")), by_paths(room), 0.02, "spheres");
+}
+
+// From pass to pass spheres shrink, by the ratio that passes of any blur have, and lights lie elsewhere.
+TEST(PlainSpheres, ShrinkOverPasses) {
+    const Room room(coloured_room());
+    VirtualLightSettings settings = of_photons("sphere");
+    settings.passes = 3;
+    const auto lights_of = [&](int pass) { return room.lights(settings_of_pass(settings, pass)); };
+    const auto mean_radius = [](const VirtualLights& lights) {
+        double sum = 0.0;
+        for (const VirtualLight& light : lights.lights())
+            sum += light.radius / double(lights.lights().size());
+        return sum;
+    };
+    const VirtualLights first = lights_of(0), second = lights_of(1), third = lights_of(2);
+    EXPECT_NE(first.lights().front().position, second.lights().front().position);
+    EXPECT_NE(second.lights().front().position, third.lights().front().position);
+    // Other lights have other distances: by some percent.
+    EXPECT_NEAR(mean_radius(second) / mean_radius(first), std::sqrt(1.7 / 2.0), 0.05);
+    EXPECT_NEAR(mean_radius(third) / mean_radius(second), std::sqrt(2.7 / 3.0), 0.05);
+    settings.sphere_shrinking = 1.0;
+    EXPECT_NEAR(mean_radius(lights_of(2)) / mean_radius(first), 1.0, 0.05);
 }
 
 TEST(PlainLights, AreAboutAsManyAsAsked) {

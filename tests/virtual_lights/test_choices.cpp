@@ -160,22 +160,22 @@ TEST_P(Ranges, OfTheSchemaAreTheRenderers) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OfVirtualLights, Ranges,
-                         ::testing::Values("count", "window", "point_bound", "sphere_neighbours", "sphere_samples",
-                                           "candidates_per_pixel", "neighbours", "radius_factor", "profile_resolution",
-                                           "resampling_candidates", "n_min", "n_max", "importance_floor",
-                                           "light_samples", "resampling_rays", "lightcuts_error", "lightcuts_most",
-                                           "stochastic_cut_size", "sharing_radius", "resampling_neighbours",
-                                           "resampling_radius", "resampling_rounds"));
+                         ::testing::Values("count", "passes", "window", "sphere_shrinking", "point_bound",
+                                           "sphere_neighbours", "sphere_samples", "candidates_per_pixel", "neighbours",
+                                           "radius_factor", "profile_resolution", "resampling_candidates", "n_min",
+                                           "n_max", "importance_floor", "light_samples", "resampling_rays",
+                                           "lightcuts_error", "lightcuts_most", "stochastic_cut_size", "sharing_radius",
+                                           "resampling_neighbours", "resampling_radius", "resampling_rounds"));
 
 // Every key with numbers is in the list above, but for the seed, of which the renderer takes any, and for
-// photons, which may be a word.
+// photons and contribution_bound, which may be words.
 TEST(AllRanges, AreTested) {
     int numbers = 0;
     for (const Key& key : shot_keys())
         if (key.path.starts_with("virtual_lights.") && key.path != "virtual_lights.seed" &&
             (key.schema.value("type", "") == "integer" || key.schema.value("type", "") == "number"))
             ++numbers;
-    EXPECT_EQ(numbers, 22);
+    EXPECT_EQ(numbers, 24);
 }
 
 // What the check takes the renderer can build, where it does not take long.
@@ -236,6 +236,19 @@ TEST(Techniques, SayWhatDoesNotGoTogether) {
         rich, [](S& s) { s.compensation = BoundCompensation::Exact; },
         "compensation exact needs a kind of light with a bound: kind point, diffuse_point; kind sphere goes with "
         "compensation none");
+    refused(
+        rich, [](S& s) { s.contribution_bound = 2.0; },
+        "contribution_bound needs a kind of light with a bound: kind point, diffuse_point; kind sphere goes with "
+        "contribution_bound=none");
+    refused(
+        rich,
+        [](S& s) {
+            s.kind = "point";
+            s.contribution_bound = 2.0;
+            s.compensation = BoundCompensation::Exact;
+        },
+        "compensation exact needs contribution_bound=none: it knows what the bound on geometry takes; "
+        "contribution_bound goes with compensation none");
     refused(
         rich, [](S& s) { s.compensation = BoundCompensation::ScreenSpace; },
         "compensation screen_space needs a kind of light with a bound: kind point, diffuse_point; kind sphere goes "

@@ -72,12 +72,24 @@ void add_kind_keys(std::vector<Key>& keys) {
         choice<BoundedTerm>({{"light_cosine", BoundedTerm::LightCosine}, {"both_cosines", BoundedTerm::BothCosines}}),
         [](Shot & s) -> auto& { return s.virtual_lights.point_bound_of; }));
     keys.push_back(make_key(
+        "virtual_lights.contribution_bound",
+        "for kind point: upper bound on the luminance that one light adds where it shines, before it is weighted by "
+        "how it was chosen; the rest is lost [W/(m^2 sr)]; none: no bound",
+        or_word(real_in(Ranges::contribution_bound), "none", kUnbounded),
+        [](Shot & s) -> auto& { return s.virtual_lights.contribution_bound; }));
+    keys.push_back(make_key(
         "virtual_lights.compensation", help_of_compensation(), compensation(),
         [](Shot & s) -> auto& { return s.virtual_lights.compensation; }));
     keys.push_back(make_key(
         "virtual_lights.sphere_neighbours",
         "for kind sphere: its radius is the distance to the neighbour of this number",
         whole_in(Ranges::sphere_neighbours), [](Shot & s) -> auto& { return s.virtual_lights.sphere_neighbours; }));
+    keys.push_back(make_key(
+        "virtual_lights.sphere_shrinking",
+        "for kind sphere: alpha of radius^2 (i + alpha) / (i + 1) from pass to pass; small values lose the blur "
+        "sooner, "
+        "1: it stays",
+        real_in(Ranges::sphere_shrinking), [](Shot & s) -> auto& { return s.virtual_lights.sphere_shrinking; }));
     keys.push_back(make_key(
         "virtual_lights.sphere_samples", "for kind sphere: directions sampled for each light",
         whole_in(Ranges::sphere_samples), [](Shot & s) -> auto& { return s.virtual_lights.sphere_samples; }));
@@ -207,6 +219,10 @@ void add_virtual_light_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "virtual_lights.count", "about how many; 0: none, all light from surfaces is found by paths",
         whole_in(Ranges::count), [](Shot & s) -> auto& { return s.virtual_lights.count; }));
+    keys.push_back(make_key(
+        "virtual_lights.passes",
+        "whole pictures that are averaged, each by virtual lights of its own; spheres shrink from one to the next",
+        whole_in(Ranges::passes), [](Shot & s) -> auto& { return s.virtual_lights.passes; }));
     keys.push_back(make_key(
         "virtual_lights.window",
         "in sequences: frames from one set of positions to the next, between which lights fade; 0: each frame has its "

@@ -40,11 +40,17 @@ struct PointKind {
 
         // The vertex's cosine belongs to its BSDF.
         Rgb radiance(std::size_t light, const PathVertex& vertex, const dvec3& direction) const {
-            return sent(light, vertex, direction).radiance;
+            const Sent whole = sent(light, vertex, direction);
+            if (!bounds_contributions() || whole.radiance == Rgb(0.0f))
+                return whole.radiance;
+            return whole.radiance * float(kept(whole.radiance * vertex.at(direction).value));
         }
 
         BoundedLight connect(const Connection& c, const PathVertex& vertex, float factor, Rng& rng) const {
-            return bounded_to(geometry(c.light, vertex, c.direction).kept,
+            double kept_in_all = geometry(c.light, vertex, c.direction).kept;
+            if (bounds_contributions())
+                kept_in_all *= kept(sent(c.light, vertex, c.direction).radiance * c.scattered.value);
+            return bounded_to(kept_in_all,
                               connect_by_shadow_ray(set_.scene(), vertex, set_.lights[c.light], c, factor, rng));
         }
 
@@ -54,15 +60,17 @@ struct PointKind {
 
         BoundedLight estimate(std::size_t index, double probability, const PathVertex& vertex, Rng& rng) const {
             const dvec3 direction = sample(index, vertex, rng);
-            const auto [reflected, kept] = sent(index, vertex, direction);
-            const Rgb scattered = reflected == Rgb(0.0f) ? Rgb(0.0f) : reflected * vertex.at(direction).value;
+            const auto [reflected, of_geometry] = sent(index, vertex, direction);
+            Rgb scattered = reflected == Rgb(0.0f) ? Rgb(0.0f) : reflected * vertex.at(direction).value;
             if (scattered == Rgb(0.0f))
                 return {};
             const ShadowRay shadow = shadow_ray(set_.scene(), vertex, set_.lights[index]);
             if (!shadow.clear)
                 return {};
+            const double of_all = kept(scattered);
+            scattered *= float(of_all);
             return bounded_to(
-                kept,
+                of_geometry * of_all,
                 scattered * float(set_.scene().lines().transmittance(shadow.ray, shadow.distance, rng) / probability));
         }
 
@@ -72,9 +80,12 @@ struct PointKind {
             double kept = 1.0;    // by the bound
         };
         struct Sent {
-            Rgb radiance{0.0f};
-            double kept = 1.0;
+            Rgb radiance{0.0f};  // with the bound on geometry alone
+            double kept = 1.0;   // by that
         };
+
+        bool bounds_contributions() const { return set_.settings().contribution_bound != kUnbounded; }
+        double kept(const Rgb& added) const { return kept_of_contribution(set_.settings(), added); }
 
         Geometry geometry(std::size_t index, const PathVertex& vertex, const dvec3& direction) const {
             const VirtualLight& light = set_.lights[index];

@@ -16,7 +16,7 @@ void widen_to_neighbours(LightSet& set) {
     const std::vector<double> distances = distances_to_nearest(positions, set.settings().sphere_neighbours);
     const double otherwise = kSingleRadius * ball_around(set.scene()).radius;
     for (std::size_t i = 0; i < set.lights.size(); ++i)
-        set.lights[i].radius = distances[i] > 0.0 ? distances[i] : otherwise;
+        set.lights[i].radius = set.settings().sphere_scale * (distances[i] > 0.0 ? distances[i] : otherwise);
 }
 
 SphereTechniques::SphereTechniques(SphereSampling sampling, int samples, bool lobed_light) {

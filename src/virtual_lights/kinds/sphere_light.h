@@ -38,7 +38,8 @@ private:
     std::optional<Bsdf> bsdf_;
 };
 
-// The radius of each light is its distance to the neighbour of number settings.sphere_neighbours.
+// The radius of each light is its distance to the neighbour of number settings.sphere_neighbours, times
+// settings.sphere_scale.
 void widen_to_neighbours(LightSet& set);
 
 struct SphereKind {

@@ -31,10 +31,12 @@ Rgb from_deposit(const DirectLight& scene, const VirtualLightSettings& settings,
     if (!(cosine > 0.0))
         return Rgb(0.0f);
     Connection c{0, direction, vertex.at(direction), deposit_intensity(light, -direction)};
-    if (c.scattered.value * c.radiance == Rgb(0.0f))
+    const Rgb unbounded = c.scattered.value * c.radiance;
+    if (unbounded == Rgb(0.0f))
         return Rgb(0.0f);
-    const double kept = kept_by_bound(settings, vertex.lit(), direction, cosine, square);
-    return connect_by_shadow_ray(scene, vertex, light, c, float(kept / square), rng);
+    const double kept = kept_by_bound(settings, vertex.lit(), direction, cosine, square) / square;
+    const double of_all = kept_of_contribution(settings, unbounded * float(kept));
+    return connect_by_shadow_ray(scene, vertex, light, c, float(kept * of_all), rng);
 }
 
 CameraReceivers::CameraReceivers(const PlacementInput& input) : scene_(input.scene), settings_(input.settings) {
