@@ -136,20 +136,30 @@ const Medium& LitLattice::finer() const {
     return finer_ ? *finer_ : input_.medium;
 }
 
+const CornersSeen* LitLattice::corners_seen(const Medium& to, int level) const {
+    if (!pyramid_.occluders())
+        return nullptr;
+    return &corners_seen_.try_emplace({&to, level}, to, level, *pyramid_.occluders()).first->second;
+}
+
 std::vector<Rgb> LitLattice::at_medium_nodes(const std::vector<Rgb>& radiance, const Gathered& gathered,
                                              LightOrigin origin) const {
     const BrickLattice& nodes = medium().lattice;
     if (origin == LightOrigin::Smoke)
-        return light_at_fine_nodes(nodes, radiance, level_, input_.medium.lattice);
+        return light_at_fine_nodes(nodes, radiance, level_, input_.medium.lattice, corners_seen(input_.medium, level_));
     const Medium& finer = this->finer();
     const bool toward_eye = !gathered.scattered.empty();
-    std::vector<Rgb> light = light_at_fine_nodes(nodes, radiance, 1, finer.lattice);
+    const CornersSeen* const seen = corners_seen(finer, 1);
+    std::vector<Rgb> light = light_at_fine_nodes(nodes, radiance, 1, finer.lattice, seen);
     const std::vector<Rgb> mean =
-        toward_eye ? light_at_fine_nodes(nodes, mean_radiance(gathered, needed_.size()), 1, finer.lattice) : light;
+        toward_eye ? light_at_fine_nodes(nodes, mean_radiance(gathered, needed_.size()), 1, finer.lattice, seen)
+                   : light;
     const LightBeforeDetail before{medium(), mean, origin == LightOrigin::Fire,
                                    toward_eye ? std::optional<vec3>(input_.eye) : std::nullopt};
     add_light_of_detail(finer, before, nodes_beside_extinction(finer), light);
-    return finer_ ? light_at_fine_nodes(finer.lattice, light, level_ - 1, input_.medium.lattice) : light;
+    return finer_ ? light_at_fine_nodes(finer.lattice, light, level_ - 1, input_.medium.lattice,
+                                        corners_seen(input_.medium, level_ - 1))
+                  : light;
 }
 
 std::vector<Rgb> LitLattice::source_function(const Gathered& g, LightOrigin origin) const {

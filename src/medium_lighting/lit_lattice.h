@@ -2,7 +2,9 @@
 // light, the quantities needed there, optical depths, thin media, and occluding surfaces.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "gathering/gather.h"
@@ -72,6 +74,10 @@ private:
     std::vector<Rgb> at_medium_nodes(const std::vector<Rgb>& radiance, const Gathered& gathered,
                                      LightOrigin origin) const;
 
+    // From nodes of `to`, the medium on a finer lattice, to those of this one or of one between, 2^level coarser; null:
+    // there are no surfaces between them.
+    const CornersSeen* corners_seen(const Medium& to, int level) const;
+
     const Medium& finer() const;  // the medium on the lattice twice as fine, where this one is coarser
 
     MediumLightingInput input_;
@@ -79,6 +85,7 @@ private:
     std::unique_ptr<Medium> coarse_;         // null: the input medium itself
     mutable std::unique_ptr<Medium> finer_;  // made by the first call of finer()
     std::unique_ptr<Occluders> surfaces_;
+    mutable std::map<std::pair<const Medium*, int>, CornersSeen> corners_seen_;  // made when asked for
     ExtinctionPyramid pyramid_;
     std::vector<std::uint8_t> needed_;
     PointDepths depths_;

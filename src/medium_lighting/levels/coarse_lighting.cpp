@@ -24,18 +24,25 @@ public:
         copy_box(lattice, values, channels, low_, ivec3(wide_), box_);
     }
 
-    void at(const ivec3& fine, float* out) const {
+    // `seen`: the corners that count (corners_seen.h).
+    void at(const ivec3& fine, std::uint8_t seen, float* out) const {
         const ivec3 base = fine >> level_, cell = base - low_;
         const vec3 f = vec3(fine - (base << level_)) / float(1 << level_);
         const int plane = wide_ * wide_ * wide_;
         std::fill_n(out, channels, 0.0f);
+        float all = 0.0f;
         for (int k = 0; k < 8; ++k) {
+            if (!(seen >> k & 1))
+                continue;
             const ivec3 d(k >> 2, k >> 1 & 1, k & 1);
             const vec3 w = glm::mix(1.0f - f, f, vec3(d));
             const int i = ((cell.x + d.x) * wide_ + cell.y + d.y) * wide_ + cell.z + d.z;
             for (int c = 0; c < channels; ++c)
                 out[c] += w.x * w.y * w.z * box_[c * plane + i];
+            all += w.x * w.y * w.z;
         }
+        for (int c = 0; c < channels && seen != CornersSeen::kAll; ++c)
+            out[c] /= all;
     }
 
 private:
@@ -47,14 +54,16 @@ private:
 
 template <int channels>
 void at_fine_nodes(const BrickLattice& coarse, std::span<const float> values, int level, const BrickLattice& fine,
-                   float* out) {
+                   const CornersSeen* seen, float* out) {
     parallel_for(
         fine.brick_count(),
         [&](std::size_t b) {
             const ivec3 first = fine.first_node(b);
             const Parents<channels> parents(coarse, values, first, level);
+            const CornersSeen::OfBrick* const corners = seen ? seen->of_brick(b) : nullptr;
             for (int k = 0; k < BrickLattice::kNodes; ++k)
-                parents.at(first + BrickLattice::node_in_brick(k), out + (b * BrickLattice::kNodes + k) * channels);
+                parents.at(first + BrickLattice::node_in_brick(k), corners ? (*corners)[k] : CornersSeen::kAll,
+                           out + (b * BrickLattice::kNodes + k) * channels);
         },
         16);
 }
@@ -110,16 +119,16 @@ Medium medium_to_light(const Medium& fine, int level) {
 }
 
 std::vector<Rgb> light_at_fine_nodes(const BrickLattice& coarse, const std::vector<Rgb>& light, int level,
-                                     const BrickLattice& fine) {
+                                     const BrickLattice& fine, const CornersSeen* seen) {
     std::vector<Rgb> out(fine.node_count());
-    at_fine_nodes<3>(coarse, flat(light), level, fine, reinterpret_cast<float*>(out.data()));
+    at_fine_nodes<3>(coarse, flat(light), level, fine, seen, reinterpret_cast<float*>(out.data()));
     return out;
 }
 
 std::vector<float> scalars_at_fine_nodes(const BrickLattice& coarse, const std::vector<float>& values, int level,
                                          const BrickLattice& fine) {
     std::vector<float> out(fine.node_count());
-    at_fine_nodes<1>(coarse, values, level, fine, out.data());
+    at_fine_nodes<1>(coarse, values, level, fine, nullptr, out.data());
     return out;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "medium/medium.h"
+#include "medium_lighting/levels/corners_seen.h"
 
 namespace brisance {
 
@@ -19,9 +20,9 @@ std::vector<Rgb> emission_of(const Medium& medium);
 std::vector<float> emission_luminance(const Medium& medium);
 
 // Light at the nodes of a lattice from that at the nodes of one 2^level coarser, interpolated linearly, as the camera
-// interpolates: the field is that of a medium whose own nodes are as far apart.
+// interpolates: the field is that of a medium whose own nodes are as far apart. `seen`: which of them count; null: all.
 std::vector<Rgb> light_at_fine_nodes(const BrickLattice& coarse, const std::vector<Rgb>& light, int level,
-                                     const BrickLattice& fine);
+                                     const BrickLattice& fine, const CornersSeen* seen = nullptr);
 // The same for one value per node.
 std::vector<float> scalars_at_fine_nodes(const BrickLattice& coarse, const std::vector<float>& values, int level,
                                          const BrickLattice& fine);

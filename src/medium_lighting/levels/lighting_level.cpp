@@ -65,21 +65,22 @@ float albedo_met(const Medium& medium) {
 // Errors of light on ever coarser lattices. What they need of the medium is looked for when it is asked for, and once.
 class LatticeErrors {
 public:
-    explicit LatticeErrors(const Medium& medium)
-        : medium_(medium), depth_(medium.spacing * float(extinction_met(medium.extinction))) {}
+    // `surfaces`: null: none reaches into the medium.
+    LatticeErrors(const Medium& medium, const Occluders* surfaces)
+        : medium_(medium), surfaces_(surfaces), depth_(medium.spacing * float(extinction_met(medium.extinction))) {}
 
     // Relative, of the picture, on voxels 2^level wide; and with the light of their detail.
     float of_first_without_detail(int level) { return std::hypot(of_detail(level), of_small_fire(level)); }
     float of_first(int level) {
         const float left = medium_.emits() ? kLeftByDetail : 1.0f;  // not measured without fire
-        return std::hypot(left * of_detail(level), of_small_fire(level));
+        return std::hypot(left * of_detail(level), of_small_fire(level), of_walls(level));
     }
     float of_smoke(int level) {
         if (!albedo_)
             albedo_ = albedo_met(medium_);
         const float depth = std::exp2(float(level)) * depth_of_smoke();
         return std::hypot(kErrorOfSmoke * *albedo_ * *albedo_ * depth * depth,
-                          kErrorOfEmissionInSmoke * unresolved_emission(level));
+                          kErrorOfEmissionInSmoke * unresolved_emission(level), of_walls(level));
     }
 
     int widest_of_first() const { return medium_.emits() ? kWidest : kWidestWithoutFire; }
@@ -89,6 +90,16 @@ private:
     float of_detail(int level) {
         const float voxels = error_of_voxels(std::exp2(float(level)) * depth_) - error_of_voxels(depth_);
         return std::hypot(voxels, kErrorOfEmission * unresolved_emission(level));
+    }
+
+    // Light that smoke sends out on the other side of surfaces, of all of it.
+    float of_walls(int level) {
+        if (level == 0 || !surfaces_)
+            return 0.0f;
+        const auto [known, is_new] = beyond_.try_emplace(level);
+        if (is_new)
+            known->second = float(part_beyond_surfaces(medium_, level, *surfaces_));
+        return known->second;
     }
 
     // Light that is scattered back runs the same short stretch again and again. Depths count (1 - g) / (1 + g) times as
@@ -160,14 +171,16 @@ private:
     }
 
     const Medium& medium_;
+    const Occluders* surfaces_;
     float depth_;  // of a voxel
     std::optional<float> albedo_;
     std::optional<float> fire_radius_;  // in voxels
     std::vector<float> emission_;       // luminance per node
     std::map<int, float> unresolved_;
+    std::map<int, float> beyond_;  // surfaces
 };
 
-bool stays_on_its_lattice(const MediumLightingInput& input) {
+bool surfaces_reach_into(const MediumLightingInput& input) {
     return input.surroundings && input.surroundings->has_surfaces() &&
            surfaces_reach_into(input.surroundings->scene(), input.medium);
 }
@@ -260,6 +273,11 @@ LightingLevel level_of_smoke(LatticeErrors& errors, const LightingSettings& sett
             level == by_error.level ? by_error.error_of_coarser : errors.of_smoke(level + 1)};
 }
 
+LightingLevels levels_by(LatticeErrors errors, const LightingSettings& settings) {
+    const LightingLevel first = no_wider_than_smoke(errors, settings, level_of_first(errors, settings));
+    return {first, level_of_smoke(errors, settings, first), interpolation_of(errors, settings, first.level)};
+}
+
 }  // namespace
 
 float error_of_voxels(float depth) {
@@ -267,21 +285,18 @@ float error_of_voxels(float depth) {
 }
 
 LightingLevels lighting_levels(const MediumLightingInput& input) {
-    const LightingLevels levels = lighting_levels(input.medium, input.lighting);
-    const auto coarse = [](const LightingLevel& level) { return level.level > 0 || level.share_of_coarser > 0.0f; };
-    if ((coarse(levels.first) || coarse(levels.smoke)) && stays_on_its_lattice(input))
-        return {{}, {}, tolerated_interpolation(input.medium, input.lighting)};
-    return levels;
+    if (!surfaces_reach_into(input))
+        return lighting_levels(input.medium, input.lighting);
+    const SurfaceOccluders surfaces(input.surroundings->intersector());
+    return levels_by({input.medium, &surfaces}, input.lighting);
 }
 
 LightingLevels lighting_levels(const Medium& medium, const LightingSettings& settings) {
-    LatticeErrors errors(medium);
-    const LightingLevel first = no_wider_than_smoke(errors, settings, level_of_first(errors, settings));
-    return {first, level_of_smoke(errors, settings, first), interpolation_of(errors, settings, first.level)};
+    return levels_by({medium, nullptr}, settings);
 }
 
 float tolerated_interpolation(const Medium& medium, const LightingSettings& settings) {
-    LatticeErrors errors(medium);
+    LatticeErrors errors(medium, nullptr);
     return interpolation_of(errors, settings, 0);
 }
 

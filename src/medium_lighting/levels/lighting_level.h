@@ -32,8 +32,8 @@ struct LightingLevels {
 };
 
 // As LightingSettings say, or by the errors; where an error of interpolation is stated, the medium's own lattice.
-// Beside surfaces that reach into the medium light stays on the medium's own lattice: it would be interpolated through
-// walls.
+// Beside surfaces that reach into the medium light is interpolated between what is seen (corners_seen.h). What wider
+// voxels would send out on the other side of surfaces counts as an error.
 LightingLevels lighting_levels(const MediumLightingInput& input);
 // The same without surfaces.
 LightingLevels lighting_levels(const Medium& medium, const LightingSettings& settings);
