@@ -26,8 +26,8 @@ Rgb slot(const float* record, int at) {
 // A part of a voxel's segment: constant coefficients, `length` metres at `distance`.
 struct Part {
     SourceRecord record;
-    SimilarRecord similar;       // where the field has one
-    SurroundingsRecord outside;  // the same
+    SimilarRecord similar;
+    SurroundingsRecord outside;  // where the field has one
     float length, distance;
 };
 
@@ -47,21 +47,16 @@ void add_part(RaySum& sum, const SourceField& field, const Part& p) {
     const float* r = p.record.value;
     const Shown own = shown(r[SourceRecord::Extinction], p.length, sum.depth);
     const Rgb v = slot(r, SourceRecord::V) * (field.direct_emission() ? own.path : own.opacity);
-    Shown scattering = own;
-    if (field.has_similar()) {
-        const float* s = p.similar.value;
-        scattering = shown(s[SimilarRecord::Extinction], p.length, sum.similar_depth);
-        // Fire seen by one scattering that did not turn it: by all smoke before it.
-        const Rgb forward = slot(s, SimilarRecord::Forward);
-        const float tau = r[SourceRecord::Extinction] * p.length;
-        sum.cells.at(Cell::MV) += v * (sum.forward + forward * mean_depth(tau));
-        sum.forward += forward * tau;
-        // The similar medium shows more of the fire by what counts as not scattered there.
-        sum.cells.at(Cell::MV) +=
-            slot(s, SimilarRecord::V) * (field.direct_emission() ? scattering.path : scattering.opacity) - v;
-    } else {
-        sum.similar_depth = sum.depth;
-    }
+    const float* s = p.similar.value;
+    const Shown scattering = shown(s[SimilarRecord::Extinction], p.length, sum.similar_depth);
+    // Fire seen by one scattering that did not turn it: by all smoke before it.
+    const Rgb forward = slot(s, SimilarRecord::Forward);
+    const float tau = r[SourceRecord::Extinction] * p.length;
+    sum.cells.at(Cell::MV) += v * (sum.forward + forward * mean_depth(tau));
+    sum.forward += forward * tau;
+    // The similar medium shows more of the fire by what counts as not scattered there.
+    sum.cells.at(Cell::MV) +=
+        slot(s, SimilarRecord::V) * (field.direct_emission() ? scattering.path : scattering.opacity) - v;
     sum.cells.at(Cell::V) += v;
     sum.cells.at(Cell::MV) += slot(r, SourceRecord::MV) * scattering.opacity;
     sum.cells.at(Cell::MM) += slot(r, SourceRecord::MM) * scattering.opacity;
@@ -101,31 +96,32 @@ template <class Visit>
 void walk_parts(const SourceField& field, const Ray& ray, int parts, double end, const Visit& visit) {
     const auto visit_voxel = [&](const VoxelSegment& s) {
         return visit_parts(field, s, parts, [&](const vec3& p, float length, float distance) {
-            Part part{field.sample(s.brick, p), {}, {}, length, distance};
+            Part part{field.sample(s.brick, p), field.sample_similar(s.brick, p), {}, length, distance};
             if (field.has_outside())
                 part.outside = field.sample_outside(s.brick, p);
-            if (field.has_similar())
-                part.similar = field.sample_similar(s.brick, p);
             return visit(part);
         });
     };
     walk_voxels(field, ray, visit_voxel, end);
 }
 
-// What add_part() sums where the medium alone sends light, and it scatters in the medium itself: records as a whole.
-class OwnLight {
+// What add_part() sums where light scatters in the medium itself: records as a whole.
+class WholeRecords {
 public:
-    explicit OwnLight(bool direct_emission) : direct_(direct_emission) {}
+    explicit WholeRecords(const SourceField& field) : field_(field) {}
 
-    // Returns whether what lies behind can be seen.
-    bool add(const SourceRecord& r, float length, float distance) {
+    // Returns whether what lies behind can be seen. `outside`: null: the surroundings send no light.
+    bool add(const SourceRecord& r, const SurroundingsRecord* outside, float length, float distance) {
         const float extinction = r.value[SourceRecord::Extinction], tau = extinction * length, mean = phi1(tau);
         const float path = transmittance_ * length * mean, opacity = path * extinction;
         transmittance_ *= 1.0f - tau * mean;
         depth_ += tau;
         for (int i = 0; i < quads_of<SourceRecord>(); ++i)
             seen_[i] += opacity * quad(r, i);
-        if (direct_)
+        if (outside)
+            for (int i = 0; i < quads_of<SurroundingsRecord>(); ++i)
+                outside_[i] += opacity * quad(*outside, i);
+        if (field_.direct_emission())
             emission_ += slot(r.value, SourceRecord::V) * path;
         opacity_ += opacity;
         distance_ += opacity * distance;
@@ -134,12 +130,16 @@ public:
 
     RaySum sum() const {
         SourceRecord seen;
+        SurroundingsRecord outside;
         std::memcpy(seen.value, seen_, sizeof(seen_));
+        std::memcpy(outside.value, outside_, sizeof(outside_));
         RaySum out;
         out.depth = out.similar_depth = depth_;
-        out.cells.at(Cell::V) = direct_ ? emission_ : slot(seen.value, SourceRecord::V);
+        out.cells.at(Cell::V) = field_.direct_emission() ? emission_ : slot(seen.value, SourceRecord::V);
         out.cells.at(Cell::MV) = slot(seen.value, SourceRecord::MV);
         out.cells.at(Cell::MM) = slot(seen.value, SourceRecord::MM);
+        out.cells.at(Cell::MS) = slot(outside.value, SurroundingsRecord::MS);
+        out.cells.at(Cell::MA) = field_.emitters_share() * slot(outside.value, SurroundingsRecord::MA);
         out.albedo_sum = Rgb(seen.value[SourceRecord::Albedo]);
         out.distance_weight = opacity_;
         out.distance_sum = distance_;
@@ -147,19 +147,26 @@ public:
     }
 
 private:
-    bool direct_;
+    const SourceField& field_;
     float transmittance_ = 1.0f, depth_ = 0.0f, opacity_ = 0.0f, distance_ = 0.0f;
     Quad seen_[quads_of<SourceRecord>()] = {};  // records, each times its part's opacity
+    Quad outside_[quads_of<SurroundingsRecord>()] = {};
     Rgb emission_{0.0f};
 };
 
-RaySum integrate_own_light(const SourceField& field, const Ray& ray, int parts, double end) {
-    OwnLight light(field.direct_emission());
+// `kOutside`: whether the field has light of the surroundings.
+template <bool kOutside>
+RaySum integrate_whole_records(const SourceField& field, const Ray& ray, int parts, double end) {
+    WholeRecords light(field);
     const auto visit_brick = [&](const VoxelSegment& brick) {
         const SourceRecord* const records = field.own_records(brick.brick);
+        const SurroundingsRecord* const outside = kOutside ? field.outside_records(brick.brick) : nullptr;
         return walk_cubes<1>(brick, [&](const VoxelSegment& s) {
             return visit_parts(field, s, parts, [&](const vec3& p, float length, float distance) {
-                return light.add(interpolated(records, p), length, distance);
+                SurroundingsRecord around;
+                if constexpr (kOutside)
+                    around = interpolated(outside, p);
+                return light.add(interpolated(records, p), kOutside ? &around : nullptr, length, distance);
             });
         });
     };
@@ -167,7 +174,8 @@ RaySum integrate_own_light(const SourceField& field, const Ray& ray, int parts, 
     return light.sum();
 }
 
-RaySum integrate_all_light(const SourceField& field, const Ray& ray, int parts, double end) {
+// Where light was traced through a similar medium.
+RaySum integrate_two_media(const SourceField& field, const Ray& ray, int parts, double end) {
     RaySum sum;
     walk_parts(field, ray, parts, end, [&](const Part& part) {
         add_part(sum, field, part);
@@ -179,8 +187,10 @@ RaySum integrate_all_light(const SourceField& field, const Ray& ray, int parts, 
 }  // namespace
 
 RaySum integrate(const SourceField& field, const Ray& ray, int parts, double end) {
-    const bool own = !field.has_outside() && !field.has_similar();
-    RaySum sum = (own ? integrate_own_light : integrate_all_light)(field, ray, parts, end);
+    const auto by_records = field.has_similar()   ? integrate_two_media
+                            : field.has_outside() ? integrate_whole_records<true>
+                                                  : integrate_whole_records<false>;
+    RaySum sum = by_records(field, ray, parts, end);
     sum.alpha = -std::expm1(-sum.depth);
     sum.through = 1.0f - sum.alpha;
     return sum;

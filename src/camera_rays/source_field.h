@@ -111,8 +111,9 @@ public:
     bool has_emitters() const { return sources_ && !sources_->from_emitters.empty(); }
     std::uint64_t bytes() const;  // of what has been made so far
 
-    // The medium's own records of a brick, for interpolated().
+    // The medium's own records of a brick, and those of the surroundings' light, for interpolated().
     const SourceRecord* own_records(std::size_t brick) const { return records(brick).own.data(); }
+    const SurroundingsRecord* outside_records(std::size_t brick) const { return records(brick).outside.data(); }
     // Trilinear samples at p, in nodes from the brick's first node, each coordinate in [0, 8].
     SourceRecord sample(std::size_t brick, const vec3& p) const;
     SimilarRecord sample_similar(std::size_t brick, const vec3& p) const;

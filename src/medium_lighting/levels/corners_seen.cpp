@@ -11,7 +11,7 @@ namespace {
 // Of the way to a corner: a surface that a node lies on hides nothing from it.
 constexpr float kOwnSurface = 1e-3f;
 
-// Nodes of a brick that stand for all: one in each of its 2 x 2 x 2 parts twice.
+// Nodes of a brick that stand for all: two in each layer along any axis.
 constexpr int kSampledNodes = 16;
 
 // A coarse cell, in nodes of the fine lattice.
@@ -96,7 +96,7 @@ double part_beyond_surfaces(const Medium& fine, int level, const Occluders& occl
             return;
         double sum = 0.0, behind = 0.0;
         for (int s = 0; s < kSampledNodes; ++s) {
-            const ivec3 part(s >> 2 & 1, s >> 1 & 1, s & 1), within(s & 3, s >> 1 & 3, (s * 3) >> 2 & 3);
+            const ivec3 part(s >> 2 & 1, s >> 1 & 1, s & 1), within(s & 3, s >> 2 & 3, s * 3 >> 2 & 3);
             const ivec3 p = 4 * part + within;
             const double weight = extinction[(p.x * BrickLattice::kSize + p.y) * BrickLattice::kSize + p.z];
             if (weight == 0.0)
