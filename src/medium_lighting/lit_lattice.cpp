@@ -118,10 +118,9 @@ Gathered LitLattice::dark() const {
 }
 
 std::vector<Rgb> LitLattice::fire_lights() const {
-    std::vector<Rgb> lights = voxel_lights(input_.medium);
     if (level_ == 0)
-        return lights;
-    ScatteredLight coarse = restricted({std::move(lights), {}}, input_.medium.lattice, level_);
+        return voxel_lights(input_.medium);
+    ScatteredLight coarse = restricted({voxel_lights_unsharpened(input_.medium), {}}, input_.medium.lattice, level_);
     coarse.sharpen(medium().lattice);
     return std::move(coarse.intensity);
 }
