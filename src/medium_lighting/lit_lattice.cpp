@@ -143,9 +143,10 @@ std::vector<Rgb> LitLattice::at_medium_nodes(const std::vector<Rgb>& radiance, c
     const Medium& finer = this->finer();
     const bool toward_eye = !gathered.scattered.empty();
     std::vector<Rgb> light = light_at_fine_nodes(nodes, radiance, 1, finer.lattice);
-    const std::vector<Rgb> mean =
-        toward_eye ? light_at_fine_nodes(nodes, mean_radiance(gathered, needed_.size()), 1, finer.lattice) : light;
-    const LightBeforeDetail before{medium(), mean, origin == LightOrigin::Fire,
+    std::vector<Rgb> mean;  // empty: that of `light`
+    if (toward_eye)
+        mean = light_at_fine_nodes(nodes, mean_radiance(gathered, needed_.size()), 1, finer.lattice);
+    const LightBeforeDetail before{medium(), toward_eye ? mean : light, origin == LightOrigin::Fire,
                                    toward_eye ? std::optional<vec3>(input_.eye) : std::nullopt};
     add_light_of_detail(finer, before, nodes_beside_extinction(finer), light);
     return finer_ ? light_at_fine_nodes(finer.lattice, light, level_ - 1, input_.medium.lattice) : light;

@@ -76,8 +76,12 @@ private:
     Lattice lattice(int level) {
         std::weak_ptr<const LitLattice>& known = lattices_[level];
         Lattice out = known.lock();
-        if (!out)
-            known = out = std::make_shared<const LitLattice>(to_.input_, level);
+        if (out)
+            return out;
+        const Stopwatch watch;
+        known = out = std::make_shared<const LitLattice>(to_.input_, level);
+        statistics_.stages.push_back(
+            {"smoke on the lattice of the light", watch.seconds(), out->pyramid().bytes(), {{"lattice_level", level}}});
         return out;
     }
 

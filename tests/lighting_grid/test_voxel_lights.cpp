@@ -162,15 +162,13 @@ TEST(Sharpening, UndoesTheSpreadOfTheSplat) {
     for (const int level : {1, 2})
         for (const int sharpened_below : {0, level}) {
             const std::vector<Rgb> fine = sharpened_below > 0 ? voxel_lights(medium) : voxel_lights_unsharpened(medium);
-            BrickLattice lattice = medium.lattice;
-            std::vector<float> means = flattened(fine);
-            average_down(lattice, means, 3, level);
-            std::vector<Rgb> lights(means.size() / 3);
+            const Averages means = averaged_down(medium.lattice, flattened(fine), 3, level);
+            std::vector<Rgb> lights(means.values.size() / 3);
             for (std::size_t i = 0; i < lights.size(); ++i)
-                lights[i] = {means[3 * i], means[3 * i + 1], means[3 * i + 2]};
-            sharpen_lights(lattice, lights, sharpened_below);
+                lights[i] = {means.values[3 * i], means.values[3 * i + 1], means.values[3 * i + 2]};
+            sharpen_lights(means.lattice, lights, sharpened_below);
             const double spread = std::exp2(2.0 * level) / 6.0;
-            EXPECT_NEAR(variance(lights, lattice, level), of_the_field, 0.01 * spread)
+            EXPECT_NEAR(variance(lights, means.lattice, level), of_the_field, 0.01 * spread)
                 << level << ' ' << sharpened_below;
         }
 }
