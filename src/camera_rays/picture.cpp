@@ -87,15 +87,14 @@ constexpr std::size_t kRaysAtOnce = 1 << 18;
 
 }  // namespace
 
-AutomaticSamples automatic_samples(const Camera& camera, const SourceField& field) {
+AutomaticSamples automatic_samples(const Camera& camera, const Medium& medium, const BrickLattice& voxels) {
     constexpr double kFewOfVoxel = 1.7, kEnoughOfVoxel = 5.0;
     constexpr int kMost = 8;
-    if (field.bricks().empty())
+    if (voxels.empty())
         return {1, 1};
-    const Medium& medium = field.medium();
     double nearest = 1e300;
-    for (std::size_t b = 0; b < field.bricks().brick_count(); ++b) {
-        const dvec3 centre(medium.local_of_node(field.bricks().first_node(b) + BrickLattice::kSize / 2));
+    for (std::size_t b = 0; b < voxels.brick_count(); ++b) {
+        const dvec3 centre(medium.local_of_node(voxels.first_node(b) + BrickLattice::kSize / 2));
         nearest = std::min(nearest, std::max(0.0, glm::dot(centre - camera.eye_local(), camera.forward())));
     }
     const double footprint = camera.pixel_angle() * nearest / medium.spacing;  // voxels per pixel

@@ -69,7 +69,8 @@ using LightSurfaces = std::function<void(const std::vector<SurfaceSample>& sampl
 struct AutomaticSamples {
     int few, enough;
 };
-AutomaticSamples automatic_samples(const Camera& camera, const SourceField& field);
+// `voxels`: voxel_lattice() of the medium.
+AutomaticSamples automatic_samples(const Camera& camera, const Medium& medium, const BrickLattice& voxels);
 
 // Rows of a picture that are drawn, and their surfaces lit, in one go. `rays`: of a pixel.
 int rows_at_once(int width, int height, std::size_t rays);

@@ -7,6 +7,7 @@
 #include "camera_rays/picture.h"
 #include "core/parallel.h"
 #include "gathering/map_layouts.h"
+#include "medium/lattice/voxel_walk.h"
 #include "medium_lighting/levels/lighting_level.h"
 #include "medium_lighting/lit_lattice.h"
 #include "reference/trace_picture.h"
@@ -32,9 +33,9 @@ constexpr double kTrackingOfVoxel = 0.25e-6;  // set-up of the path tracer
 constexpr int kPilotSamples = 8;
 
 double camera_rays(const Shot& shot, const Medium& medium, const CameraSettings& settings) {
-    const Camera camera(settings, medium);
-    const int side =
-        settings.samples_per_axis > 0 ? settings.samples_per_axis : automatic_samples(camera, SourceField(medium)).few;
+    int side = settings.samples_per_axis;
+    if (side <= 0)
+        side = automatic_samples(Camera(settings, medium), medium, voxel_lattice(medium)).few;
     return double(shot.camera.width) * shot.camera.height * side * side;
 }
 

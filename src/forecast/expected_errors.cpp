@@ -58,7 +58,7 @@ public:
         : plan_(frame.plan),
           coarse_light_(coarse_light),
           interpolation_(interpolation),
-          depth_(voxel_depth(frame.counted.medium)),
+          depth_(voxel_depth(frame.medium)),
           orders_(depth_ * std::exp2(smoke_level) *
                   error_of_orders(std::exp2(lattice_level - smoke_level), fine_bounces)),
           remainder_(remainder) {
@@ -144,10 +144,10 @@ std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFra
     return out;
 }
 
-ExpectedError expected_error(const ModelledFrame& frame) {
+ExpectedError expected_error(const ModelledFrame& frame, const CountedMedium& counted) {
     const ScatteringSettings settings = orders_of(frame.shot);
-    const int level = forecast_lattice_level(frame.shot, frame.counted);
-    const LightingLevels levels = lighting_levels(frame.counted.medium, frame.shot.lighting);
+    const int level = forecast_lattice_level(frame.shot, counted);
+    const LightingLevels levels = lighting_levels(frame.medium, frame.shot.lighting);
     const double fine_bounces = share_of_fine_bounces({level}, settings, frame.shot.lighting.error);
     ExpectedError out = ErrorModel(frame, levels.first.error, levels.interpolation, levels.smoke.level, level,
                                    fine_bounces, settings.remainder)

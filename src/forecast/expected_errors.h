@@ -20,7 +20,7 @@ namespace brisance {
 // By reference.
 struct ModelledFrame {
     const Shot& shot;
-    const CountedMedium& counted;
+    const Medium& medium;
     const Plan& plan;
 };
 
@@ -28,7 +28,7 @@ struct ModelledFrame {
 std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFrame& frame,
                                            const Statistics& statistics);
 
-// Of a picture that is not rendered yet.
-ExpectedError expected_error(const ModelledFrame& frame);
+// Of a picture that is not rendered yet. `counted`: the frame's medium.
+ExpectedError expected_error(const ModelledFrame& frame, const CountedMedium& counted);
 
 }  // namespace brisance

@@ -99,7 +99,8 @@ void fit_to_memory(ShadowMapLayout& layout, std::size_t lights, std::uint64_t li
         progress.notice("shadow maps of level " + std::to_string(level) + " lowered from " +
                         std::to_string(wish.resolution) + "^2 x " + std::to_string(wish.distances) + " to " +
                         std::to_string(layout.resolution) + "^2 x " + std::to_string(layout.distances) +
-                        " to stay within the memory limit of " + std::to_string(limit >> 20) + " MiB");
+                        " to stay within the memory limit of " + std::to_string(limit >> 20) +
+                        " MiB; raise lighting.memory_limit_mebibytes to keep them");
 }
 
 }  // namespace brisance

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <span>
 
@@ -121,10 +122,12 @@ std::vector<Rgb> project(const Medium& medium, const std::vector<Rgb>& factor, c
 
 }  // namespace
 
+std::vector<Rgb> voxel_lights_unsharpened(const Medium& medium) {
+    return medium.emits() ? project(medium, medium.source, medium.emission) : std::vector<Rgb>();
+}
+
 std::vector<Rgb> voxel_lights(const Medium& medium) {
-    if (!medium.emits())
-        return {};
-    std::vector<Rgb> lights = project(medium, medium.source, medium.emission);
+    std::vector<Rgb> lights = voxel_lights_unsharpened(medium);
     sharpen_lights(medium.lattice, lights);
     return lights;
 }
@@ -154,8 +157,10 @@ float affordable(const float* v, const Surrounded& s, float share) {
 
 }  // namespace
 
-void sharpen_lights(const BrickLattice& lattice, std::vector<Rgb>& intensity) {
-    sharpen_nodes(lattice, {reinterpret_cast<float*>(intensity.data()), intensity.size() * 3}, 3, 1.0f / 12.0f);
+void sharpen_lights(const BrickLattice& lattice, std::vector<Rgb>& intensity, int sharpened_below) {
+    const float left = sharpened_below > 0 ? 1.0f - std::exp2(-2.0f * float(sharpened_below)) : 1.0f;
+    if (!intensity.empty())
+        sharpen_nodes(lattice, {reinterpret_cast<float*>(intensity.data()), intensity.size() * 3}, 3, left / 12.0f);
 }
 
 void sharpen_nodes(const BrickLattice& lattice, std::span<float> values_of_nodes, int channels, float share) {

@@ -20,11 +20,16 @@ namespace brisance {
 // Radiant intensity [W/sr] of every node of the medium's lattice; empty when nothing emits.
 std::vector<Rgb> voxel_lights(const Medium& medium);
 
+// The same before it is sharpened, for lights that are splatted to a coarser lattice.
+std::vector<Rgb> voxel_lights_unsharpened(const Medium& medium);
+
 // Undoes the spread of h^2/6 per axis that the splat to nodes gives the light, by a conservative flux of
 // (I_neighbour - I) / 12 from the darker of two neighbours to the brighter. A node gives away no more than it has, so
 // that no light turns negative and the result stays continuous in the data. Without this, light crosses a voxel that
-// absorbs e-fold about 8 % too easily.
-void sharpen_lights(const BrickLattice& lattice, std::vector<Rgb>& intensity);
+// absorbs e-fold about 8 % too easily. A splat to a lattice twice as coarse, of spacing h, adds h^2/8, so that lights
+// have a spread of h^2/6 on whatever lattice they were splatted to. `sharpened_below`: 0, or they were sharpened on a
+// lattice so many levels finer, which leaves (1 - 4^-levels) h^2/6.
+void sharpen_lights(const BrickLattice& lattice, std::vector<Rgb>& intensity, int sharpened_below = 0);
 
 // The same for any field of values (`channels` interleaved) that are not negative: the flux is `share` of the
 // difference, which undoes a spread of 2 share h^2 per axis. At most 1/6.

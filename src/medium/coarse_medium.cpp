@@ -1,6 +1,8 @@
 #include "medium/coarse_medium.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "core/parallel.h"
 
@@ -18,7 +20,7 @@ void average_albedo(const Medium& f, int level, Medium& to) {
                 scattering[i * 3 + c] = f.extinction[i] * f.albedo_nodes[i][c];
         },
         4096);
-    const std::vector<float> mean = averaged_down(f.lattice, std::move(scattering), 3, level);
+    const std::vector<float> mean = averaged_down(f.lattice, scattering, 3, level).values;
     to.albedo_nodes.resize(to.extinction.size(), Rgb(0.0f));
     for (std::size_t i = 0; i < to.extinction.size(); ++i)
         if (to.extinction[i] > 0.0f)
@@ -54,39 +56,30 @@ Medium coarse_medium(const ExtinctionPyramid& fine, int level) {
 }
 
 Medium coarse_medium(const Medium& fine, int level) {
-    BrickLattice lattice = fine.lattice;
-    std::vector<float> extinction = fine.extinction;
-    average_down(lattice, extinction, 1, level);
-    return coarse_medium(fine, std::move(lattice), std::move(extinction), level);
+    Averages mean = averaged_down(fine.lattice, fine.extinction, 1, level);
+    return coarse_medium(fine, std::move(mean.lattice), std::move(mean.values), level);
 }
 
-void average_down(BrickLattice& lattice, std::vector<float>& values, int channels, int levels) {
-    for (int l = 0; l < levels; ++l) {
-        BrickLattice coarse;
-        std::vector<float> means;
-        coarsen(lattice, values, channels, coarse, means);
-        lattice = std::move(coarse);
-        values = std::move(means);
+// Volumes are large: the first step reads the values where they are.
+Averages averaged_down(const BrickLattice& lattice, std::span<const float> values, int channels, int levels) {
+    if (levels == 0)
+        return {lattice, {values.begin(), values.end()}};
+    Averages out;
+    coarsen(lattice, values, channels, out.lattice, out.values);
+    for (int l = 1; l < levels; ++l) {
+        Averages next;
+        coarsen(out.lattice, out.values, channels, next.lattice, next.values);
+        out = std::move(next);
     }
+    return out;
 }
 
-std::vector<float> averaged_down(BrickLattice lattice, std::vector<float> values, int channels, int levels) {
-    average_down(lattice, values, channels, levels);
-    return values;
-}
-
-// Splats node values to the lattice 2^levels coarser.
-std::vector<float> splat_down(BrickLattice lattice, std::vector<float> values, int channels, int levels) {
-    for (int l = 0; l < levels; ++l) {
-        BrickLattice coarse;
-        std::vector<float> sums;
-        coarsen(lattice, values, channels, coarse, sums);
-        for (float& v : sums)
-            v *= 8.0f;
-        lattice = std::move(coarse);
-        values = std::move(sums);
-    }
-    return values;
+std::vector<float> splat_down(const BrickLattice& lattice, std::span<const float> values, int channels, int levels) {
+    std::vector<float> sums = averaged_down(lattice, values, channels, levels).values;
+    const float nodes = std::exp2(3.0f * float(levels));  // finer ones for each
+    parallel_for(
+        sums.size(), [&](std::size_t i) { sums[i] *= nodes; }, 4096);
+    return sums;
 }
 
 std::vector<std::uint8_t> parents(const BrickLattice& fine, const std::vector<std::uint8_t>& mask,
@@ -98,9 +91,8 @@ std::vector<std::uint8_t> parents(const BrickLattice& fine, const std::vector<st
     return out;
 }
 
-std::vector<float> flattened(const std::vector<Rgb>& colours) {
-    const auto* p = reinterpret_cast<const float*>(colours.data());
-    return {p, p + colours.size() * 3};
+std::span<const float> flattened(const std::vector<Rgb>& colours) {
+    return {reinterpret_cast<const float*>(colours.data()), colours.size() * 3};
 }
 
 }  // namespace brisance

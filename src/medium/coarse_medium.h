@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "medium/lattice/extinction_pyramid.h"
@@ -13,22 +14,23 @@ namespace brisance {
 Medium coarse_medium(const ExtinctionPyramid& fine, int level);
 Medium coarse_medium(const Medium& fine, int level);
 
-// Averages node values (`channels` interleaved) to the lattice 2^levels coarser, with a pyramid's weights. In place:
-// the lattice becomes that one.
-void average_down(BrickLattice& lattice, std::vector<float>& values, int channels, int levels);
-// The values alone.
-std::vector<float> averaged_down(BrickLattice lattice, std::vector<float> values, int channels, int levels);
+// Averages node values (`channels` interleaved) to the lattice 2^levels coarser, with a pyramid's weights.
+struct Averages {
+    BrickLattice lattice;
+    std::vector<float> values;
+};
+Averages averaged_down(const BrickLattice& lattice, std::span<const float> values, int channels, int levels);
 
 // Splats node values (`channels` interleaved) to the lattice 2^levels coarser; keeps their sum.
-std::vector<float> splat_down(BrickLattice lattice, std::vector<float> values, int channels, int levels);
+std::vector<float> splat_down(const BrickLattice& lattice, std::span<const float> values, int channels, int levels);
 
 // The nodes of the lattice twice as coarse, which becomes `coarse`, with a share in the interpolation at some node with
 // `mask`.
 std::vector<std::uint8_t> parents(const BrickLattice& fine, const std::vector<std::uint8_t>& mask,
                                   BrickLattice& coarse);
 
-// Colours as interleaved channels, for splat_down().
-std::vector<float> flattened(const std::vector<Rgb>& colours);
+// Colours as interleaved channels, for splat_down(): a view.
+std::span<const float> flattened(const std::vector<Rgb>& colours);
 
 // Coarse node values at fine nodes, trilinearly.
 struct CoarseSampler {

@@ -16,7 +16,7 @@ Gathered LevelLights::gather(const GatherTarget& target) const {
         return of(lights_);
     const Medium& medium = target.pyramid.medium();
     ScatteredLight coarse = restricted_to(target.level);
-    coarse.sharpen(medium.lattice);
+    coarse.sharpen(medium.lattice, target.level);
     return of(build_hierarchy(medium, std::move(coarse), 0));
 }
 

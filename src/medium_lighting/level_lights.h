@@ -16,9 +16,9 @@ struct GatherTarget {
 
 class LevelLights {
 public:
-    // `lights`: of the medium's own lattice, from which those of coarser ones are made. Keeps references; what is
-    // gathered is added to `costs`. `kept`: shadow maps of `lights` where all nodes of that lattice are requested;
-    // null: none are kept.
+    // `lights`: of the medium's own lattice, sharpened, from which those of coarser ones are made. Keeps references;
+    // what is gathered is added to `costs`. `kept`: shadow maps of `lights` where all nodes of that lattice are
+    // requested; null: none are kept.
     LevelLights(const LitLattice& lattice, const HierarchyLights& lights, float alpha, std::vector<LevelCost>& costs,
                 Progress& progress, ShadowMapCache* kept = nullptr)
         : lattice_(lattice), lights_(lights), alpha_(alpha), costs_(costs), progress_(progress), kept_(kept) {}

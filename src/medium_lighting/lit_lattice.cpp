@@ -118,10 +118,9 @@ Gathered LitLattice::dark() const {
 }
 
 std::vector<Rgb> LitLattice::fire_lights() const {
-    std::vector<Rgb> lights = voxel_lights(input_.medium);
     if (level_ == 0)
-        return lights;
-    ScatteredLight coarse = restricted({std::move(lights), {}}, input_.medium.lattice, level_);
+        return voxel_lights(input_.medium);
+    ScatteredLight coarse = restricted({voxel_lights_unsharpened(input_.medium), {}}, input_.medium.lattice, level_);
     coarse.sharpen(medium().lattice);
     return std::move(coarse.intensity);
 }
@@ -151,10 +150,10 @@ std::vector<Rgb> LitLattice::at_medium_nodes(const std::vector<Rgb>& radiance, c
     const bool toward_eye = !gathered.scattered.empty();
     const CornersSeen* const seen = corners_seen(finer, 1);
     std::vector<Rgb> light = light_at_fine_nodes(nodes, radiance, 1, finer.lattice, seen);
-    const std::vector<Rgb> mean =
-        toward_eye ? light_at_fine_nodes(nodes, mean_radiance(gathered, needed_.size()), 1, finer.lattice, seen)
-                   : light;
-    const LightBeforeDetail before{medium(), mean, origin == LightOrigin::Fire,
+    std::vector<Rgb> mean;  // empty: that of `light`
+    if (toward_eye)
+        mean = light_at_fine_nodes(nodes, mean_radiance(gathered, needed_.size()), 1, finer.lattice, seen);
+    const LightBeforeDetail before{medium(), toward_eye ? mean : light, origin == LightOrigin::Fire,
                                    toward_eye ? std::optional<vec3>(input_.eye) : std::nullopt};
     add_light_of_detail(finer, before, nodes_beside_extinction(finer), light);
     return finer_ ? light_at_fine_nodes(finer.lattice, light, level_ - 1, input_.medium.lattice,

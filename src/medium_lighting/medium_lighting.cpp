@@ -56,6 +56,7 @@ public:
         if (to_.input_.multiple)
             for (std::size_t i = 0; i < smokes.size(); ++i)
                 smoke(smokes[i], i > 0);
+        statistics_.stages.push_back(std::move(smoke_on_lattices_));
     }
 
 private:
@@ -76,8 +77,13 @@ private:
     Lattice lattice(int level) {
         std::weak_ptr<const LitLattice>& known = lattices_[level];
         Lattice out = known.lock();
-        if (!out)
-            known = out = std::make_shared<const LitLattice>(to_.input_, level);
+        if (out)
+            return out;
+        const Stopwatch watch;
+        known = out = std::make_shared<const LitLattice>(to_.input_, level);
+        smoke_on_lattices_.seconds += watch.seconds();
+        smoke_on_lattices_.bytes = std::max(smoke_on_lattices_.bytes, out->pyramid().bytes());
+        smoke_on_lattices_.detail["lattice_levels"].push_back(level);
         return out;
     }
 
@@ -150,6 +156,7 @@ private:
     Progress& progress_;
     std::map<int, std::weak_ptr<const LitLattice>> lattices_;
     std::vector<Once> once_;  // light scattered once, per lattice of the first light
+    StageCost smoke_on_lattices_{"smoke on the lattices of the light", 0.0, 0, {}};
 };
 
 MediumLighting::MediumLighting(const MediumLightingInput& input, Statistics& statistics, Progress& progress)

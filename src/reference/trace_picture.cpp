@@ -194,7 +194,8 @@ Image sampled_layers(const TracedScene& scene) {
         PictureSettings settings;
         const int requested = scene.camera.settings().samples_per_axis;
         settings.samples_per_axis =
-            requested > 0 ? requested : std::min(automatic_samples(*moment.camera, field).enough, kEnough);
+            requested > 0 ? requested
+                          : std::min(automatic_samples(*moment.camera, *moment.medium, field.bricks()).enough, kEnough);
         settings.cells = false;
         settings.surroundings = moment.surroundings;
         Progress silent;

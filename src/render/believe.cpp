@@ -31,11 +31,9 @@ std::size_t draws_for(std::size_t samples, double noise_square, double error) {
     return static_cast<std::size_t>(std::clamp(double(samples) / each, kLeastDraws, kMostDraws));
 }
 
-std::optional<Certificate> survey(const Image& image, const DrawInput& input, const CountedMedium& counted,
-                                  double expected, Progress& progress) {
-    const double seconds =
-        input.shot.certify.belief * grid_seconds(input.shot, counted, input.plan, input.camera.settings()) -
-        tracer_seconds(input.medium);
+std::optional<Certificate> survey(const Image& image, const DrawInput& input, double expected, Progress& progress) {
+    const double of_grid = grid_seconds(input.shot, CountedMedium(input.medium), input.plan, input.camera.settings());
+    const double seconds = input.shot.certify.belief * of_grid - tracer_seconds(input.medium);
     if (!(seconds > 0.0))
         return std::nullopt;
     const CertifiedScene scene = certified_scene(input);
@@ -57,12 +55,12 @@ const CertifiedError* sampled(const std::optional<Certificate>& survey, const st
 }
 
 Belief believe_lights(const Image& image, const DrawInput& input, const Statistics& statistics, Progress& progress) {
-    const CountedMedium counted(input.medium);
-    const std::vector<ExpectedError> expected = expected_errors(image, {input.shot, counted, input.plan}, statistics);
+    const std::vector<ExpectedError> expected =
+        expected_errors(image, {input.shot, input.medium, input.plan}, statistics);
     Belief out;
     std::optional<Certificate> samples;
     if (expected[0].error > 0.0 && input.shot.certify.belief > 0.0)
-        samples = survey(image, input, counted, expected[0].error, progress);
+        samples = survey(image, input, expected[0].error, progress);
     if (samples) {
         out.samples = samples->samples;
         out.pixels = samples->pixels;

@@ -39,7 +39,8 @@ PictureSettings picture_settings(const DrawInput& input, const ManyLights& light
     PictureSettings settings;
     settings.samples_per_axis = camera.samples_per_axis;
     if (camera.samples_per_axis == 0) {
-        const AutomaticSamples of_medium = automatic_samples(input.camera, lights.medium().field());
+        const SourceField& field = lights.medium().field();
+        const AutomaticSamples of_medium = automatic_samples(input.camera, field.medium(), field.bricks());
         const int first = looks_twice(input, moments) ? of_medium.few : of_medium.enough;
         settings.samples_per_axis = input.plan.surfaces ? std::max(first, kSurfaceSamples) : first;
         settings.medium_samples_per_axis = first;

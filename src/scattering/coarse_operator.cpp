@@ -40,9 +40,9 @@ void ScatteredLight::add(const ScatteredLight& other, const Rgb& factor) {
         source[i] += factor[int(i % 3)] * other.source[i];
 }
 
-void ScatteredLight::sharpen(const BrickLattice& lattice) {
+void ScatteredLight::sharpen(const BrickLattice& lattice, int sharpened_below) {
     const std::vector<Rgb> before = intensity;
-    sharpen_lights(lattice, intensity);
+    sharpen_lights(lattice, intensity, sharpened_below);
     for (std::size_t i = 0; i < intensity.size() && !directional.empty(); ++i)
         for (int k = 0; k < 24; ++k) {
             const float from = before[i][k % 3];

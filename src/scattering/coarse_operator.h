@@ -18,8 +18,8 @@ struct ScatteredLight {
     // Empty where nobody asks for it.
     std::vector<float> source = {};
     void add(const ScatteredLight& other, const Rgb& factor);  // a factor per colour
-    // sharpen_lights; the directional part keeps its proportion to the mean at every node.
-    void sharpen(const BrickLattice& lattice);
+    // sharpen_lights(); the directional part keeps its proportion to the mean at every node.
+    void sharpen(const BrickLattice& lattice, int sharpened_below = 0);
 };
 
 // Returns the light that arriving light scatters into: the exact projection of extinction * albedo * fluence / 4 pi,

@@ -174,7 +174,8 @@ TEST(Agreement, LittleMemoryIsMentionedAndCostsLittle) {
     Listener listener;
     const Gathered g = gather_at_nodes(field_of(lit, tight), {&needed, std::nullopt, false, 0.0f}, costs, listener);
     ASSERT_FALSE(listener.notices.empty());
-    EXPECT_NE(listener.notices[0].find("memory limit of 1 MiB"), std::string::npos) << listener.notices[0];
+    for (const char* what : {"memory limit of 1 MiB", "lighting.memory_limit_mebibytes"})
+        EXPECT_NE(listener.notices[0].find(what), std::string::npos) << listener.notices[0];
     for (const LevelCost& cost : costs)
         EXPECT_LE(cost.held_bytes, std::uint64_t{2} << 20);
     const Difference d = difference(g.fluence, free.fluence);

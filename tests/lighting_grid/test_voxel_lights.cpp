@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "fixtures/media.h"
+#include "medium/coarse_medium.h"
 
 namespace brisance {
 namespace {
@@ -138,6 +139,8 @@ TEST(Sharpening, MakesNoLightAndNoDarkness) {
         ASSERT_TRUE(light.x >= 0.0f && light.y >= 0.0f && light.z >= 0.0f);
 }
 
+// Fire on a lattice, as lights on it and on coarser ones. Lights that were sharpened before they were splatted down are
+// sharpened by what that left.
 TEST(Sharpening, UndoesTheSpreadOfTheSplat) {
     Recipe r;
     r.box = cube(-24, 24);
@@ -145,17 +148,29 @@ TEST(Sharpening, UndoesTheSpreadOfTheSplat) {
     r.settings = black_smoke();
     r.settings.fire.convention = EmissionConvention::Direct;
     const Medium medium = make_medium(r);
-    const auto variance = [&](const std::vector<Rgb>& lights) {
+    const auto variance = [&](const std::vector<Rgb>& lights, const BrickLattice& lattice, int level) {
         double second = 0.0;
         for (std::size_t i = 0; i < lights.size(); ++i) {
-            const int x = medium.lattice.first_node(i / 512).x + BrickLattice::node_in_brick(int(i % 512)).x;
+            const int x = (lattice.first_node(i / 512).x + BrickLattice::node_in_brick(int(i % 512)).x) << level;
             second += double(lights[i].x) * x * x;
         }
         return second / total(lights).x;
     };
     // Node values spread by the camera's own hats: variance 1/6 more; the splat's second spread is what must go.
-    const double of_the_field = variance(medium.emission) + 1.0 / 6.0;
-    EXPECT_NEAR(variance(voxel_lights(medium)), of_the_field, 2e-3);
+    const double of_the_field = variance(medium.emission, medium.lattice, 0) + 1.0 / 6.0;
+    EXPECT_NEAR(variance(voxel_lights(medium), medium.lattice, 0), of_the_field, 2e-3);
+    for (const int level : {1, 2})
+        for (const int sharpened_below : {0, level}) {
+            const std::vector<Rgb> fine = sharpened_below > 0 ? voxel_lights(medium) : voxel_lights_unsharpened(medium);
+            const Averages means = averaged_down(medium.lattice, flattened(fine), 3, level);
+            std::vector<Rgb> lights(means.values.size() / 3);
+            for (std::size_t i = 0; i < lights.size(); ++i)
+                lights[i] = {means.values[3 * i], means.values[3 * i + 1], means.values[3 * i + 2]};
+            sharpen_lights(means.lattice, lights, sharpened_below);
+            const double spread = std::exp2(2.0 * level) / 6.0;
+            EXPECT_NEAR(variance(lights, means.lattice, level), of_the_field, 0.01 * spread)
+                << level << ' ' << sharpened_below;
+        }
 }
 
 TEST(Sharpening, GivesAnInterpolantTheAveragesOfASmoothField) {

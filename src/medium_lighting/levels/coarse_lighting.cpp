@@ -68,10 +68,6 @@ void at_fine_nodes(const BrickLattice& coarse, std::span<const float> values, in
         16);
 }
 
-std::span<const float> flat(const std::vector<Rgb>& colours) {
-    return {reinterpret_cast<const float*>(colours.data()), colours.size() * 3};
-}
-
 }  // namespace
 
 std::vector<Rgb> emission_of(const Medium& medium) {
@@ -110,7 +106,7 @@ Medium medium_to_light(const Medium& fine, int level) {
     coarse.max_extinction = extinction.empty() ? 0.0f : *std::max_element(extinction.begin(), extinction.end());
     if (!fine.emits())
         return coarse;
-    std::vector<float> mean = averaged_down(fine.lattice, flattened(emission_of(fine)), 3, level);
+    std::vector<float> mean = averaged_down(fine.lattice, flattened(emission_of(fine)), 3, level).values;
     sharpen_nodes(coarse.lattice, mean, 3, 0.5f * blur);
     coarse.emission.resize(extinction.size());
     for (std::size_t i = 0; i < coarse.emission.size(); ++i)
@@ -121,7 +117,7 @@ Medium medium_to_light(const Medium& fine, int level) {
 std::vector<Rgb> light_at_fine_nodes(const BrickLattice& coarse, const std::vector<Rgb>& light, int level,
                                      const BrickLattice& fine, const CornersSeen* seen) {
     std::vector<Rgb> out(fine.node_count());
-    at_fine_nodes<3>(coarse, flat(light), level, fine, seen, reinterpret_cast<float*>(out.data()));
+    at_fine_nodes<3>(coarse, flattened(light), level, fine, seen, reinterpret_cast<float*>(out.data()));
     return out;
 }
 

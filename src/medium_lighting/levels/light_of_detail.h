@@ -28,7 +28,7 @@ struct LightBeforeDetail {
 };
 
 // Adds the light of detail to `radiance`, the light at the nodes of `fine` [W/(m^2 sr)], and leaves a fifth of it at
-// least. `needed`: per node; others may be left as they are.
+// least. `needed`: per node; others may be left as they are. `before.mean` may be `radiance` itself: it is read first.
 void add_light_of_detail(const Medium& fine, const LightBeforeDetail& before, const std::vector<std::uint8_t>& needed,
                          std::vector<Rgb>& radiance);
 

@@ -146,10 +146,8 @@ private:
 
     float lacking_at(int level) const {
         const BrickLattice& nodes = medium_.lattice;
-        BrickLattice lattice = nodes;
-        std::vector<float> means = emission_;
-        average_down(lattice, means, 1, level);
-        const std::vector<float> found = scalars_at_fine_nodes(lattice, means, level, nodes);
+        const Averages means = averaged_down(nodes, emission_, 1, level);
+        const std::vector<float> found = scalars_at_fine_nodes(means.lattice, means.values, level, nodes);
         std::vector<double> off(nodes.brick_count()), all(nodes.brick_count());
         parallel_for(
             nodes.brick_count(),

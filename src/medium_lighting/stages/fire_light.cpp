@@ -68,7 +68,10 @@ FireLight light_from_fire(const LitLattice& lattice, Statistics& statistics, Pro
     }
     if (out.exterior)
         out.exterior->light_thin_medium(lattice.request(), arriving.light, statistics, progress);
+    const Stopwatch watch;
     out.single = lattice.source_function(arriving.light, LightOrigin::Fire);
+    statistics.stages.push_back(
+        {"light of the fire at the volume's nodes (MV)", watch.seconds(), out.single.size() * sizeof(Rgb), {}});
     arriving.conserve(lattice.thin_medium().rest());
     out.arriving = std::move(arriving.light);
     return out;

@@ -9,6 +9,7 @@
 #include "forecast/costs.h"
 #include "forecast/memory_need.h"
 #include "forecast/plan.h"
+#include "medium/lattice/voxel_walk.h"
 #include "pixel_sharing/shared_bounce.h"
 #include "render/bound_layers.h"
 #include "render/choice/choose_method.h"
@@ -38,10 +39,11 @@ std::uint64_t picture_bytes(const CameraSettings& camera, std::size_t cells) {
 // more.
 std::size_t surface_rays(const FrameInput& input) {
     const int stated = input.camera.samples_per_axis;
-    const int side =
-        stated > 0 ? stated
-                   : std::max(kSurfaceSamples,
-                              automatic_samples(Camera(input.camera, input.medium), SourceField(input.medium)).enough);
+    if (stated > 0)
+        return std::size_t(stated) * std::size_t(stated);
+    const Camera camera(input.camera, input.medium);
+    const int of_medium = automatic_samples(camera, input.medium, voxel_lattice(input.medium)).enough;
+    const int side = std::max(kSurfaceSamples, of_medium);
     return std::size_t(side) * std::size_t(side);
 }
 
