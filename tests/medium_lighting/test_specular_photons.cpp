@@ -114,7 +114,7 @@ TEST(SpecularPhotons, ARoughFloorSendsWhatItsBsdfSays) {
         const Surroundings surroundings(std::move(scene), {light});
         const DirectLight direct(medium, {}, &surroundings);
         VirtualLightSettings settings;
-        settings.photons = 100000;
+        settings.photons = 400000;
         const std::size_t nodes = medium.lattice.node_count();
         const std::vector<std::uint8_t> needed(nodes, 1);
         const Gathered g = SpecularPhotons(direct, nullptr, settings).on(medium, {&needed, std::nullopt, false, 0.0f});
@@ -126,7 +126,7 @@ TEST(SpecularPhotons, ARoughFloorSendsWhatItsBsdfSays) {
                     sum += g.fluence[i];
             const double expected = fluence_by_points(medium, lamp, floor, kHalfSide, metal.surface, counts);
             ASSERT_GT(expected, 0.0);
-            // More than four standard errors of either.
+            // Four standard errors; with 16 times as many photons and points all four differ by less than 0.7 %.
             EXPECT_NEAR(sum / expected, 1.0, 0.02) << floor << " " << side;
         }
     }
