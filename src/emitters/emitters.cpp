@@ -376,11 +376,11 @@ EmittedParticle Emitters::emit_near(const Near& near, Rng& rng) const {
 EmittedParticle Emitters::emit_far(const Far& far, const dvec3& centre, double radius, Rng& rng) const {
     const std::optional<EmitterSample> s = sample_far(far, rng);
     if (!s)
-        return {{centre, {0, 0, 1}}, Rgb(0.0f)};
+        return {{centre, {0, 0, 1}}, Rgb(0.0f), true};
     const double r = radius * std::sqrt(rng.next_double()), azimuth = 2.0 * pi * rng.next_double();
     const dvec3 on_disc =
         frame_around(s->direction).world_from_local({r * std::cos(azimuth), r * std::sin(azimuth), 0.0});
-    return {{centre + on_disc + radius * s->direction, -s->direction}, s->weight * float(pi * radius * radius)};
+    return {{centre + on_disc + radius * s->direction, -s->direction}, s->weight * float(pi * radius * radius), true};
 }
 
 std::uint64_t Emitters::bytes() const {

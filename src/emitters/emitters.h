@@ -24,7 +24,8 @@ struct EmitterSample {
 // The start of a particle, with its power over the probability of sampling it.
 struct EmittedParticle {
     Ray ray;
-    Rgb power{0.0f};  // [W]
+    Rgb power{0.0f};   // [W]
+    bool far = false;  // from a light at infinity
 };
 
 // A lamp of no extent, and the cone that it illuminates.

@@ -60,14 +60,17 @@ Ray PathVertex::toward(const dvec3& target, double& distance) const {
     return {from, distance > 0.0 ? offset / distance : dvec3(0.0, 0.0, 1.0)};
 }
 
-PathVertex::Value PathVertex::at(const dvec3& wi) const {
+PathVertex::Value PathVertex::at(const dvec3& wi, Transport transport) const {
     if (!on_surface()) {
         const float phase = henyey_greenstein(static_cast<float>(glm::dot(arriving_, wi)), mean_cosine_);
         return {Rgb(phase), phase};
     }
     Value out{Rgb(0.0f), surface_->bsdf.pdf(-arriving_, wi)};
-    if (!surface_->point.leaks(-arriving_, wi))
-        out.value = surface_->bsdf.evaluate(-arriving_, wi);
+    if (surface_->point.leaks(-arriving_, wi))
+        return out;
+    out.value = surface_->bsdf.evaluate(-arriving_, wi, transport);
+    if (transport == Transport::Importance)
+        out.value *= shading_normal_factor(wi).value_or(0.0f);
     return out;
 }
 

@@ -44,12 +44,12 @@ public:
     // The same toward a point, and the distance to it.
     Ray toward(const dvec3& target, double& distance) const;
 
-    // Phase function, or BSDF times cosine, and the pdf of sample() [1/sr]; without delta lobes.
+    // Phase function, or BSDF times cosine, and the pdf of sample() [1/sr]; without delta lobes. `transport`: as there.
     struct Value {
         Rgb value{0.0f};
         double pdf = 0.0;
     };
-    Value at(const dvec3& wi) const;
+    Value at(const dvec3& wi, Transport transport = Transport::Radiance) const;
     // Refers to the vertex.
     ScatteringBound bound() const;
 

@@ -1,6 +1,7 @@
 // Light that mirrors reflect onto smoke.
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <numeric>
 
 #include "fixtures/media.h"
@@ -70,6 +71,65 @@ TEST(SpecularPhotons, AMirrorCastsTheLightOfAnotherLamp) {
     EXPECT_NEAR(sum / expected, 1.0, 0.01);
     for (int axis = 0; axis < 3; ++axis)
         EXPECT_NEAR(heading[axis], expected_heading[axis], 0.01 * glm::length(expected_heading)) << axis;
+}
+
+// What a lamp sends to the nodes of a medium by way of a rough metal floor, by random points of the floor.
+double fluence_by_points(const Medium& medium, const dvec3& lamp, double floor, double half_side,
+                         const SurfaceMaterial& metal, const std::function<bool(const dvec3&)>& counts) {
+    const ShadingFrame frame = frame_around(dvec3(0.0, 0.0, 1.0));
+    const Bsdf bsdf(metal, frame);
+    Rng rng(Stream::Photon, 1, 0);
+    double sum = 0.0;
+    constexpr int kPoints = 64;
+    for (std::size_t i = 0; i < medium.lattice.node_count(); ++i) {
+        const dvec3 node(medium.local_of_node(medium.lattice.node(i)));
+        if (!(medium.extinction[i] > 0.0f) || !counts(node))
+            continue;
+        for (int k = 0; k < kPoints; ++k) {
+            const double x = rng.next_double(), y = rng.next_double();
+            const dvec3 point(half_side * (2.0 * x - 1.0), half_side * (2.0 * y - 1.0), floor);
+            const dvec3 there = lamp - point, here = node - point;
+            const dvec3 wi = glm::normalize(there), wo = glm::normalize(here);
+            const double radiance = luminance(bsdf.evaluate(wo, wi)) / glm::dot(there, there);
+            sum += radiance * wo.z / glm::dot(here, here) * 4.0 * half_side * half_side / kPoints;
+        }
+    }
+    return sum;
+}
+
+// A rough floor sends light to the smoke above it, and to smoke that stands on it, as its BSDF says.
+TEST(SpecularPhotons, ARoughFloorSendsWhatItsBsdfSays) {
+    const Medium medium = thin_cube();
+    SceneMaterial metal = mirror();
+    metal.surface.roughness = 0.4f;
+    constexpr double kHalfSide = 2.0;
+    for (const double floor : {-2.0, -0.55}) {
+        Scene scene;
+        scene.origin = medium.world_of_local(vec3(0.0f));
+        add_quad(scene, {-kHalfSide, -kHalfSide, floor}, {2 * kHalfSide, 0, 0}, {0, 2 * kHalfSide, 0}, metal);
+        const dvec3 lamp(0.6, -0.3, floor + 0.8);
+        LightSettings light;
+        light.position = medium.world_of_local(vec3(lamp));
+        light.power = Rgb(1.0f);  // [W/sr]
+        const Surroundings surroundings(std::move(scene), {light});
+        const DirectLight direct(medium, {}, &surroundings);
+        VirtualLightSettings settings;
+        settings.photons = 400000;
+        const std::size_t nodes = medium.lattice.node_count();
+        const std::vector<std::uint8_t> needed(nodes, 1);
+        const Gathered g = SpecularPhotons(direct, nullptr, settings).on(medium, {&needed, std::nullopt, false, 0.0f});
+        for (const double side : {-1.0, 1.0}) {
+            const auto counts = [&](const dvec3& node) { return side * node.x > 0.05 && node.z > floor + 0.2; };
+            double sum = 0.0;
+            for (std::size_t i = 0; i < nodes; ++i)
+                if (medium.extinction[i] > 0.0f && counts(dvec3(medium.local_of_node(medium.lattice.node(i)))))
+                    sum += g.fluence[i];
+            const double expected = fluence_by_points(medium, lamp, floor, kHalfSide, metal.surface, counts);
+            ASSERT_GT(expected, 0.0);
+            // Four standard errors; with 16 times as many photons and points all four differ by less than 0.7 %.
+            EXPECT_NEAR(sum / expected, 1.0, 0.02) << floor << " " << side;
+        }
+    }
 }
 
 // Of walls that virtual lights hold, particles carry the share that the points of the lights leave, and of other places

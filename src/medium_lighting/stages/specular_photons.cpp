@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/fixed_sums.h"
 #include "core/parallel.h"
@@ -18,6 +19,45 @@ namespace {
 constexpr std::size_t kParticlesAtOnce = 1024;
 // Of the light that arrives where virtual lights were made.
 constexpr double kUnsharedLeft = 0.01;
+// Of the power that arrived, what a track carries that has survived roulette.
+constexpr float kPowerOfTrack = 1.0f / 1024.0f;
+// Particles from infinity start toward a ball around the smoke whose radius is so many times the smoke's.
+constexpr double kAround = 2.0;
+
+// Points of the smoke, in proportion to what a cube of it takes of the light that crosses it.
+CubeDirections points_of_smoke(const TrackingField& field) {
+    constexpr int kCubes = CubeDirections::kCubes;
+    constexpr double kVoxels = double(BrickLattice::kNodes) / kCubes;  // of a cube
+    std::vector<std::int32_t> bricks(field.bricks().brick_count());
+    std::iota(bricks.begin(), bricks.end(), 0);
+    std::vector<double> weights(bricks.size() * kCubes);
+    const double side = std::cbrt(cube_volume(field.medium()));
+    parallel_for(bricks.size(), [&](std::size_t b) {
+        double* const of_brick = &weights[b * kCubes];
+        for (int n = 0; n < BrickLattice::kNodes; ++n) {
+            const ivec3 voxel = BrickLattice::node_in_brick(n);
+            of_brick[CubeDirections::index_of(voxel / CubeDirections::kCube)] +=
+                field.extinction(b, vec3(voxel) + 0.5f);
+        }
+        for (int cube = 0; cube < kCubes; ++cube)
+            of_brick[cube] = -std::expm1(-of_brick[cube] / kVoxels * side);
+    });
+    return {field, std::move(bricks), weights};
+}
+
+// Around the smoke and what is near it.
+BoundingBall ball_around_smoke(const TrackingField& field) {
+    if (field.bricks().empty())
+        return {};
+    const Medium& medium = field.medium();
+    dvec3 low(1e300), high(-1e300);
+    for (std::size_t b = 0; b < field.bricks().brick_count(); ++b) {
+        const dvec3 middle(medium.local_of_node(field.bricks().first_node(b) + BrickLattice::kSize / 2));
+        low = glm::min(low, middle);
+        high = glm::max(high, middle);
+    }
+    return {0.5 * (low + high), kAround * 0.5 * glm::length(high - low)};
+}
 
 }  // namespace
 
@@ -89,10 +129,23 @@ SpecularPhotons::SpecularPhotons(const DirectLight& scene, const VirtualLights* 
         lights->report().photons.unshared_fraction() > kUnsharedLeft)
         particles_ =
             static_cast<std::size_t>(settings.photons == kAutomaticPhotons ? kMostAutomaticPhotons : settings.photons);
+    if (empty())
+        return;
+    smoke_ = points_of_smoke(scene.field());
+    around_smoke_ = ball_around_smoke(scene.field());
 }
 
-// Light that the surface at the end of a flight sends on and no virtual light holds. Roulette keeps the powers about
-// equal.
+// Roulette keeps the powers of tracks about equal, and far below those of particles, of which few send light to smoke.
+void SpecularPhotons::send(const Ray& ray, const Rgb& sent, const Rgb& arrived, Rng& rng, Tracks& tracks) const {
+    const float part = std::min(1.0f, largest(sent) / (kPowerOfTrack * largest(arrived)));
+    if (!(rng.next() < part))
+        return;
+    const std::optional<SurfaceHit> hit = scene_.surroundings()->intersector().first_hit(ray);
+    tracks.add(ray, hit ? hit->distance : kNoEnd, sent / part);
+}
+
+// Light that the surface at the end of a flight sends on and no virtual light holds: along a direction of its BSDF, and
+// along one toward the smoke.
 void SpecularPhotons::cast(const RaySegment& segment, const Rgb& power, Rng& rng, Tracks& tracks) const {
     const SurfacePoint& point = *segment.point;
     const bool held = lights_ && lights_->hold_base(*segment.hit, point) && !(share_ > 0.0f && rng.next() < share_);
@@ -100,16 +153,20 @@ void SpecularPhotons::cast(const RaySegment& segment, const Rgb& power, Rng& rng
         return;
     const PathVertex vertex(point, Bsdf(point.material, point.frame, held ? Lobes::Specular : Lobes::All),
                             segment.ray.direction);
-    const std::optional<PathVertex::Sample> next = vertex.sample(rng, Transport::Importance);
-    if (!next)
+    const bool aims = !smoke_.empty() && !vertex.only_delta();
+    if (const std::optional<PathVertex::Sample> next = vertex.sample(rng, Transport::Importance)) {
+        const Ray ray = vertex.leaving(next->wi);
+        const double other = aims && !next->delta ? smoke_.pdf(ray) : 0.0;
+        send(ray, power * next->weight * float(next->pdf / (next->pdf + other)), power, rng, tracks);
+    }
+    if (!aims)
         return;
-    const Rgb sent = power * next->weight;
-    const float part = std::min(1.0f, largest(sent) / largest(power));
-    if (!(rng.next() < part))
+    const Ray ray = vertex.leaving(smoke_.sample(vertex.position(), rng));
+    const PathVertex::Value value = vertex.at(ray.direction, Transport::Importance);
+    if (!(largest(value.value) > 0.0f))
         return;
-    const Ray ray = vertex.leaving(next->wi);
-    const std::optional<SurfaceHit> hit = scene_.surroundings()->intersector().first_hit(ray);
-    tracks.add(ray, hit ? hit->distance : kNoEnd, sent / part);
+    if (const double density = value.pdf + smoke_.pdf(ray); density > 0.0)
+        send(ray, power * value.value / float(density), power, rng, tracks);
 }
 
 void SpecularPhotons::follow(std::uint64_t index, const Particles& particles, Tracks& tracks) const {
@@ -126,7 +183,7 @@ void SpecularPhotons::follow(std::uint64_t index, const Particles& particles, Tr
 
 Gathered SpecularPhotons::on(const Medium& medium, const LatticeRequest& request) const {
     const BoundingBall ball = ball_around(scene_);
-    const Particles particles(scene_, ball, particles_);
+    const Particles particles(scene_, ball, particles_, around_smoke_);
     Tracks tracks(medium, request, emitted_power(scene_, ball));
     parallel_blocks(particles_, kParticlesAtOnce, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)

@@ -8,10 +8,16 @@
 // is fluence (the track-length estimator; Spanier, Two Pairs of Families of Estimators for Transport Problems, SIAM J.
 // Appl. Math. 14(4), 1966).
 //
+// Smoke fills a small part of what a surface sees. Each particle that meets one therefore sends light in two
+// directions: one of the BSDF's lobes, and one toward a point of the smoke. The balance heuristic weights both (Veach,
+// Robust Monte Carlo Methods for Light Transport Simulation, 1997, section 9.2.2.1). Most particles from infinity start
+// toward the smoke and what is near it.
+//
 // Unbiased up to the size of voxels; a voxel that surfaces cut is too dark.
 #pragma once
 
 #include "gathering/gather.h"
+#include "transport/cube_directions.h"
 #include "virtual_lights/virtual_lights.h"
 
 namespace brisance {
@@ -36,10 +42,13 @@ private:
     class Tracks;
     void follow(std::uint64_t index, const Particles& particles, Tracks& tracks) const;
     void cast(const RaySegment& segment, const Rgb& power, Rng& rng, Tracks& tracks) const;
+    void send(const Ray& ray, const Rgb& sent, const Rgb& arrived, Rng& rng, Tracks& tracks) const;
 
     const DirectLight& scene_;
     const VirtualLights* lights_;
     std::size_t particles_ = 0;
+    CubeDirections smoke_;       // points that tracks are aimed at
+    BoundingBall around_smoke_;  // toward which particles start from infinity
     std::uint32_t seed_;
     float share_;
 };
