@@ -61,8 +61,9 @@ TEST(LatticeLevel, FineBouncesFadeInWithTheError) {
         const double now = crowding(automatic, error), part = share_of_fine_bounces({2, 0.0f}, automatic, error);
         EXPECT_GE(now, room) << error;
         EXPECT_GE(part, share) << error;
-        if (share >= 0.0 && error <= 0.02f)
+        if (share >= 0.0 && error <= 0.02f) {
             EXPECT_LT(part - share, 0.3) << error;
+        }
         room = now;
         share = part;
     }
