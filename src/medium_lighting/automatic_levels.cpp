@@ -6,12 +6,12 @@
 
 namespace brisance {
 
-AutomaticLevels automatic_levels_of(const Medium& medium, const LightingSettings& settings,
-                                    const ScatteringSettings& scattering) {
+AutomaticLevels automatic_levels_of(const Medium& medium, const Surroundings* surroundings,
+                                    const LightingSettings& settings, const ScatteringSettings& scattering) {
     if (medium.lattice.brick_count() == 0)
         return {};
     const ExtinctionPyramid pyramid(medium, ExtinctionPyramid::kMaxLevels);
-    const LightingLevels levels = lighting_levels(medium, settings);
+    const LightingLevels levels = lighting_levels(medium, settings, surroundings);
     return {levels.first.level, levels.smoke.level, automatic_levels(medium),
             lattice_of_series(pyramid, scattering, settings.error).level};
 }

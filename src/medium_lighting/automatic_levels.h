@@ -1,6 +1,7 @@
 // What the lighting of a medium chooses from its voxels where the settings leave it open.
 #pragma once
 
+#include "emitters/surroundings.h"
 #include "gathering/settings.h"
 #include "medium/medium.h"
 #include "scattering/settings.h"
@@ -14,7 +15,8 @@ struct AutomaticLevels {
     int scattering = 0;  // scattering.lattice_level
 };
 
-AutomaticLevels automatic_levels_of(const Medium& medium, const LightingSettings& settings,
-                                    const ScatteringSettings& scattering);
+// `surroundings`: of the medium; null: none.
+AutomaticLevels automatic_levels_of(const Medium& medium, const Surroundings* surroundings,
+                                    const LightingSettings& settings, const ScatteringSettings& scattering);
 
 }  // namespace brisance

@@ -46,6 +46,30 @@ TEST(SequenceLevels, AreThoseOfTheGivenFrameAndWhatTheShotStatesStays) {
     EXPECT_FALSE(leaves_levels_open(shot));
 }
 
+// Thin smoke is lit on wider voxels; not where a floor through nine layers of it would have a part of their light
+// beyond.
+TEST(SequenceLevels, KnowTheFloorInTheSmoke) {
+    const TempFolder folder;
+    write_smoke(folder / "a.0001.vdb", 4);
+    write_smoke(folder / "b.0001.vdb", 40);
+    const auto level = [&](const char* volume, bool floor) {
+        Shot shot;
+        shot.volume.file = (folder / volume).string();
+        shot.medium.smoke.extinction_per_metre = 0.1f;
+        if (floor) {
+            QuickQuad quad;
+            quad.corners = {dvec3(-10, -10, 0.05), dvec3(10, -10, 0.05), dvec3(10, 10, 0.05), dvec3(-10, 10, 0.05)};
+            shot.scene.quads.push_back(quad);
+        }
+        Progress silent;
+        return with_levels_of(shot, folder / volume, 1, silent).lighting.lattice_level;
+    };
+    EXPECT_EQ(level("a.0001.vdb", false), 1);
+    EXPECT_EQ(level("b.0001.vdb", false), 1);
+    EXPECT_EQ(level("a.0001.vdb", true), 0);
+    EXPECT_EQ(level("b.0001.vdb", true), 1);
+}
+
 TEST(SequenceLevels, HoldTheMeanEscapeProbabilityWhereItDecides) {
     const TempFolder folder;
     write_smoke(folder / "a.0001.vdb", 6);

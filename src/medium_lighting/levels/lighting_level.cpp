@@ -178,9 +178,8 @@ private:
     std::map<int, float> beyond_;  // surfaces
 };
 
-bool surfaces_reach_into(const MediumLightingInput& input) {
-    return input.surroundings && input.surroundings->has_surfaces() &&
-           surfaces_reach_into(input.surroundings->scene(), input.medium);
+bool reach_into(const Surroundings* surroundings, const Medium& medium) {
+    return surroundings && surroundings->has_surfaces() && surfaces_reach_into(surroundings->scene(), medium);
 }
 
 // Light of a lattice and the next coarser one, whose errors are known.
@@ -282,15 +281,12 @@ float error_of_voxels(float depth) {
     return kErrorOfVoxels * depth * depth;
 }
 
-LightingLevels lighting_levels(const MediumLightingInput& input) {
-    if (!surfaces_reach_into(input))
-        return lighting_levels(input.medium, input.lighting);
-    const SurfaceOccluders surfaces(input.surroundings->intersector());
-    return levels_by({input.medium, &surfaces}, input.lighting);
-}
-
-LightingLevels lighting_levels(const Medium& medium, const LightingSettings& settings) {
-    return levels_by({medium, nullptr}, settings);
+LightingLevels lighting_levels(const Medium& medium, const LightingSettings& settings,
+                               const Surroundings* surroundings) {
+    if (!reach_into(surroundings, medium))
+        return levels_by({medium, nullptr}, settings);
+    const SurfaceOccluders surfaces(surroundings->intersector());
+    return levels_by({medium, &surfaces}, settings);
 }
 
 float tolerated_interpolation(const Medium& medium, const LightingSettings& settings) {

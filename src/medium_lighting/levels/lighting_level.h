@@ -34,9 +34,12 @@ struct LightingLevels {
 // As LightingSettings say, or by the errors; where an error of interpolation is stated, the medium's own lattice.
 // Beside surfaces that reach into the medium light is interpolated between what is seen (corners_seen.h). What wider
 // voxels would send out on the other side of surfaces counts as an error.
-LightingLevels lighting_levels(const MediumLightingInput& input);
-// The same without surfaces.
-LightingLevels lighting_levels(const Medium& medium, const LightingSettings& settings);
+// `surroundings`: null: there are no surfaces.
+LightingLevels lighting_levels(const Medium& medium, const LightingSettings& settings,
+                               const Surroundings* surroundings = nullptr);
+inline LightingLevels lighting_levels(const MediumLightingInput& input) {
+    return lighting_levels(input.medium, input.lighting, input.surroundings);
+}
 
 // The error that interpolation between nodes of this medium may add to the picture: as stated, or a quarter of
 // lighting.error where light on the lattice twice as coarse errs by no more than lighting.error, falling to 0 where it

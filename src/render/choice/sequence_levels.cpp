@@ -5,7 +5,7 @@
 #include "forecast/mean_escape.h"
 #include "forecast/scattering_choice.h"
 #include "medium_lighting/automatic_levels.h"
-#include "render/input/load_medium.h"
+#include "render/input/frame_input.h"
 
 namespace brisance {
 namespace {
@@ -27,9 +27,9 @@ bool leaves_lattices_open(const Shot& shot) {
             shot.scattering.lattice_level < 0);
 }
 
-void choose_lattices(Shot& shot, const Medium& medium, const std::string& file, Progress& progress) {
-    const AutomaticLevels levels =
-        automatic_levels_of(medium, shot.lighting, settings_of_orders(shot.scattering, shot.output.bounce_layers));
+void choose_lattices(Shot& shot, const FrameInput& input, const std::string& file, Progress& progress) {
+    const AutomaticLevels levels = automatic_levels_of(input.medium, input.surroundings.get(), shot.lighting,
+                                                       settings_of_orders(shot.scattering, shot.output.bounce_layers));
     if (shot.lighting.smoke_lattice_level < 0)
         shot.lighting.smoke_lattice_level = levels.smoke;
     if (shot.lighting.lattice_level < 0)
@@ -63,12 +63,12 @@ Shot with_levels_of(Shot shot, const std::filesystem::path& volume, int frame, P
         return shot;
     WarningsAlone quiet(progress);
     Statistics unused;
-    const Medium medium = load_medium(shot, volume, frame, unused, quiet);
+    const FrameInput input = load_frame(shot, volume, frame, unused, quiet);
     const std::string file = volume.filename().string();
     if (leaves_lattices_open(shot))
-        choose_lattices(shot, medium, file, progress);
+        choose_lattices(shot, input, file, progress);
     if (leaves_escape_open(shot))
-        choose_escape(shot, medium, file, progress);
+        choose_escape(shot, input.medium, file, progress);
     return shot;
 }
 
