@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "core/error.h"
+#include "fixtures/instant_radiosity.h"
 #include "fixtures/media.h"
 #include "fixtures/sets.h"
 #include "render/render_frame.h"
@@ -25,15 +26,7 @@ struct CornerWithFire {
         shot.camera.samples_per_axis = 2;
         shot.certify.belief = 0.0;
         shot.scattering_methods.method = kLightingGridMethod;
-        VirtualLightSettings& v = shot.virtual_lights;
-        v.count = 60;
-        v.placement = "light_paths";
-        v.flux = "own";
-        v.kind = "sphere";
-        v.sampling = "power";
-        v.path_extension = false;
-        v.sharing_radius = 0.0;
-        v.photons = 3000;
+        shot.virtual_lights = instant_radiosity("sphere", 60, 3000);
     }
 
     static Medium smoke_with_fire() {

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "fixtures/instant_radiosity.h"
 #include "fixtures/media.h"
 #include "fixtures/sets.h"
 #include "forecast/plan.h"
@@ -29,15 +30,7 @@ Shot small_shot(const std::string& sampling) {
     shot.camera.samples_per_axis = 2;
     shot.certify.belief = 0.0;
     shot.scattering_methods.method = kLightingGridMethod;
-    VirtualLightSettings& v = shot.virtual_lights;
-    v.count = 200;
-    v.placement = "light_paths";
-    v.flux = "own";
-    v.kind = "point";
-    v.sampling = "power";
-    v.path_extension = false;
-    v.sharing_radius = 0.0;
-    v.photons = 5000;
+    shot.virtual_lights = instant_radiosity("point", 200, 5000);
     shot.unified_lights.sampling = sampling;
     shot.unified_lights.samples = 8;
     return shot;
