@@ -86,7 +86,7 @@ LitLattice::LitLattice(const MediumLightingInput& input, int level)
       depths_(pyramid_, kExteriorRayLevel) {
     if (input.surroundings && input.surroundings->has_surfaces()) {
         surfaces_ = std::make_unique<SurfaceOccluders>(input.surroundings->intersector());
-        if (surfaces_reach_into(input.surroundings->scene(), medium()))
+        if (surfaces_reach_into(input.surroundings, medium()))
             pyramid_.set_occluders(surfaces_.get());
     }
     if (input.single || input.multiple)

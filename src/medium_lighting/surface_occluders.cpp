@@ -46,11 +46,13 @@ bool SurfaceOccluders::any_within(const vec3& centre, float radius) const {
     return intersector_.any_within(dvec3(centre), radius);
 }
 
-bool surfaces_reach_into(const Scene& scene, const Medium& medium) {
+bool surfaces_reach_into(const Surroundings* surroundings, const Medium& medium) {
+    if (!surroundings || !surroundings->has_surfaces())
+        return false;
     const Extent box = extent_of_smoke(medium);
     if (box.empty())
         return false;
-    for (const SceneMesh& mesh : scene.meshes)
+    for (const SceneMesh& mesh : surroundings->scene().meshes)
         for (const glm::uvec3& t : mesh.triangles)
             if (may_touch(box, mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]))
                 return true;

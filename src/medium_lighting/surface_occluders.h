@@ -1,6 +1,7 @@
 // A scene's surfaces as occluders of light inside of the medium.
 #pragma once
 
+#include "emitters/surroundings.h"
 #include "geometry/intersector.h"
 #include "medium/lattice/occluders.h"
 #include "medium/medium.h"
@@ -18,7 +19,7 @@ private:
 };
 
 // Whether some triangle comes between nodes of the medium that absorb, scatter or glow: whether it may touch the box
-// around them. Where none does, light that goes from smoke to smoke meets no surface.
-bool surfaces_reach_into(const Scene& scene, const Medium& medium);
+// around them. Where none does, light that goes from smoke to smoke meets no surface. Null: there are none.
+bool surfaces_reach_into(const Surroundings* surroundings, const Medium& medium);
 
 }  // namespace brisance

@@ -178,10 +178,6 @@ private:
     std::map<int, float> beyond_;  // surfaces
 };
 
-bool reach_into(const Surroundings* surroundings, const Medium& medium) {
-    return surroundings && surroundings->has_surfaces() && surfaces_reach_into(surroundings->scene(), medium);
-}
-
 // Light of a lattice and the next coarser one, whose errors are known.
 LightingLevel between(int level, float error, float of_coarser, float allowed) {
     return {level, 1.0f - glm::smoothstep(1.0f, kNearlyAllowed, of_coarser / allowed), error, of_coarser};
@@ -283,7 +279,7 @@ float error_of_voxels(float depth) {
 
 LightingLevels lighting_levels(const Medium& medium, const LightingSettings& settings,
                                const Surroundings* surroundings) {
-    if (!reach_into(surroundings, medium))
+    if (!surfaces_reach_into(surroundings, medium))
         return levels_by({medium, nullptr}, settings);
     const SurfaceOccluders surfaces(surroundings->intersector());
     return levels_by({medium, &surfaces}, settings);
