@@ -23,6 +23,7 @@
 #include "virtual_lights/placement/bidirectional.h"
 #include "virtual_lights/placement/metropolis.h"
 #include "virtual_lights/placement/rejection.h"
+#include "virtual_lights/placement/relaxation.h"
 
 namespace brisance {
 
@@ -39,6 +40,8 @@ constexpr std::array kPlacements = {
               power_alone, light_path_flux},
     Placement{"relaxed_light_paths", "those of them near the camera's paths, thinned out evenly",
               relaxed_light_path_deposits, thin_to_blue_noise, equal_importance, nullptr},
+    Placement{"repelled_light_paths", "the same, but begun at random and moved apart in steps",
+              relaxed_light_path_deposits, thin_by_relaxation, equal_importance, nullptr},
     Placement{"rejection", "where they arrive, kept by what the camera sees of them", rejected_deposits, thin_at_random,
               equal_importance, rejected_flux},
     Placement{"bidirectional", "half of those, half of the camera's, by what the camera sees of them",

@@ -343,10 +343,12 @@ TEST(Baselines, AreTheSameBitsOnAnyThreads) {
     VirtualLightSettings rejected = of_photons("point", "lightcuts"), mutated = of_photons("point", "plain_power");
     rejected.placement = "rejection";
     mutated.placement = "metropolis";
+    VirtualLightSettings repelled = rich;
+    repelled.placement = "repelled_light_paths";
     VirtualLightSettings both_ways = sampled_by("stochastic_lightcuts", "sphere");
     both_ways.placement = "bidirectional";
     for (const VirtualLightSettings& settings :
-         {rich, of_photons("sphere", "light_tree"), of_photons("point"), rejected, mutated, both_ways}) {
+         {rich, of_photons("sphere", "light_tree"), of_photons("point"), rejected, mutated, both_ways, repelled}) {
         const std::vector<float> one = fingerprint(settings, 1);
         EXPECT_GT(one.size(), 2000u);
         EXPECT_EQ(one, fingerprint(settings, 2));

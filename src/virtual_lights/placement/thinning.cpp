@@ -30,30 +30,40 @@ Survivors thin_to_blue_noise(const std::vector<vec3>& positions, const VirtualLi
     return eliminate(positions, static_cast<std::size_t>(s.count), settings);
 }
 
-// The first of a shuffled sequence (Fisher and Yates). Of uniform radius: the mean area of all.
-Survivors thin_at_random(const std::vector<vec3>& positions, const VirtualLightSettings& s) {
-    std::vector<std::uint32_t> order(positions.size());
+// The first of a shuffled sequence (Fisher and Yates).
+std::vector<std::uint32_t> random_subset(std::size_t of, const VirtualLightSettings& s) {
+    std::vector<std::uint32_t> order(of);
     std::iota(order.begin(), order.end(), 0u);
-    const std::size_t count = std::min(positions.size(), static_cast<std::size_t>(s.count));
+    const std::size_t count = std::min(of, static_cast<std::size_t>(s.count));
     for (std::size_t i = 0; i < count; ++i) {
         Rng rng(Stream::LightCandidate, ~i, s.seed);
         std::swap(order[i], order[i + static_cast<std::size_t>(rng.next_double() * double(order.size() - i))]);
     }
     order.resize(count);
     std::sort(order.begin(), order.end());
+    return order;
+}
+
+// Of uniform radius: the mean area of all.
+Survivors with_distances(std::vector<std::uint32_t> index, const std::vector<vec3>& positions,
+                         const VirtualLightSettings& s) {
     std::vector<vec3> chosen;
-    chosen.reserve(count);
-    for (const std::uint32_t i : order)
+    chosen.reserve(index.size());
+    for (const std::uint32_t i : index)
         chosen.push_back(positions[i]);
-    Survivors out{order, packing_distances(chosen, kFewNeighbours)};
+    Survivors out{std::move(index), packing_distances(chosen, kFewNeighbours)};
     if (s.radius == LightRadius::Uniform) {
         double area = 0.0;
         for (const float distance : out.distance)
             area += area_of_distance(distance);
         std::fill(out.distance.begin(), out.distance.end(),
-                  float(std::sqrt(area / double(count) / area_of_distance(1.0))));
+                  float(std::sqrt(area / double(chosen.size()) / area_of_distance(1.0))));
     }
     return out;
+}
+
+Survivors thin_at_random(const std::vector<vec3>& positions, const VirtualLightSettings& s) {
+    return with_distances(random_subset(positions.size(), s), positions, s);
 }
 
 VirtualLight light_at(const Scene& scene, const Deposit& deposit) {
