@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <utility>
 
 #include "core/parallel.h"
 #include "core/stopwatch.h"
@@ -43,11 +44,19 @@ void interaction_list(const LightField& field, const GridLevel& level, bool top,
                       ivec3(glm::ceil((high + reach) * scale)) + reference + 1, list);
 }
 
+// Receivers, and their light.
+struct ReceiverSet {
+    const Receivers* receivers;
+    Gathered* light;  // planar over receivers, to which is added
+};
+
 class FarGather {
 public:
-    FarGather(const LightField& field, const Receivers& receivers, float mean_cosine, Gathered& out, Progress& progress,
+    // All sets share the maps.
+    FarGather(const LightField& field, std::vector<ReceiverSet> sets, float mean_cosine, Progress& progress,
               ReceiverKind kind = ReceiverKind::Medium)
-        : field_(field), receivers_(receivers), mean_cosine_(mean_cosine), kind_(kind), out_(out), progress_(progress) {
+        : field_(field), sets_(std::move(sets)), mean_cosine_(mean_cosine), kind_(kind), progress_(progress) {
+        std::erase_if(sets_, [](const ReceiverSet& s) { return s.receivers->size() == 0; });
         fine_ = field.pyramid->view(0);
     }
 
@@ -62,7 +71,7 @@ public:
         LevelCost cost;
         cost.level = level.level;
         cost.lights = level.size();
-        if (level.size() == 0 || receivers_.size() == 0)
+        if (level.size() == 0 || sets_.empty())
             return cost;
         const bool maps = has_maps(level);
         ShadowMapLayout layout;
@@ -164,17 +173,18 @@ private:
     std::vector<std::uint32_t> needed_lights(const GridLevel& level, const FarLights& lights,
                                              const ShadowMapCache::Level& made) {
         std::vector<std::uint8_t> used(level.size(), 0);
-        parallel_for(receivers_.blocks().size(), [&](std::size_t b) {
-            thread_local std::vector<std::uint32_t> near;
-            const ReceiverBlock& block = receivers_.blocks()[b];
-            interaction_list(field_, level, lights.top, block.bounds, near);
-            for (const std::uint32_t i : near) {
-                std::atomic_ref<std::uint8_t> mark(used[i]);
-                if (made.map_of[i] == FarLights::kNoMap && mark.load(std::memory_order_relaxed) == 0 &&
-                    may_reach(lights, i, receivers_, block))
-                    mark.store(1, std::memory_order_relaxed);
-            }
-        });
+        for (const ReceiverSet& set : sets_)
+            parallel_for(set.receivers->blocks().size(), [&](std::size_t b) {
+                thread_local std::vector<std::uint32_t> near;
+                const ReceiverBlock& block = set.receivers->blocks()[b];
+                interaction_list(field_, level, lights.top, block.bounds, near);
+                for (const std::uint32_t i : near) {
+                    std::atomic_ref<std::uint8_t> mark(used[i]);
+                    if (made.map_of[i] == FarLights::kNoMap && mark.load(std::memory_order_relaxed) == 0 &&
+                        may_reach(lights, i, *set.receivers, block))
+                        mark.store(1, std::memory_order_relaxed);
+                }
+            });
         std::vector<std::uint32_t> list;
         for (std::uint32_t i = 0; i < used.size(); ++i)
             if (used[i])
@@ -201,23 +211,31 @@ private:
 
     std::uint64_t gather_batch(const GridLevel& level, const FarLights& all, std::size_t count,
                                const ShadowMapCache::Level& made) {
-        std::vector<std::uint64_t> evaluations(receivers_.blocks().size(), 0);
-        parallel_for(receivers_.blocks().size(), [&](std::size_t b) {
+        std::uint64_t sum = 0;
+        for (const ReceiverSet& set : sets_)
+            sum += gather_batch(level, all, count, made, *set.receivers, *set.light);
+        return sum;
+    }
+
+    std::uint64_t gather_batch(const GridLevel& level, const FarLights& all, std::size_t count,
+                               const ShadowMapCache::Level& made, const Receivers& receivers, Gathered& light) {
+        std::vector<std::uint64_t> evaluations(receivers.blocks().size(), 0);
+        parallel_for(receivers.blocks().size(), [&](std::size_t b) {
             thread_local std::vector<std::uint32_t> list;
-            const ReceiverBlock& block = receivers_.blocks()[b];
+            const ReceiverBlock& block = receivers.blocks()[b];
             interaction_list(field_, level, all.top, block.bounds, list);
             std::erase_if(list, [&](std::uint32_t i) { return i < all.list_base || i >= all.list_base + count; });
             FarLights lights = all;
             lights.list = list;
             lights.maps = made.maps.data();
             lights.map_of = made.map_of.empty() ? nullptr : made.map_of.data();
-            const FarOutput output{receivers_.size(),
-                                   out_.fluence.data(),
-                                   out_.scattered.empty() ? nullptr : out_.scattered.data(),
-                                   out_.moments.empty() ? nullptr : out_.moments.data(),
+            const FarOutput output{receivers.size(),
+                                   light.fluence.data(),
+                                   light.scattered.empty() ? nullptr : light.scattered.data(),
+                                   light.moments.empty() ? nullptr : light.moments.data(),
                                    mean_cosine_,
                                    kind_};
-            evaluations[b] = gather_far(lights, receivers_, block, output);
+            evaluations[b] = gather_far(lights, receivers, block, output);
         });
         std::uint64_t sum = 0;
         for (std::uint64_t e : evaluations)
@@ -226,52 +244,85 @@ private:
     }
 
     const LightField& field_;
-    const Receivers& receivers_;
+    std::vector<ReceiverSet> sets_;
     float mean_cosine_;
     ReceiverKind kind_;
-    Gathered& out_;
     Progress& progress_;
     PackedExtinction fine_;
 };
 
-// Light of the levels from `first` to `last` at the nodes of a lattice.
-Gathered gather_levels(const LightField& field, const LatticeRequest& request, const NodeReceivers& at,
-                       std::size_t first, std::size_t last, std::vector<LevelCost>& costs, Progress& progress) {
-    Gathered light;
-    light.resize(at.receivers.size(), request.eye.has_value(), request.moments);
-    FarGather(field, at.receivers, request.mean_cosine, light, progress).run_levels(first, last, costs);
-    return light;
-}
-
 int wanted_coarsening(const LightField& field, const LatticeRequest& request, const GridLevel& level) {
-    if (!request.interpolates_far_light || field.occluders)
+    if (!request.interpolates_far_light)
         return 0;
     return std::max(request.least_coarsening, coarsening_of(field, level));
 }
 
-// Adds the light of levels from `first` on to `out`, at the nodes of the lattice `at` and at coarser ones below it.
-void gather_down(const LightField& field, const LatticeRequest& request, const NodeReceivers& at, std::size_t first,
-                 int coarsening, Gathered& out, std::vector<LevelCost>& costs, Progress& progress) {
-    const auto& levels = field.grid->levels;
-    std::size_t last = first;
-    while (last < levels.size() && wanted_coarsening(field, request, levels[last]) <= coarsening)
-        ++last;
-    if (last > first)
-        add_at_nodes(at, gather_levels(field, request, at, first, last, costs, progress), out);
-    if (last == levels.size())
-        return;
-    const NodeReceivers coarser = coarser_receivers(field.pyramid->medium(), request, at, coarsening + 1);
-    Gathered light;
-    light.resize(coarser.needed.size(), request.eye.has_value(), request.moments);
-    gather_down(field, request, coarser, last, coarsening + 1, light, costs, progress);
-    add_interpolated(coarser, light, at, out);
-}
+// Adds the light of all levels of the grid to the requested nodes, from near to far: each at the nodes of a lattice and
+// at those of finer ones that do not see it whole.
+class GatherDown {
+public:
+    GatherDown(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
+               Progress& progress)
+        : field_(field), request_(request), costs_(costs), progress_(progress) {}
 
-// Adds the contributions of all levels of the grid to the requested nodes.
-void gather_grid(const LightField& field, const LatticeRequest& request, Gathered& out, std::vector<LevelCost>& costs,
-                 Progress& progress) {
-    gather_down(field, request, node_receivers(field.pyramid->medium(), request), 0, 0, out, costs, progress);
-}
+    // From the level `first` on, at the nodes of a lattice and at coarser ones below it.
+    void run(const NodeReceivers& at, std::size_t first, int coarsening, Gathered& out) {
+        const auto& levels = field_.grid->levels;
+        std::size_t last = first;
+        while (last < levels.size() && wanted_coarsening(field_, request_, levels[last]) <= coarsening)
+            ++last;
+        asked_.push_back({&at, &out});
+        gather(first, last);
+        asked_.pop_back();
+        if (last == levels.size())
+            return;
+        if (!field_.occluders) {
+            run_between(at, last, coarsening, out);
+            return;
+        }
+        const NodesBesideSurfaces parts =
+            part_beside_surfaces(field_.pyramid->medium(), request_, at, coarsening, *field_.occluders);
+        asked_.push_back({&parts.beside, &out});
+        run_between(parts.in_the_open, last, coarsening, out);
+        asked_.pop_back();
+    }
+
+private:
+    struct Asked {
+        const NodeReceivers* nodes;
+        Gathered* light;  // planar over nodes
+    };
+
+    // At the nodes of a lattice, from the coarser ones below it.
+    void run_between(const NodeReceivers& nodes, std::size_t first, int coarsening, Gathered& out) {
+        const NodeReceivers coarser = coarser_receivers(field_.pyramid->medium(), request_, nodes, coarsening + 1);
+        Gathered light;
+        light.resize(coarser.needed.size(), request_.eye.has_value(), request_.moments);
+        run(coarser, first, coarsening + 1, light);
+        add_interpolated(coarser, light, nodes, out);
+    }
+
+    // Of the levels from `first` to `last`.
+    void gather(std::size_t first, std::size_t last) {
+        if (last == first)
+            return;
+        std::vector<Gathered> light(asked_.size());
+        std::vector<ReceiverSet> sets;
+        for (std::size_t i = 0; i < asked_.size(); ++i) {
+            light[i].resize(asked_[i].nodes->receivers.size(), request_.eye.has_value(), request_.moments);
+            sets.push_back({&asked_[i].nodes->receivers, &light[i]});
+        }
+        FarGather(field_, std::move(sets), request_.mean_cosine, progress_).run_levels(first, last, costs_);
+        for (std::size_t i = 0; i < asked_.size(); ++i)
+            add_at_nodes(*asked_[i].nodes, light[i], *asked_[i].light);
+    }
+
+    const LightField& field_;
+    const LatticeRequest& request_;
+    std::vector<LevelCost>& costs_;
+    Progress& progress_;
+    std::vector<Asked> asked_;
+};
 
 }  // namespace
 
@@ -325,7 +376,7 @@ Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request,
     out.resize(field.pyramid->medium().lattice.node_count(), request.eye.has_value(), request.moments);
     if (field.bottom == 0 && field.intensity)
         costs.push_back(gather_near_field(field, request, out));
-    gather_grid(field, request, out, costs, progress);
+    GatherDown(field, request, costs, progress).run(node_receivers(field.pyramid->medium(), request), 0, 0, out);
     return out;
 }
 
@@ -334,7 +385,7 @@ Gathered gather_at_points(const LightField& field, const GridLevel& bottom, cons
                           bool moments) {
     Gathered out;
     out.resize(receivers.size(), !receivers.out_x.empty(), moments);
-    FarGather gather(field, receivers, mean_cosine, out, progress, kind);
+    FarGather gather(field, {{&receivers, &out}}, mean_cosine, progress, kind);
     if (field.bottom == 0)
         costs.push_back(gather.run(bottom, false));
     gather.run_levels(0, field.grid->levels.size(), costs);

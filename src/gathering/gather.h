@@ -68,7 +68,7 @@ struct LatticeRequest {
     bool moments = false;
     float mean_cosine = 0.0f;
     bool interpolates_far_light = true;  // between fewer nodes (node_receivers.h)
-    int least_coarsening = 0;            // then at no more than every 2^n-th node, where no surfaces are
+    int least_coarsening = 0;            // then at no more than every 2^n-th node
 };
 
 // Gathers at the nodes of the medium: the near field exactly, the levels above with precomputed shadows. There is a

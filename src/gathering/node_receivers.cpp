@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "medium/coarse_medium.h"
+#include "medium/lattice/corners_seen.h"
 
 namespace brisance {
 
@@ -97,10 +98,28 @@ NodeReceivers coarser_receivers(const Medium& medium, const LatticeRequest& requ
     return out;
 }
 
+NodesBesideSurfaces part_beside_surfaces(const Medium& medium, const LatticeRequest& request, const NodeReceivers& fine,
+                                         int coarsening, const Occluders& occluders) {
+    const CornersSeen seen(medium, fine.lattice, coarsening, fine.needed, 1, occluders);
+    NodesBesideSurfaces out{{fine.lattice, fine.needed, {}, {}}, {fine.lattice, {}, {}, {}}};
+    out.beside.needed.resize(fine.needed.size(), 0);
+    parallel_for(
+        fine.lattice.brick_count(),
+        [&](std::size_t b) {
+            const CornersSeen::OfBrick* const corners = seen.of_brick(b);
+            for (std::size_t k = 0; corners && k < BrickLattice::kNodes; ++k)
+                if ((*corners)[k] != CornersSeen::kAll)
+                    std::swap(out.in_the_open.needed[b * BrickLattice::kNodes + k],
+                              out.beside.needed[b * BrickLattice::kNodes + k]);
+        },
+        64);
+    place_receivers(medium, request, coarsening, out.beside);
+    return out;
+}
+
 int coarsening_of(const LightField& field, const GridLevel& level) {
-    // Without maps nothing is smoothed. Light of the finest level comes from within a voxel. Behind surfaces light ends
-    // at once.
-    if (field.settings.shadows != ShadowMethod::Maps || level.level == field.bottom || field.occluders)
+    // Without maps nothing is smoothed. Light of the finest level comes from within a voxel.
+    if (field.settings.shadows != ShadowMethod::Maps || level.level == field.bottom)
         return 0;
     const float share = kShareOfRadius * power_of_share(field.settings.error / kErrorOfShare);
     const float lengths = share * field.alpha * level.spacing / field.pyramid->medium().spacing;

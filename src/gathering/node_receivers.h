@@ -6,6 +6,10 @@
 // level's blending radius, and interpolated to the nodes between, coarsest lattice first. This is for an error of 2 %;
 // where less is asked for, the distance falls as its power 3/2; where more is allowed, it grows as its square root. All
 // light of far levels together then costs less than that of the nearest.
+//
+// Surfaces in the medium end light at once: nodes that do not see all the coarse ones around them gather for themselves
+// (medium/lattice/corners_seen.h). Beyond the edges of surfaces the shadow of a light that stands for many voxels fades
+// over a width like that of the interpolant, since it is cut at places all over these voxels.
 #pragma once
 
 #include <vector>
@@ -29,6 +33,14 @@ NodeReceivers node_receivers(const Medium& medium, const LatticeRequest& request
 // the result, relative to the medium.
 NodeReceivers coarser_receivers(const Medium& medium, const LatticeRequest& request, const NodeReceivers& fine,
                                 int coarsening);
+
+// Needed nodes of `fine`, which is as coarse, in two parts: those that see all nodes of the coarser lattice around
+// them, without receivers, and the others.
+struct NodesBesideSurfaces {
+    NodeReceivers in_the_open, beside;
+};
+NodesBesideSurfaces part_beside_surfaces(const Medium& medium, const LatticeRequest& request, const NodeReceivers& fine,
+                                         int coarsening, const Occluders& occluders);
 
 // By how many halvings of the lattice a level's receivers may be fewer than the medium's nodes.
 int coarsening_of(const LightField& field, const GridLevel& level);

@@ -1,5 +1,5 @@
 // Light on coarse lattices beside surfaces that stand in the smoke.
-#include "medium_lighting/levels/corners_seen.h"
+#include "medium/lattice/corners_seen.h"
 
 #include <gtest/gtest.h>
 

@@ -24,7 +24,8 @@ public:
         copy_box(lattice, values, channels, low_, ivec3(wide_), box_);
     }
 
-    // `seen`: the corners that count (corners_seen.h).
+    // `seen`: the corners that count (corners_seen.h); the others count for nothing. Where all are hidden, as between
+    // walls that are nearer to each other than nodes are, all count.
     void at(const ivec3& fine, std::uint8_t seen, float* out) const {
         const ivec3 base = fine >> level_, cell = base - low_;
         const vec3 f = vec3(fine - (base << level_)) / float(1 << level_);
@@ -41,6 +42,8 @@ public:
                 out[c] += w.x * w.y * w.z * box_[c * plane + i];
             all += w.x * w.y * w.z;
         }
+        if (all == 0.0f)
+            return at(fine, CornersSeen::kAll, out);
         for (int c = 0; c < channels && seen != CornersSeen::kAll; ++c)
             out[c] /= all;
     }

@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "medium/lattice/corners_seen.h"
 #include "medium/medium.h"
-#include "medium_lighting/levels/corners_seen.h"
 
 namespace brisance {
 

@@ -17,13 +17,16 @@ void add_virtual_lights(const PointsOfSides& sides, const LitLattice& lattice, G
     std::size_t lights = 0;
     // Lights outside of the lattice represent themselves only: no voxel has a share in them.
     const std::vector<float> no_weight(lattice.node_count(), 0.0f);
+    // Light from outside fades within a few voxels of the smoke's skin, however far its lights are.
+    LatticeRequest request = lattice.request();
+    request.interpolates_far_light = false;
     for (const PointLights& side : sides) {
         const LightingGrid grid = build_point_grid(lattice.medium(), side, settings.alpha);
         if (grid.levels.empty())
             continue;
         const LightField field{pyramid,  nullptr, nullptr,           &grid, &no_weight, settings.alpha,
                                settings, nullptr, lattice.surfaces()};
-        arriving.add(gather_at_nodes(field, lattice.request(), costs, progress));
+        arriving.add(gather_at_nodes(field, request, costs, progress));
         stage.bytes = std::max(stage.bytes, grid.bytes() + most_held(costs));
         lights += side.size();
     }

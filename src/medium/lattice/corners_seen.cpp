@@ -1,5 +1,6 @@
-#include "medium_lighting/levels/corners_seen.h"
+#include "medium/lattice/corners_seen.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/parallel.h"
@@ -38,20 +39,9 @@ bool hidden(const Occluders& occluders, const vec3& from, const vec3& to) {
     return occluders.first_hit(from + start * direction, direction, way) < way;
 }
 
-std::uint8_t seen_from(const Medium& fine, const ivec3& node, int level, const Occluders& occluders) {
-    const CoarseCell cell(node, level);
-    const vec3 from = fine.local_of_node(node);
-    std::uint8_t seen = 0;
-    for (int k = 0; k < 8; ++k)
-        if (cell.weight(node, k) > 0.0f && !hidden(occluders, from, fine.local_of_node(cell.corner(k))))
-            seen |= std::uint8_t(1 << k);
-    return seen != 0 ? seen : CornersSeen::kAll;
-}
-
-// Whether a surface may come between nodes of a box and the corners of their cells.
-bool may_be_cut(const Medium& fine, const ivec3& first, int side, int level, const Occluders& occluders) {
-    const vec3 low = fine.local_of_node(first), high = fine.local_of_node(first + ivec3(side - 1));
-    const float reach = std::sqrt(3.0f) * std::exp2(float(level)) * fine.spacing;
+// Whether a surface may come between nodes of a box and the corners of their cells. `spacing`: of the nodes [m].
+bool may_be_cut(const vec3& low, const vec3& high, float spacing, int level, const Occluders& occluders) {
+    const float reach = std::sqrt(3.0f) * std::exp2(float(level)) * spacing;
     return occluders.any_within(0.5f * (low + high), 0.5f * glm::distance(low, high) + reach);
 }
 
@@ -62,11 +52,58 @@ int side_of_part(int level) {
 
 }  // namespace
 
+// The nodes that look for corners.
+class CornersSeen::FineNodes {
+public:
+    FineNodes(const Medium& medium, const BrickLattice& lattice, int coarsening,
+              const std::vector<std::uint8_t>* needed)
+        : medium_(medium), lattice_(lattice), coarsening_(coarsening), needed_(needed) {}
+
+    const BrickLattice& lattice() const { return lattice_; }
+    vec3 local(const ivec3& node) const { return medium_.local_of_node(node * (1 << coarsening_)); }
+    bool may_be_cut(const ivec3& first, int side, int level, const Occluders& occluders) const {
+        return brisance::may_be_cut(local(first), local(first + ivec3(side - 1)),
+                                    std::exp2(float(coarsening_)) * medium_.spacing, level, occluders);
+    }
+    bool asks(std::size_t node) const { return !needed_ || (*needed_)[node] != 0; }
+    bool brick_asks(std::size_t brick) const {
+        return !needed_ || std::any_of(needed_->begin() + std::ptrdiff_t(brick * BrickLattice::kNodes),
+                                       needed_->begin() + std::ptrdiff_t((brick + 1) * BrickLattice::kNodes),
+                                       [](std::uint8_t n) { return n != 0; });
+    }
+
+    std::uint8_t seen_from(const ivec3& node, int level, const Occluders& occluders) const {
+        const CoarseCell cell(node, level);
+        const vec3 from = local(node);
+        std::uint8_t seen = 0;
+        for (int k = 0; k < 8; ++k)
+            if (cell.weight(node, k) == 0.0f || !hidden(occluders, from, local(cell.corner(k))))
+                seen |= std::uint8_t(1 << k);
+        return seen;
+    }
+
+private:
+    const Medium& medium_;
+    const BrickLattice& lattice_;
+    int coarsening_;
+    const std::vector<std::uint8_t>* needed_;
+};
+
 CornersSeen::CornersSeen(const Medium& fine, int level, const Occluders& occluders)
     : bricks_(fine.lattice.brick_count()) {
+    find({fine, fine.lattice, 0, nullptr}, level, occluders);
+}
+
+CornersSeen::CornersSeen(const Medium& medium, const BrickLattice& lattice, int coarsening,
+                         const std::vector<std::uint8_t>& needed, int level, const Occluders& occluders)
+    : bricks_(lattice.brick_count()) {
+    find({medium, lattice, coarsening, &needed}, level, occluders);
+}
+
+void CornersSeen::find(const FineNodes& fine, int level, const Occluders& occluders) {
     parallel_for(bricks_.size(), [&](std::size_t b) {
-        const ivec3 first = fine.lattice.first_node(b);
-        if (!may_be_cut(fine, first, BrickLattice::kSize, level, occluders))
+        const ivec3 first = fine.lattice().first_node(b);
+        if (!fine.brick_asks(b) || !fine.may_be_cut(first, BrickLattice::kSize, level, occluders))
             return;
         auto seen = std::make_unique<OfBrick>();
         seen->fill(kAll);
@@ -76,10 +113,11 @@ CornersSeen::CornersSeen(const Medium& fine, int level, const Occluders& occlude
         for (int x = 0; x < parts; ++x)
             for (int y = 0; y < parts; ++y)
                 for (int z = 0; z < parts; ++z)
-                    cut[part_at({x, y, z})] = may_be_cut(fine, first + side * ivec3(x, y, z), side, level, occluders);
+                    cut[part_at({x, y, z})] = fine.may_be_cut(first + side * ivec3(x, y, z), side, level, occluders);
         for (int k = 0; k < BrickLattice::kNodes; ++k)
-            if (const ivec3 p = BrickLattice::node_in_brick(k); cut[part_at(p / side)])
-                (*seen)[k] = seen_from(fine, first + p, level, occluders);
+            if (const ivec3 p = BrickLattice::node_in_brick(k);
+                cut[part_at(p / side)] && fine.asks(b * BrickLattice::kNodes + std::size_t(k)))
+                (*seen)[k] = fine.seen_from(first + p, level, occluders);
         bricks_[b] = std::move(seen);
     });
 }
@@ -92,7 +130,9 @@ double part_beyond_surfaces(const Medium& fine, int level, const Occluders& occl
         for (int k = 0; k < BrickLattice::kNodes; ++k)
             all[b] += extinction[k];
         const ivec3 first = fine.lattice.first_node(b);
-        if (all[b] == 0.0 || !may_be_cut(fine, first, BrickLattice::kSize, level, occluders))
+        if (all[b] == 0.0 ||
+            !may_be_cut(fine.local_of_node(first), fine.local_of_node(first + ivec3(BrickLattice::kSize - 1)),
+                        fine.spacing, level, occluders))
             return;
         double sum = 0.0, behind = 0.0;
         for (int s = 0; s < kSampledNodes; ++s) {

@@ -1,8 +1,7 @@
 // Which nodes of a coarse lattice the nodes of a finer one see past surfaces.
 //
-// Light on a coarse lattice is interpolated between the eight nodes around a point. Beside a floor or a wall some of
-// them lie behind it, in the dark or in the light of another room. Those count for nothing, and the others in their
-// place. Where all are hidden, as between walls that are nearer to each other than nodes are, all count.
+// What is known on a coarse lattice is interpolated between the eight nodes around a point. Beside a floor or a wall
+// some of them lie behind it, in the dark or in the light of another room.
 #pragma once
 
 #include <array>
@@ -22,12 +21,19 @@ public:
 
     // From the nodes of `fine` to those of the lattice 2^level coarser around each.
     CornersSeen(const Medium& fine, int level, const Occluders& occluders);
+    // From the nodes of a lattice that is 2^coarsening coarser than the medium's own. `needed`: per node, those that
+    // are asked for.
+    CornersSeen(const Medium& medium, const BrickLattice& lattice, int coarsening,
+                const std::vector<std::uint8_t>& needed, int level, const Occluders& occluders);
 
-    // Per node of a brick of `fine`: bit 4 x + 2 y + z is set where the corner at that side of the coarse cell is seen.
-    // Null: all are, of all nodes.
+    // Per node of a brick of the finer lattice: bit 4 x + 2 y + z is set where the corner at that side of the coarse
+    // cell is seen or has no weight. Null: all are, of all nodes.
     const OfBrick* of_brick(std::size_t brick) const { return bricks_[brick].get(); }
 
 private:
+    class FineNodes;
+    void find(const FineNodes& fine, int level, const Occluders& occluders);
+
     std::vector<std::unique_ptr<OfBrick>> bricks_;
 };
 
