@@ -1,62 +1,77 @@
 #include "scattering/lattice_level.h"
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/parallel.h"
 
 namespace brisance {
 
 namespace {
 
-// Voxels in the volume that the smoke fills, and in all that holds smoke.
-constexpr double kMostFilled = 90000.0, kMostOfAll = 1000000.0;
-// What a bounce on the medium's own lattice corrects, the series need not know: voxels 1.65 times as wide will do.
-constexpr double kCrowding = 4.5;
-// The errors at which such bounces begin, and at which they are whole. Below, finer lattices err less.
-constexpr float kErrorOfNoBounce = 0.01f, kErrorOfBounce = 0.02f;
-// Above this part of either, the next coarser level begins to count.
-constexpr float kNearlyDue = 0.75f;
+constexpr float kError = 0.023f, kErrorBeforeFineBounce = 0.016f;
+// Of the error of the picture, what a series may add. A larger share would save little: on voxels three levels wider
+// than the light's own, a series takes a twentieth of the frame's time.
+constexpr float kShare = 0.625f, kNearlyAllowed = 1.2f;
+constexpr int kWidest = 3;
+// Where more than usual is allowed, other errors grow, too.
+constexpr float kUsual = 0.02f;
 
-float weight_of_fine_bounces(const ScatteringSettings& settings, float error) {
-    if (settings.fine_bounces >= 0)
-        return settings.fine_bounces > 0 ? 1.0f : 0.0f;
-    return std::clamp((error - kErrorOfNoBounce) / (kErrorOfBounce - kErrorOfNoBounce), 0.0f, 1.0f);
+// `weight` of a node.
+template <class Weight>
+SmokeMet met(const Medium& medium, const Weight& weight) {
+    const std::size_t bricks = medium.lattice.brick_count();
+    std::vector<dvec3> sums(bricks, dvec3(0.0));  // of weights, extinction and albedo
+    parallel_for(
+        bricks,
+        [&](std::size_t b) {
+            for (std::size_t i = b * BrickLattice::kNodes; i < (b + 1) * BrickLattice::kNodes; ++i)
+                if (const double w = weight(i); w > 0.0)
+                    sums[b] += w * dvec3(1.0, medium.extinction[i], luminance(medium.albedo_at(i)));
+        },
+        16);
+    dvec3 all(0.0);
+    for (const dvec3& sum : sums)
+        all += sum;
+    if (!(all.x > 0.0))
+        return {0.0f, 0.0f, medium.mean_cosine};
+    return {static_cast<float>(medium.spacing * all.y / all.x), static_cast<float>(all.z / all.x), medium.mean_cosine};
 }
 
 }  // namespace
 
-double lattice_fullness(std::span<const float> extinction) {
-    double sum = 0.0, squares = 0.0, all = 0.0;
-    for (const float e : extinction) {
-        sum += e;
-        squares += double(e) * e;
-        all += e > 0.0f;
+SmokeMet smoke_met(const Medium& medium, std::span<const Rgb> scattered) {
+    return met(medium, [&](std::size_t i) { return double(luminance(scattered[i])); });
+}
+
+SmokeMet smoke_met(const Medium& medium) {
+    return met(medium, [&](std::size_t i) { return double(medium.extinction[i]); });
+}
+
+float error_of_series(const SmokeMet& smoke, const ScatteringSettings& settings, float level) {
+    const float a = smoke.albedo, depth = std::exp2(level) * (1.0f - smoke.mean_cosine) * smoke.depth;
+    return (count_of_fine_bounces(settings) > 0 ? kErrorBeforeFineBounce * a : kError) * a * a * depth;
+}
+
+LatticeChoice lattice_of_series(const ScatteringSettings& settings, float error, int last,
+                                const std::function<float(int)>& error_of) {
+    if (settings.lattice_level >= 0)
+        return {std::min(settings.lattice_level, last), 0.0f};
+    const float allowed = kShare * std::min(error, std::sqrt(kUsual * error));
+    const int widest = std::min(last, kWidest);
+    int level = 0;
+    while (level < widest) {
+        const float next = error_of(level + 1);
+        if (next > allowed)
+            return {level, allowed > 0.0f ? 1.0f - glm::smoothstep(1.0f, kNearlyAllowed, next / allowed) : 0.0f};
+        ++level;
     }
-    const double filled = squares > 0.0 ? sum * sum / squares : 0.0;
-    return std::max(filled / kMostFilled, all / kMostOfAll);
+    return {level, 0.0f};
 }
 
-double crowding(const ScatteringSettings& settings, float error) {
-    return 1.0 + (kCrowding - 1.0) * weight_of_fine_bounces(settings, error);
-}
-
-LatticeChoice automatic_lattice(const ExtinctionPyramid& pyramid, double crowding) {
-    const int last = pyramid.level_count() - 1;
-    LatticeChoice choice;
-    double full = crowding * lattice_fullness(pyramid.nodes(0));
-    while (choice.level < last && full > 1.0)
-        full = crowding * lattice_fullness(pyramid.nodes(++choice.level));
-    if (choice.level < last)
-        choice.share_of_coarser = glm::smoothstep(kNearlyDue, 1.0f, float(full));
-    return choice;
-}
-
-float share_of_fine_bounces(const LatticeChoice& lattice, const ScatteringSettings& settings, float error) {
-    return weight_of_fine_bounces(settings, error) * (lattice.level > 0 ? 1.0f : lattice.share_of_coarser);
-}
-
-LatticeChoice lattice_of_series(const ExtinctionPyramid& pyramid, const ScatteringSettings& settings, float error) {
-    const int wish = settings.lattice_level;
-    return wish < 0 ? automatic_lattice(pyramid, crowding(settings, error))
-                    : LatticeChoice{std::min(wish, pyramid.level_count() - 1), 0.0f};
+float share_of_fine_bounces(const LatticeChoice& lattice, const ScatteringSettings& settings) {
+    return count_of_fine_bounces(settings) == 0 ? 0.0f : lattice.level > 0 ? 1.0f : lattice.share_of_coarser;
 }
 
 }  // namespace brisance
