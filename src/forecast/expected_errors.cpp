@@ -147,10 +147,10 @@ ExpectedError expected_error(const ModelledFrame& frame) {
     const ScatteringSettings settings = orders_of(frame.shot);
     const LightingLevels levels = lighting_levels(frame.medium, frame.shot.lighting);
     const LatticeChoice series = forecast_lattice(frame.shot, frame.medium, levels.smoke.level);
-    ExpectedError out = ErrorModel(frame, levels.first.error, levels.interpolation, levels.smoke.level,
-                                   levels.smoke.level + series.level, share_of_fine_bounces(series, settings),
-                                   settings.remainder)
-                            .of(brightest(frame.plan));
+    ExpectedError out =
+        ErrorModel(frame, levels.first.error, levels.interpolation, levels.smoke.level,
+                   levels.smoke.level + series.level, share_of_fine_bounces(series, settings), settings.remainder)
+            .of(brightest(frame.plan));
     out.cell.clear();
     return out;
 }

@@ -49,8 +49,8 @@ SmokeMet smoke_met(const Medium& medium) {
     return met(medium, [&](std::size_t i) { return double(medium.extinction[i]); });
 }
 
-float error_of_series(const SmokeMet& smoke, const ScatteringSettings& settings, float level) {
-    const float a = smoke.albedo, depth = std::exp2(level) * (1.0f - smoke.mean_cosine) * smoke.depth;
+float error_of_series(const SmokeMet& smoke, const ScatteringSettings& settings, int level) {
+    const float a = smoke.albedo, depth = std::exp2(float(level)) * (1.0f - smoke.mean_cosine) * smoke.depth;
     return (count_of_fine_bounces(settings) > 0 ? kErrorBeforeFineBounce * a : kError) * a * a * depth;
 }
 
@@ -71,7 +71,9 @@ LatticeChoice lattice_of_series(const ScatteringSettings& settings, float error,
 }
 
 float share_of_fine_bounces(const LatticeChoice& lattice, const ScatteringSettings& settings) {
-    return count_of_fine_bounces(settings) == 0 ? 0.0f : lattice.level > 0 ? 1.0f : lattice.share_of_coarser;
+    if (count_of_fine_bounces(settings) == 0)
+        return 0.0f;
+    return lattice.level > 0 ? 1.0f : lattice.share_of_coarser;
 }
 
 }  // namespace brisance

@@ -37,7 +37,7 @@ SmokeMet smoke_met(const Medium& medium, std::span<const Rgb> scattered);
 SmokeMet smoke_met(const Medium& medium);
 
 // Relative error of the picture by a series on voxels 2^level times as wide.
-float error_of_series(const SmokeMet& smoke, const ScatteringSettings& settings, float level);
+float error_of_series(const SmokeMet& smoke, const ScatteringSettings& settings, int level);
 
 // The lattice of a series: as stated, or the coarsest whose error, `error_of` a level, is at most 5/8 of `error`, that
 // of LightingSettings. While the next coarser one's falls to that from 6/5 of it, it takes over step by step, so that
@@ -45,8 +45,8 @@ float error_of_series(const SmokeMet& smoke, const ScatteringSettings& settings,
 LatticeChoice lattice_of_series(const ScatteringSettings& settings, float error, int last,
                                 const std::function<float(int)>& error_of);
 
-// Of all light of a series, the part that bounces on the medium's own lattice replace (ScatteringSettings::
-// fine_bounces): what was solved on coarser ones.
+// Of all light of a series, the part that bounces on the medium's own lattice replace
+// (ScatteringSettings::fine_bounces): what was solved on coarser ones.
 float share_of_fine_bounces(const LatticeChoice& lattice, const ScatteringSettings& settings);
 
 }  // namespace brisance

@@ -57,8 +57,8 @@ struct ScatteringInput {
     const ExtinctionPyramid* pyramid;
     const ScatteredLight* once;  // leaving the nodes after its first scattering, not sharpened; directional if g != 0
     LightingSettings lighting;
-    ScatteringSettings settings;    // but for their lattice_level
-    LatticeChoice lattice = {};     // of the pyramid
+    ScatteringSettings settings;  // but for their lattice_level
+    LatticeChoice lattice = {};   // of the pyramid
     bool separate_orders = false;
 };
 
