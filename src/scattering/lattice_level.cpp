@@ -11,11 +11,12 @@ namespace brisance {
 namespace {
 
 constexpr float kError = 0.023f, kErrorBeforeFineBounce = 0.016f;
-// Of the error of the picture, what a series may add. A larger share would save little: on voxels three levels wider
-// than the light's own, a series takes a twentieth of the frame's time.
+// Of the error of the picture, what a series may add.
 constexpr float kShare = 0.625f, kNearlyAllowed = 1.2f;
-constexpr int kWidest = 3;
-// Where more than usual is allowed, other errors grow, too.
+// On voxels two levels wider than the light's own a series takes a tenth of the frame's time: wider ones save little.
+constexpr int kWidest = 2;
+// Where more is allowed, other errors grow, too, and wider voxels save nothing: drafts of the built-in explosion erred
+// by 3.4 instead of 2.7 % in the same time.
 constexpr float kUsual = 0.02f;
 
 // `weight` of a node.
@@ -58,7 +59,7 @@ LatticeChoice lattice_of_series(const ScatteringSettings& settings, float error,
                                 const std::function<float(int)>& error_of) {
     if (settings.lattice_level >= 0)
         return {std::min(settings.lattice_level, last), 0.0f};
-    const float allowed = kShare * std::min(error, std::sqrt(kUsual * error));
+    const float allowed = kShare * std::min(error, kUsual);
     const int widest = std::min(last, kWidest);
     int level = 0;
     while (level < widest) {

@@ -40,8 +40,8 @@ SmokeMet smoke_met(const Medium& medium);
 float error_of_series(const SmokeMet& smoke, const ScatteringSettings& settings, int level);
 
 // The lattice of a series: as stated, or the coarsest whose error, `error_of` a level, is at most 5/8 of `error`, that
-// of LightingSettings. While the next coarser one's falls to that from 6/5 of it, it takes over step by step, so that
-// the light changes continuously with the medium. No coarser than `last`, and three levels.
+// of LightingSettings, or of 0.02. While the next coarser one's falls to that from 6/5 of it, it takes over step by
+// step, so that the light changes continuously with the medium. No coarser than `last`, and two levels.
 LatticeChoice lattice_of_series(const ScatteringSettings& settings, float error, int last,
                                 const std::function<float(int)>& error_of);
 
