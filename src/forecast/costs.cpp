@@ -78,9 +78,8 @@ LatticeChoice forecast_lattice(const Shot& shot, const Medium& medium, int smoke
     ScatteringSettings settings = orders_of(shot);
     if (settings.lattice_level >= 0)
         settings.lattice_level = std::max(0, settings.lattice_level - smoke_level);
-    const SmokeMet smoke = smoke_met(medium);
-    return lattice_of_series(settings, shot.lighting.error, ExtinctionPyramid::kMaxLevels - 1,
-                             [&](int level) { return error_of_series(smoke, settings, smoke_level + level); });
+    return lattice_of_series(smoke_met(medium).coarser(smoke_level), settings, shot.lighting.error,
+                             ExtinctionPyramid::kMaxLevels - 1);
 }
 
 double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan, const CameraSettings& camera) {

@@ -9,7 +9,6 @@
 // burning shell of smoke, which errs by a third of it.
 #pragma once
 
-#include <functional>
 #include <span>
 
 #include "medium/medium.h"
@@ -28,6 +27,11 @@ struct SmokeMet {
     float depth = 0.0f;   // optical, of a voxel
     float albedo = 0.0f;  // luminance
     float mean_cosine = 0.0f;
+    float radius = 0.0f;  // in voxels: of a ball as large as the volume that it fills, (integral of extinction)^2 /
+                          // integral of its square
+
+    // On voxels 2^level times as wide.
+    SmokeMet coarser(int level) const;
 };
 
 // `scattered`: the light that leaves each node [W/sr].
@@ -39,11 +43,11 @@ SmokeMet smoke_met(const Medium& medium);
 // Relative error of the picture by a series on voxels 2^level times as wide.
 float error_of_series(const SmokeMet& smoke, const ScatteringSettings& settings, int level);
 
-// The lattice of a series: as stated, or the coarsest whose error, `error_of` a level, is at most 5/8 of `error`, that
-// of LightingSettings, or of 0.02. While the next coarser one's falls to that from 6/5 of it, it takes over step by
-// step, so that the light changes continuously with the medium. No coarser than `last`, and two levels.
-LatticeChoice lattice_of_series(const ScatteringSettings& settings, float error, int last,
-                                const std::function<float(int)>& error_of);
+// The lattice of a series: as stated, or the coarsest whose error is at most 5/8 of `error`, that of LightingSettings,
+// or of 0.02. While the next coarser one's falls to that from 6/5 of it, it takes over step by step, so that the light
+// changes continuously with the medium. Automatically no coarser than two levels, nor than a quarter of the smoke's
+// radius; never coarser than `last`.
+LatticeChoice lattice_of_series(const SmokeMet& smoke, const ScatteringSettings& settings, float error, int last);
 
 // Of all light of a series, the part that bounces on the medium's own lattice replace
 // (ScatteringSettings::fine_bounces): what was solved on coarser ones.

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "fixtures/media.h"
 #include "scattering/lattice_level.h"
@@ -24,8 +25,7 @@ Medium smoke_of(const NodeBox& box, double spacing, const NodeScalar& density, f
 }
 
 double mean_level(const SmokeMet& smoke, float error = 0.02f, const ScatteringSettings& settings = {}) {
-    const LatticeChoice choice = lattice_of_series(settings, error, kNoLimit,
-                                                   [&](int level) { return error_of_series(smoke, settings, level); });
+    const LatticeChoice choice = lattice_of_series(smoke, settings, error, kNoLimit);
     return choice.level + double(choice.share_of_coarser);
 }
 
@@ -37,12 +37,25 @@ SmokeMet in_cube(int nodes, double spacing) {
 TEST(LatticeLevel, GivesWayGraduallyAsSmokeGetsThinner) {
     double last = 0.0;
     for (float depth = 8.0f; depth > 0.05f; depth *= 0.99f) {
-        const double level = mean_level({depth, 0.8f, 0.0f});
+        const double level = mean_level({depth, 0.8f, 0.0f, 100.0f});
         EXPECT_GE(level, last) << depth;
         EXPECT_LT(level - last, 0.15) << depth;
         last = level;
     }
-    EXPECT_EQ(mean_level({8.0f, 0.8f, 0.0f}), 0.0);
+    EXPECT_EQ(mean_level({8.0f, 0.8f, 0.0f, 100.0f}), 0.0);
+    EXPECT_EQ(last, 2.0);
+}
+
+// A small cloud that grows, however thin. No lattice of an extinction pyramid is as coarse.
+TEST(LatticeLevel, SmallSmokeKeepsVoxelsOfItsRadius) {
+    double last = 0.0;
+    for (float radius = 1.0f; radius < 20.0f; radius += 0.1f) {
+        const double level = mean_level({1e-3f, 0.8f, 0.0f, radius});
+        EXPECT_LE(std::exp2(level), std::max(1.0f, 0.2501f * radius)) << radius;
+        EXPECT_GE(level, last) << radius;
+        EXPECT_LT(level - last, 0.1) << radius;
+        last = level;
+    }
     EXPECT_EQ(last, 2.0);
 }
 
@@ -73,7 +86,7 @@ TEST(LatticeLevel, FollowsTheSmokeThatScattersLight) {
 }
 
 TEST(LatticeLevel, FollowsWhatTheShotStates) {
-    const SmokeMet smoke{0.5f, 0.8f, 0.0f};
+    const SmokeMet smoke{0.5f, 0.8f, 0.0f, 100.0f};
     double last = 100.0;
     for (const float error : {0.05f, 0.02f, 0.01f, 0.005f, 0.001f}) {
         EXPECT_LE(mean_level(smoke, error), last) << error;

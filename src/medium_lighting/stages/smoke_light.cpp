@@ -25,11 +25,10 @@ struct SeriesLattice {
 SeriesLattice lattice_of(const LitLattice& lattice, const ScatteredLight& once, const ScatteringSettings& settings) {
     SeriesLattice out;
     out.smoke = smoke_met(lattice.medium(), once.intensity);
-    const auto error_of = [&](int level) { return error_of_series(out.smoke, settings, level); };
     out.choice =
-        lattice_of_series(settings, lattice.input().lighting.error, lattice.pyramid().level_count() - 1, error_of);
-    out.error = error_of(out.choice.level);
-    out.error_of_coarser = error_of(out.choice.level + 1);
+        lattice_of_series(out.smoke, settings, lattice.input().lighting.error, lattice.pyramid().level_count() - 1);
+    out.error = error_of_series(out.smoke, settings, out.choice.level);
+    out.error_of_coarser = error_of_series(out.smoke, settings, out.choice.level + 1);
     return out;
 }
 
