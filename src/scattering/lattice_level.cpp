@@ -17,6 +17,10 @@ constexpr float kShare = 0.625f, kNearlyAllowed = 1.2f;
 constexpr float kWidest = 2.0f;
 // Voxels of the radius of small smoke, however thin it is.
 constexpr float kVoxelsOfRadius = 0.25f;
+// What the rim of small smoke adds that scatters again and again, over the cube of the albedo and the width of a voxel
+// in radii: a white ball of eight voxels in radius and two mean free paths erred by 3.3 instead of 1.5 % on voxels
+// twice as wide.
+constexpr float kErrorOfRim = 0.1f;
 // Where more is allowed, other errors grow, too, and wider voxels save nothing: drafts of the built-in explosion erred
 // by 3.4 instead of 2.7 % in the same time.
 constexpr float kUsual = 0.02f;
@@ -84,7 +88,9 @@ LatticeChoice lattice_of_series(const SmokeMet& smoke, const ScatteringSettings&
         next = error_of_series(smoke, settings, static_cast<int>(level) + 1) / allowed;
         level += 1.0f - glm::smoothstep(1.0f, kNearlyAllowed, next);
     }
-    level = std::clamp(std::log2(kVoxelsOfRadius * smoke.radius), 0.0f, std::min(level, float(last)));
+    const float rim = kErrorOfRim * smoke.albedo * smoke.albedo * smoke.albedo,
+                widest = rim * kVoxelsOfRadius > allowed ? allowed / rim : kVoxelsOfRadius;
+    level = std::clamp(std::log2(widest * smoke.radius), 0.0f, std::min(level, float(last)));
     return {static_cast<int>(level), level - std::floor(level)};
 }
 

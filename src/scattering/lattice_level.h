@@ -46,7 +46,7 @@ float error_of_series(const SmokeMet& smoke, const ScatteringSettings& settings,
 // The lattice of a series: as stated, or the coarsest whose error is at most 5/8 of `error`, that of LightingSettings,
 // or of 0.02. While the next coarser one's falls to that from 6/5 of it, it takes over step by step, so that the light
 // changes continuously with the medium. Automatically no coarser than two levels, nor than a quarter of the smoke's
-// radius; never coarser than `last`.
+// radius, of white smoke an eighth; never coarser than `last`.
 LatticeChoice lattice_of_series(const SmokeMet& smoke, const ScatteringSettings& settings, float error, int last);
 
 // Of all light of a series, the part that bounces on the medium's own lattice replace

@@ -108,8 +108,8 @@ TEST(Choices, AreAllBuiltOrRefused) {
                     ++built;
                 }
     const auto gatherers = static_cast<int>(light_gatherers().size());
-    EXPECT_EQ(built, 7 * (gatherers + 3 * (gatherers - 4)) + 3 * 3 * (gatherers - 4));
-    EXPECT_EQ(built + refused, 7 * 2 * 4 * gatherers);
+    EXPECT_EQ(built, 8 * (gatherers + 3 * (gatherers - 4)) + 3 * 3 * (gatherers - 4));
+    EXPECT_EQ(built + refused, 8 * 2 * 4 * gatherers);
 }
 
 TEST(Presets, AreSettingsOfAShotThatGoTogether) {
