@@ -46,6 +46,22 @@ TEST(LatticeLevel, GivesWayGraduallyAsSmokeGetsThinner) {
     EXPECT_EQ(last, 2.0);
 }
 
+// Light scatters in it again and again, and meets the rim each time.
+TEST(LatticeLevel, SmallWhiteSmokeKeepsFinerVoxels) {
+    for (const float radius : {6.0f, 8.0f, 12.0f, 16.0f}) {
+        const double white = mean_level({1e-3f, 1.0f, 0.0f, radius}), dark = mean_level({1e-3f, 0.4f, 0.0f, radius});
+        EXPECT_LE(std::exp2(white), std::max(1.0f, radius / 7.9f)) << radius;
+        EXPECT_GE(dark, white + (dark < 2.0 ? 0.5 : 0.0)) << radius;
+    }
+    double last = mean_level({1e-3f, 0.0f, 0.0f, 10.0f});
+    for (float albedo = 0.0f; albedo <= 1.0f; albedo += 0.01f) {
+        const double level = mean_level({1e-3f, albedo, 0.0f, 10.0f});
+        EXPECT_LE(level, last + 1e-6) << albedo;
+        EXPECT_LT(last - level, 0.1) << albedo;
+        last = level;
+    }
+}
+
 // A small cloud that grows, however thin. No lattice of an extinction pyramid is as coarse.
 TEST(LatticeLevel, SmallSmokeKeepsVoxelsOfItsRadius) {
     double last = 0.0;
