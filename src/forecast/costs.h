@@ -5,7 +5,6 @@
 #include "forecast/plan.h"
 #include "medium/medium.h"
 #include "reference/path_tracer.h"
-#include "scattering/lattice_level.h"
 #include "shot/shot.h"
 
 namespace brisance {
@@ -14,14 +13,15 @@ namespace brisance {
 struct CountedMedium {
     explicit CountedMedium(const Medium& medium);
     const Medium& medium;
-    double lit_nodes = 0.0;  // at which light is gathered
+    double lit_nodes = 0.0;   // at which light is gathered
+    double lattice_fullness;  // scattering/lattice_level.h
 };
 
 // How the shot's orders of scattering are solved.
 ScatteringSettings orders_of(const Shot& shot);
 
-// The lattice on which the orders of scattering are solved, about, as levels above that of the smoke's light.
-LatticeChoice forecast_lattice(const Shot& shot, const Medium& medium, int smoke_level);
+// That of the lattice on which the orders of scattering are solved, about.
+int forecast_lattice_level(const Shot& shot, const CountedMedium& counted);
 
 // A picture by the lighting grid: evaluations of lights at nodes, shadow maps, orders of scattering, and the camera's
 // rays.

@@ -11,6 +11,7 @@
 #include "lighting_grid/voxel_lights.h"
 #include "medium/phase.h"
 #include "scattering/coarse_operator.h"
+#include "scattering/lattice_level.h"
 
 namespace brisance {
 
@@ -206,7 +207,7 @@ std::vector<ScatteredLight> solve_scattering(const ScatteringInput& input, Scatt
     if (input.settings.bounces == 2 || !(total_luminance(orders[0].intensity) > 0.0))
         return orders;
 
-    const LatticeChoice& lattice = input.lattice;
+    const LatticeChoice lattice = lattice_of_series(*input.pyramid, input.settings, input.lighting.error);
     std::vector<ScatteredLight> further = solve(input, orders[0], lattice.level, 0, costs, progress);
     if (lattice.share_of_coarser > 0.0f) {
         ScatteringCosts coarser;

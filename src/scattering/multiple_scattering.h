@@ -31,7 +31,6 @@
 #include "scattering/bounce_balance.h"
 #include "scattering/coarse_operator.h"
 #include "scattering/diffused_light.h"
-#include "scattering/lattice_level.h"
 #include "scattering/settings.h"
 
 namespace brisance {
@@ -57,8 +56,7 @@ struct ScatteringInput {
     const ExtinctionPyramid* pyramid;
     const ScatteredLight* once;  // leaving the nodes after its first scattering, not sharpened; directional if g != 0
     LightingSettings lighting;
-    ScatteringSettings settings;  // but for their lattice_level
-    LatticeChoice lattice = {};   // of the pyramid
+    ScatteringSettings settings;
     bool separate_orders = false;
 };
 
