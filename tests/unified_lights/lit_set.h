@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fire_lights/sampled_fire.h"
+#include "fixtures/instant_radiosity.h"
 #include "fixtures/ray_fixture.h"
 #include "unified_lights/unified_lights.h"
 
@@ -71,15 +72,9 @@ double relative_variance(int times, const Draw& draw) {
 struct LitSet {
     explicit LitSet(const Recipe& recipe, Scene set, std::vector<LightSettings> lamps = {}, int virtual_count = 40)
         : stage(recipe, std::move(set), std::move(lamps), 1) {
-        VirtualLightSettings s;
-        s.count = virtual_count;
-        s.placement = "light_paths";
-        s.flux = "own";
-        s.kind = "point";
+        VirtualLightSettings s = instant_radiosity("point", virtual_count, 4000);
         s.point_bound = kPointBound;
         s.sampling = "all";
-        s.path_extension = false;
-        s.photons = 4000;
         const PixelCamera camera{16, 16, [this](double x, double y) { return ray({x, y, 0.0}); }, 1024.0};
         lights = std::make_unique<VirtualLights>(stage.scene(), camera, s);
     }
