@@ -81,6 +81,7 @@ Bsdf::Bsdf(const SurfaceMaterial& m, const ShadingFrame& frame, const EnergyTabl
     const float crossing = base_share_mean_;
     if (smooth_)
         return;
+    row_ = EnergyTables::row(ggx_.alpha);
     const Albedos means = tables->mean(ggx_.alpha);
     lost_mean_ = 1.0 - means.reflect;
     metal_multiple_ = multiple_scattering_albedo(mean_schlick_fresnel(base_), lost_mean_);
@@ -99,7 +100,7 @@ Bsdf::Bsdf(const SurfaceMaterial& m, const ShadingFrame& frame, const EnergyTabl
 }
 
 Albedos Bsdf::albedos(double cosine) const {
-    return tables_ ? tables_->at(ggx_.alpha, cosine) : Albedos{};
+    return tables_ ? tables_->at(row_, cosine) : Albedos{};
 }
 
 double Bsdf::lost_both(int side, const Albedos& albedos) const {
@@ -186,6 +187,10 @@ Rgb Bsdf::straight_weight(const View& view) const {
 // predicts their light badly.
 void Bsdf::choose_lobes(View& view) const {
     const bool outside = view.side == 0;
+    if (!has_specular_) {
+        view.base = outside && has_base_ && mean(coated_ * base_ * view.base_share) > 0.0 ? 1.0 : 0.0;
+        return;
+    }
     const float lost = static_cast<float>(view.lost), lost_both = static_cast<float>(view.lost_both);
     const float crossing = static_cast<float>(crossing_[view.side]);
     Rgb up = glass_ * lost_both * (1.0f - crossing) * Rgb(1.0f);
@@ -201,12 +206,10 @@ void Bsdf::choose_lobes(View& view) const {
     const double others = base + specular;
     if (any)
         facets = others > 0.0 ? std::max(facets, 0.1 * others) : 1.0;
-    const double sum = (has_specular_ ? facets + specular : 0.0) + (has_base_ ? base : 0.0);
+    const double sum = facets + specular + (has_base_ ? base : 0.0);
     if (!(sum > 0.0))
         return;
     view.base = has_base_ ? base / sum : 0.0;
-    if (!has_specular_)
-        return;
     view.facets = facets / sum;
     view.up = mean(up) / sum;
     view.down = down / sum;

@@ -112,6 +112,7 @@ private:
 
     ShadingFrame frame_;
     const EnergyTables* tables_;
+    EnergyTables::Row row_{};  // of rough interfaces
     Ggx ggx_;
     double ior_;
     bool smooth_, matched_;

@@ -190,13 +190,20 @@ EnergyTables::EnergyTables(double ior)
     });
 }
 
-Albedos EnergyTables::at(double alpha, double cosine) const {
-    const auto [row, down] = interval_of(roughness_coordinate(alpha), kRoughnesses);
-    const auto [column, along] = interval_of(angle_coordinate(alpha, cosine), kAngles);
-    Numbers sum{};
-    for (int r = 0; r < 2; ++r)
-        for (int c = 0; c < 2; ++c)
-            add(table_[(row + r) * kAngles + column + c], (r ? down : 1.0 - down) * (c ? along : 1.0 - along), sum);
+EnergyTables::Row EnergyTables::row(double alpha) {
+    const auto [first, above] = interval_of(roughness_coordinate(alpha), kRoughnesses);
+    return {alpha, first, above};
+}
+
+// In double precision: what is lost is a small difference from 1.
+Albedos EnergyTables::at(const Row& row, double cosine) const {
+    const auto [column, along] = interval_of(angle_coordinate(row.alpha, cosine), kAngles);
+    const Entry* const low = &table_[std::size_t(row.first * kAngles + column)];
+    const Entry* const high = low + kAngles;
+    Numbers sum;
+    for (std::size_t i = 0; i < sum.size(); ++i)
+        sum[i] = (1.0 - row.above) * (1.0 - along) * low[0][i] + (1.0 - row.above) * along * low[1][i] +
+                 row.above * (1.0 - along) * high[0][i] + row.above * along * high[1][i];
     Albedos a = albedos_of(sum);
     a.reflect_blend = absolute_blend(a, a.reflect_blend, dielectric_blend(cosine, ior_));
     return a;

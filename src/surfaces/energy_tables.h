@@ -40,8 +40,17 @@ public:
     // Mean of the blend over the hemisphere outside, weighted by the cosine.
     double mean_blend() const { return mean_blend_; }
 
-    // Of a rough interface (alpha >= kSmoothAlpha) from directions of that cosine.
-    Albedos at(double alpha, double cosine) const;
+    // Where a roughness lies in the table: a BSDF asks for many cosines of its own.
+    struct Row {
+        double alpha;
+        int first;     // of the two rows around it
+        double above;  // the share of the second
+    };
+    // Of a rough interface (alpha >= kSmoothAlpha).
+    static Row row(double alpha);
+    // From directions of that cosine.
+    Albedos at(const Row& row, double cosine) const;
+    Albedos at(double alpha, double cosine) const { return at(row(alpha), cosine); }
     // The means of at() over the hemisphere, weighted by the cosine.
     Albedos mean(double alpha) const;
 
