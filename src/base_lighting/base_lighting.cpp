@@ -49,26 +49,6 @@ private:
     std::size_t count_ = 0;
 };
 
-// Samples sorted by their receiver.
-struct SamplesOfReceivers {
-    std::vector<std::uint32_t> first, samples;  // `first` has one more than there are receivers, as an end
-
-    explicit SamplesOfReceivers(const SharedReceivers& receivers) : first(receivers.count() + 1, 0) {
-        const std::vector<std::uint32_t>& of = receivers.receiver_of();
-        for (const std::uint32_t r : of)
-            ++first[r + 1];
-        for (std::size_t r = 1; r < first.size(); ++r)
-            first[r] += first[r - 1];
-        samples.resize(of.size());
-        std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-        for (std::uint32_t i = 0; i < of.size(); ++i)
-            samples[next[of[i]]++] = i;
-    }
-    std::span<const std::uint32_t> of(std::size_t receiver) const {
-        return std::span(samples).subspan(first[receiver], first[receiver + 1] - first[receiver]);
-    }
-};
-
 Rgb arriving(const SurfaceReceiver& receiver, int light) {
     return light < 2 ? receiver.fire[light] : receiver.smoke[light - 2];
 }
@@ -86,6 +66,34 @@ bool may_look_together(std::span<const std::uint32_t> samples, std::span<const B
 }
 
 }  // namespace
+
+// Samples sorted by their receiver.
+struct BaseLighting::SamplesOfReceivers {
+    std::vector<std::uint32_t> first, samples;  // `first` has one more than there are receivers, as an end
+
+    explicit SamplesOfReceivers(const SharedReceivers& receivers) : first(receivers.count() + 1, 0) {
+        const std::vector<std::uint32_t>& of = receivers.receiver_of();
+        for (const std::uint32_t r : of)
+            ++first[r + 1];
+        for (std::size_t r = 1; r < first.size(); ++r)
+            first[r] += first[r - 1];
+        samples.resize(of.size());
+        std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+        for (std::uint32_t i = 0; i < of.size(); ++i)
+            samples[next[of[i]]++] = i;
+    }
+    std::span<const std::uint32_t> of(std::size_t receiver) const {
+        return std::span(samples).subspan(first[receiver], first[receiver + 1] - first[receiver]);
+    }
+    std::size_t count() const { return first.size() - 1; }
+    // Pixel of each receiver.
+    std::vector<std::uint32_t> pixels(std::span<const BasePoint> points) const {
+        std::vector<std::uint32_t> out;
+        for (std::size_t r = 0; r < count(); ++r)
+            out.push_back(points[of(r)[0]].pixel);
+        return out;
+    }
+};
 
 // A sample's base, as its viewer sees it.
 class BaseLighting::Base {
@@ -268,8 +276,8 @@ bool BaseLighting::settled(std::span<const Together> all, std::size_t r) const {
 }
 
 // What arrives past other surfaces at the samples of a receiver, each along its own part of the rays.
-void BaseLighting::measure(int light, const SurfaceReceiver& receiver, TargetPool& pool, const Bases& bases, Rng& rng,
-                           std::span<BaseLight> out) const {
+void BaseLighting::measure(int light, const SurfaceReceiver& receiver, TargetPool& pool, std::size_t most_batches,
+                           const Bases& bases, Rng& rng, std::span<BaseLight> out) const {
     const LitPoint lit{dvec3(receiver.local), dvec3(receiver.normal), LitPoint::Kind::Surface};
     const std::size_t n = bases.size();
     std::vector<Shares> seen(n);
@@ -278,7 +286,10 @@ void BaseLighting::measure(int light, const SurfaceReceiver& receiver, TargetPoo
     BatchMean known;
     float all = 0.0f;
     const float start = rng.next();
-    for (std::size_t b = 0; b < n; ++b) {
+    const std::size_t batches = std::min(n, most_batches);
+    // Where samples get unequally many draws, chance decides which get more.
+    const std::size_t first = batches < n ? static_cast<std::size_t>(rng.next() * float(n)) : 0;
+    for (std::size_t b = 0; b < batches; ++b) {
         ratios_[light]->weigh(lit, pool.batch(start, b), draws);
         float of_batch = 0.0f, seen_of_batch = 0.0f;
         for (std::size_t k = 0; k < draws.size(); ++k) {
@@ -286,7 +297,7 @@ void BaseLighting::measure(int light, const SurfaceReceiver& receiver, TargetPoo
             if (!(d.weight > 0.0f))
                 continue;
             of_batch += d.weight;
-            const std::size_t to = (b + k) % n;  // every sample gets draws of all strata
+            const std::size_t to = (first + b + k) % n;  // every sample gets draws of all strata
             const Base& base = bases[to];
             const Rgb share = base.relative_to_white(d.point);
             if (share == Rgb(0.0f))
@@ -314,8 +325,9 @@ void BaseLighting::measure(int light, const SurfaceReceiver& receiver, TargetPoo
     }
 }
 
-void BaseLighting::light_alone(const SurfaceReceiver& receiver, Pools& around, std::span<const std::uint32_t> samples,
-                               std::span<const BasePoint> points, std::span<BaseLight> out) const {
+void BaseLighting::light_alone(const SurfaceReceiver& receiver, Pools& around, std::size_t most_batches,
+                               std::span<const std::uint32_t> samples, std::span<const BasePoint> points,
+                               std::span<BaseLight> out) const {
     Bases bases;
     for (const std::uint32_t i : samples) {
         out[i] = {};
@@ -328,16 +340,30 @@ void BaseLighting::light_alone(const SurfaceReceiver& receiver, Pools& around, s
     Rng rng(kAlone, first.pixel | seed_, first.number);
     for (int light = 0; light < kLights; ++light)
         if (ratios_[light] && !ratios_[light]->empty() && arriving(receiver, light) != Rgb(0.0f))
-            measure(light, receiver, around.of(light), bases, rng, out);
+            measure(light, receiver, around.of(light), most_batches, bases, rng, out);
+}
+
+void BaseLighting::light_alone(std::span<const std::uint32_t> which, std::size_t most_batches,
+                               const SharedReceivers& receivers, const SamplesOfReceivers& samples,
+                               std::span<const BasePoint> points, std::span<BaseLight> out) const {
+    if (which.empty())
+        return;
+    std::size_t batches = 0, most = 0;
+    for (const std::uint32_t r : which) {
+        const std::size_t own = std::min(samples.of(r).size(), most_batches);
+        batches += own;
+        most = std::max(most, own);
+    }
+    const std::uint32_t first = which.front();
+    Pools around(*this, receivers[first], points[samples.of(first)[0]], batches, most);
+    for (const std::uint32_t r : which)
+        light_alone(receivers[r], around, most_batches, samples.of(r), points, out);
 }
 
 std::vector<BaseLight> BaseLighting::light(std::span<const BasePoint> points, const SharedReceivers& receivers) const {
     std::vector<BaseLight> out(points.size());
     const SamplesOfReceivers samples(receivers);
-    std::vector<std::uint32_t> pixel_of;
-    for (std::size_t r = 0; r < receivers.count(); ++r)
-        pixel_of.push_back(points[samples.of(r)[0]].pixel);
-    const Neighbourhoods neighbourhoods(medium_, receivers, pixel_of, width_);
+    const Neighbourhoods neighbourhoods(medium_, receivers, samples.pixels(points), width_);
     std::vector<Together> together(receivers.count());
     parallel_for(
         neighbourhoods.count(),
@@ -355,18 +381,20 @@ std::vector<BaseLight> BaseLighting::light(std::span<const BasePoint> points, co
             for (const std::uint32_t r : neighbourhoods.receivers_of(n))
                 if (!settled(together, r))
                     unsettled.push_back(r);
-            if (unsettled.empty())
-                return;
-            std::size_t batches = 0, most = 0;
-            for (const std::uint32_t r : unsettled) {
-                batches += samples.of(r).size();
-                most = std::max(most, samples.of(r).size());
-            }
-            const std::uint32_t first = unsettled.front();
-            Pools around(*this, receivers[first], points[samples.of(first)[0]], batches, most);
-            for (const std::uint32_t r : unsettled)
-                light_alone(receivers[r], around, samples.of(r), points, out);
+            light_alone(unsettled, points.size(), receivers, samples, points, out);
         },
+        kNeighbourhoodsAtOnce);
+    return out;
+}
+
+std::vector<BaseLight> BaseLighting::light_by_few_rays(std::span<const BasePoint> points,
+                                                       const SharedReceivers& receivers) const {
+    std::vector<BaseLight> out(points.size());
+    const SamplesOfReceivers samples(receivers);
+    const Neighbourhoods neighbourhoods(medium_, receivers, samples.pixels(points), width_);
+    parallel_for(
+        neighbourhoods.count(),
+        [&](std::size_t n) { light_alone(neighbourhoods.receivers_of(n), 1, receivers, samples, points, out); },
         kNeighbourhoodsAtOnce);
     return out;
 }

@@ -49,11 +49,15 @@ public:
     // One for each point, in the order in which they were added to the receivers, which are lit. Independent of other
     // rows of the picture.
     std::vector<BaseLight> light(std::span<const BasePoint> points, const SharedReceivers& receivers) const;
+    // The same by one batch of rays for each receiver and light: enough where a pixel shows many points by chance, as
+    // reflected ones are. Whether a part is hidden or not costs the same then, and is not asked before.
+    std::vector<BaseLight> light_by_few_rays(std::span<const BasePoint> points, const SharedReceivers& receivers) const;
 
 private:
     // Fire and smoke, of dense smoke and of thin media.
     static constexpr int kLights = 4;
     enum class Seen : std::uint8_t { NoLight, All, Nothing, Part };
+    struct SamplesOfReceivers;
     struct Together;
     struct Shares {
         Rgb clear{0.0f}, through_panes{0.0f};  // of a white Lambert surface's reflected light
@@ -68,10 +72,15 @@ private:
     bool settled(std::span<const Together> all, std::size_t receiver) const;
     Seen see_together(int light, const SurfaceReceiver& receiver, const WeightedTargets& targets, const Bases& bases,
                       Rng& rng, std::span<BaseLight> out) const;
-    void light_alone(const SurfaceReceiver& receiver, Pools& around, std::span<const std::uint32_t> samples,
-                     std::span<const BasePoint> points, std::span<BaseLight> out) const;
-    void measure(int light, const SurfaceReceiver& receiver, TargetPool& pool, const Bases& bases, Rng& rng,
-                 std::span<BaseLight> out) const;
+    // Receivers of one neighbourhood, each by at most so many batches of rays.
+    void light_alone(std::span<const std::uint32_t> which, std::size_t most_batches, const SharedReceivers& receivers,
+                     const SamplesOfReceivers& samples, std::span<const BasePoint> points,
+                     std::span<BaseLight> out) const;
+    void light_alone(const SurfaceReceiver& receiver, Pools& around, std::size_t most_batches,
+                     std::span<const std::uint32_t> samples, std::span<const BasePoint> points,
+                     std::span<BaseLight> out) const;
+    void measure(int light, const SurfaceReceiver& receiver, TargetPool& pool, std::size_t most_batches,
+                 const Bases& bases, Rng& rng, std::span<BaseLight> out) const;
     Panes::Passage passage(const SurfacePoint& surface, const vec3& light) const;
 
     const Medium& medium_;

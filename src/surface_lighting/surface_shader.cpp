@@ -72,7 +72,7 @@ std::vector<SurfaceShader::ShadedPoint> SurfaceShader::shaded_points(const std::
 
 // What the bases of all points reflect of the medium's light.
 std::vector<BaseLight> SurfaceShader::light_bases(const std::vector<SurfaceSample>& samples,
-                                                  const std::vector<ShadedPoint>& points) {
+                                                  const std::vector<ShadedPoint>& points, bool reflected) {
     if (!input_.medium_lighting || !input_.medium_lighting->lights_surfaces())
         return std::vector<BaseLight>(samples.size());
     const Medium& medium = input_.paths.direct().field().medium();
@@ -86,14 +86,14 @@ std::vector<BaseLight> SurfaceShader::light_bases(const std::vector<SurfaceSampl
     }
     planar_.light(receivers.receivers(),
                   [&](std::vector<SurfaceReceiver>& at) { input_.medium_lighting->at_surfaces(at); });
-    return BaseLighting(medium, *input_.medium_lighting, panes_, samples_through_panes(), input_.width,
-                        input_.base_tolerance, input_.seed)
-        .light(bases, receivers);
+    const BaseLighting lighting(medium, *input_.medium_lighting, panes_, samples_through_panes(), input_.width,
+                                input_.base_tolerance, input_.seed);
+    return reflected ? lighting.light_by_few_rays(bases, receivers) : lighting.light(bases, receivers);
 }
 
 void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) {
     std::vector<ShadedPoint> points = shaded_points(samples, light);
-    const std::vector<BaseLight> bases = light_bases(samples, points);
+    const std::vector<BaseLight> bases = light_bases(samples, points, false);
     std::vector<float> even(samples.size());
     SurfaceRounds::Found known{std::vector<float>(samples.size()), std::vector<float>(samples.size())};
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -202,7 +202,7 @@ void SurfaceShader::shade_reflected(const std::vector<SurfaceSample>& samples, c
 // And what these show in turn.
 void SurfaceShader::light_reflected(const std::vector<SurfaceSample>& by, std::vector<ShadedPoint>& there,
                                     std::vector<CellSum>& found) {
-    const std::vector<BaseLight> bases = light_bases(by, there);
+    const std::vector<BaseLight> bases = light_bases(by, there, true);
     std::vector<std::size_t> all(by.size());
     std::iota(all.begin(), all.end(), std::size_t(0));
     for (const std::size_t k : all)

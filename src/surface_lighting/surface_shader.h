@@ -83,7 +83,7 @@ private:
     std::vector<ShadedPoint> shaded_points(const std::vector<SurfaceSample>& samples,
                                            std::vector<CellSum>& light) const;
     std::vector<BaseLight> light_bases(const std::vector<SurfaceSample>& samples,
-                                       const std::vector<ShadedPoint>& points);
+                                       const std::vector<ShadedPoint>& points, bool reflected);
     void add_base(const BaseLight& base, const ShadedPoint& at, CellSum& light) const;
     void tell(const std::vector<SurfaceSample>& samples, const std::vector<std::size_t>& some,
               const std::vector<ShadedPoint>& points, const std::vector<CellSum>& found,
