@@ -56,12 +56,12 @@ void add_lighting_keys(std::vector<Key>& keys) {
         "scattering.remainder", "with all bounces: the share of the light that may be left over",
         real_float({0.0, 1.0, true, true}), [](Shot & s) -> auto& { return s.scattering.remainder; }));
     keys.push_back(make_key(
-        "scattering.lattice_level", "bounces above one are solved on voxels 2^n wide",
+        "scattering.lattice_level",
+        "bounces above one are solved on voxels 2^n wide; auto: as wide as lighting.error allows",
         or_word(whole(0, 16), "auto", -1), [](Shot & s) -> auto& { return s.scattering.lattice_level; }));
     keys.push_back(make_key(
         "scattering.fine_bounces",
-        "bounces on the voxels of the light itself, after those that were solved on wider ones; auto: one, none where "
-        "lighting.error is 0.01 or less",
+        "bounces on the voxels of the light itself, after those that were solved on wider ones; auto: one",
         or_word(whole(0, 16), "auto", -1), [](Shot & s) -> auto& { return s.scattering.fine_bounces; }));
     keys.push_back(make_key(
         "scattering.alpha", "as lighting.alpha, for scattered light", real_float({1.0, 64.0}),
