@@ -91,10 +91,12 @@ double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& 
     double evaluations = kEvaluationsOfNode * nodes * std::pow(double(shot.lighting.alpha), kPowerOfAlpha);
     double coarse = 0.0;
     if (plan.multiple) {
-        const int series = forecast_lattice(shot, counted.medium, levels.smoke.level).level;
-        const double flights = 1.0 + (series > 0 ? kFineBounce * count_of_fine_bounces(orders_of(shot)) : 0.0);
+        const ScatteringSettings orders = orders_of(shot);
+        const LatticeChoice series = forecast_lattice(shot, counted.medium, levels.smoke.level);
+        const bool bounces = share_of_fine_bounces(series, orders, shot.lighting.error) > 0.0f;
+        const double flights = 1.0 + (bounces ? kFineBounce * count_of_fine_bounces(orders) : 0.0);
         evaluations += flights * kEvaluationsOfNode * of_smoke * std::pow(double(shot.scattering.alpha), kPowerOfAlpha);
-        coarse = of_smoke / std::pow(kNodesOfParent, series);
+        coarse = of_smoke / std::pow(kNodesOfParent, series.level);
     }
     const double map =
         std::pow(double(shadow_resolution(shot.lighting)), 2.0) * shadow_distances(shot.lighting) / kKnownMap;

@@ -40,17 +40,19 @@ SmokeMet smoke_met(const Medium& medium, std::span<const Rgb> scattered);
 // extinction.
 SmokeMet smoke_met(const Medium& medium);
 
-// Relative error of the picture by a series on voxels 2^level times as wide.
-float error_of_series(const SmokeMet& smoke, const ScatteringSettings& settings, int level);
+// Relative error of the picture by a series on voxels 2^level times as wide. `error`: as of LightingSettings, by which
+// fine bounces are weighed.
+float error_of_series(const SmokeMet& smoke, const ScatteringSettings& settings, float error, int level);
 
 // The lattice of a series: as stated, or the coarsest whose error is at most 5/8 of `error`, that of LightingSettings,
 // or of 0.02. While the next coarser one's falls to that from 6/5 of it, it takes over step by step, so that the light
-// changes continuously with the medium. Automatically no coarser than two levels, nor than a quarter of the smoke's
-// radius, of white smoke an eighth; never coarser than `last`.
+// changes continuously with the medium. Automatically no coarser than two levels, nor than the error of the smoke's rim
+// allows, 0.1 times the width of a voxel over the radius: an eighth of the radius by default. Never coarser than
+// `last`.
 LatticeChoice lattice_of_series(const SmokeMet& smoke, const ScatteringSettings& settings, float error, int last);
 
-// Of all light of a series, the part that bounces on the medium's own lattice replace
-// (ScatteringSettings::fine_bounces): what was solved on coarser ones.
-float share_of_fine_bounces(const LatticeChoice& lattice, const ScatteringSettings& settings);
+// Of the light of a series, the part that bounces on the medium's own lattice replace
+// (ScatteringSettings::fine_bounces): all that was solved on coarser ones, as far as there are such bounces.
+float share_of_fine_bounces(const LatticeChoice& lattice, const ScatteringSettings& settings, float error);
 
 }  // namespace brisance

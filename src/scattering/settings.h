@@ -15,7 +15,7 @@ struct ScatteringSettings {
     float remainder = 1e-3f;  // with all orders: stop when the part not yet accounted for is below this
     int lattice_level = -1;   // orders above one are solved on voxels 2^level wide; -1: as the error allows
     float escape = -1.0f;     // the mean escape probability by which methods are chosen; below 0: the medium's own
-    int fine_bounces = -1;    // on the light's own lattice, after those on a coarser one; -1: one
+    int fine_bounces = -1;    // on the light's own lattice, after those on a coarser one; -1: one, as the error allows
     float alpha = 1.5f;       // as LightingSettings::alpha, for scattered light
     ScatteringSolver solver = ScatteringSolver::Hierarchy;
     int cascade_side = 8;      // side^2 directions at the nodes, with radiance cascades

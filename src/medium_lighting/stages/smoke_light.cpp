@@ -25,10 +25,10 @@ struct SeriesLattice {
 SeriesLattice lattice_of(const LitLattice& lattice, const ScatteredLight& once, const ScatteringSettings& settings) {
     SeriesLattice out;
     out.smoke = smoke_met(lattice.medium(), once.intensity);
-    out.choice =
-        lattice_of_series(out.smoke, settings, lattice.input().lighting.error, lattice.pyramid().level_count() - 1);
-    out.error = error_of_series(out.smoke, settings, out.choice.level);
-    out.error_of_coarser = error_of_series(out.smoke, settings, out.choice.level + 1);
+    const float error = lattice.input().lighting.error;
+    out.choice = lattice_of_series(out.smoke, settings, error, lattice.pyramid().level_count() - 1);
+    out.error = error_of_series(out.smoke, settings, error, out.choice.level);
+    out.error_of_coarser = error_of_series(out.smoke, settings, error, out.choice.level + 1);
     return out;
 }
 
@@ -89,8 +89,8 @@ struct FineBounces {
 };
 
 // Where orders end at a stated number, the series in `settings` leaves the last of them to these bounces.
-FineBounces plan_fine_bounces(const LatticeChoice& series, ScatteringSettings& settings) {
-    FineBounces out{count_of_fine_bounces(settings), share_of_fine_bounces(series, settings)};
+FineBounces plan_fine_bounces(const LatticeChoice& series, float error, ScatteringSettings& settings) {
+    FineBounces out{count_of_fine_bounces(settings), share_of_fine_bounces(series, settings, error)};
     const bool endless = settings.bounces < 0;
     if (!endless)
         out.count = std::min(out.count, std::max(0, settings.bounces - 2));
@@ -265,7 +265,7 @@ SmokeLight light_from_smoke(const LitLattice& lattice, const ScatteredLight& onc
                             Progress& progress) {
     ScatteringSettings settings = lattice.input().scattering;
     const SeriesLattice series = lattice_of(lattice, once, settings);
-    const FineBounces bounces = plan_fine_bounces(series.choice, settings);
+    const FineBounces bounces = plan_fine_bounces(series.choice, lattice.input().lighting.error, settings);
     std::vector<ScatteredLight> orders = orders_of_scattering(
         lattice, once, settings, series, bounces.count > 0 ? bounces.share : 0.0f, statistics, progress);
     progress.stage("light from the smoke (MM)");

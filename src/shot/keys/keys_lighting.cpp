@@ -61,7 +61,8 @@ void add_lighting_keys(std::vector<Key>& keys) {
         or_word(whole(0, 16), "auto", -1), [](Shot & s) -> auto& { return s.scattering.lattice_level; }));
     keys.push_back(make_key(
         "scattering.fine_bounces",
-        "bounces on the voxels of the light itself, after those that were solved on wider ones; auto: one",
+        "bounces on the voxels of the light itself, after those that were solved on wider ones; auto: one, none where "
+        "lighting.error is 0.01 or less",
         or_word(whole(0, 16), "auto", -1), [](Shot & s) -> auto& { return s.scattering.fine_bounces; }));
     keys.push_back(make_key(
         "scattering.alpha", "as lighting.alpha, for scattered light", real_float({1.0, 64.0}),
