@@ -149,7 +149,8 @@ ExpectedError expected_error(const ModelledFrame& frame) {
     const LatticeChoice series = forecast_lattice(frame.shot, frame.medium, levels.smoke.level);
     ExpectedError out =
         ErrorModel(frame, levels.first.error, levels.interpolation, levels.smoke.level,
-                   levels.smoke.level + series.level, share_of_fine_bounces(series, settings, frame.shot.lighting.error), settings.remainder)
+                   levels.smoke.level + series.level,
+                   share_of_fine_bounces(series, settings, frame.shot.lighting.error), settings.remainder)
             .of(brightest(frame.plan));
     out.cell.clear();
     return out;

@@ -15,8 +15,8 @@ constexpr float kError = 0.023f, kErrorBeforeFineBounce = 0.016f;
 constexpr float kShare = 0.625f, kNearlyAllowed = 1.2f;
 // On voxels two levels wider than the light's own a series takes a tenth of the frame's time: wider ones save little.
 constexpr float kWidest = 2.0f;
-// What the rim of smoke adds, over the width of a voxel in radii. On voxels a quarter of the radius wide a white ball of
-// two mean free paths erred by 3.3 % instead of 1.5 on half of that, and a ball of albedo 0.8 with a wall through it
+// What the rim of smoke adds, over the width of a voxel in radii. On voxels a quarter of the radius wide a white ball
+// of two mean free paths erred by 3.3 % instead of 1.5 on half of that, and a ball of albedo 0.8 with a wall through it
 // lost 5 % of MM.
 constexpr float kErrorOfRim = 0.1f;
 // Where more is allowed, other errors grow, too, and wider voxels save nothing: drafts of the built-in explosion erred
