@@ -90,7 +90,7 @@ TEST(LatticeLevel, FollowsTheSmokeThatScattersLight) {
 TEST(LatticeLevel, FollowsWhatTheShotStates) {
     const SmokeMet smoke{0.5f, 0.8f, 0.0f, 100.0f};
     double last = 100.0;
-    for (const float error : {0.05f, 0.02f, 0.01f, 0.005f, 0.001f}) {
+    for (const float error : {0.05f, 0.02f, 0.0175f, 0.015f, 0.0125f, 0.01f, 0.005f, 0.001f}) {
         EXPECT_LE(mean_level(smoke, error), last) << error;
         last = mean_level(smoke, error);
     }
