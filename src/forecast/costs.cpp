@@ -11,7 +11,6 @@
 #include "medium_lighting/levels/lighting_level.h"
 #include "medium_lighting/lit_lattice.h"
 #include "reference/trace_picture.h"
-#include "scattering/lattice_level.h"
 
 namespace brisance {
 
@@ -66,8 +65,7 @@ PilotPixel trace_pilot_pixel(const PathTracer& tracer, const Camera& camera, std
 
 }  // namespace
 
-CountedMedium::CountedMedium(const Medium& counted)
-    : medium(counted), lattice_fullness(brisance::lattice_fullness(counted.extinction)) {
+CountedMedium::CountedMedium(const Medium& counted) : medium(counted) {
     const std::vector<std::uint8_t> needed = nodes_beside_extinction(medium);
     lit_nodes = double(std::count_if(needed.begin(), needed.end(), [](std::uint8_t n) { return n != 0; }));
 }
@@ -76,15 +74,12 @@ ScatteringSettings orders_of(const Shot& shot) {
     return settings_of_orders(shot.scattering, shot.output.bounce_layers);
 }
 
-int forecast_lattice_level(const Shot& shot, const CountedMedium& counted) {
-    const ScatteringSettings settings = orders_of(shot);
+LatticeChoice forecast_lattice(const Shot& shot, const Medium& medium, int smoke_level) {
+    ScatteringSettings settings = orders_of(shot);
     if (settings.lattice_level >= 0)
-        return settings.lattice_level;
-    const double full = crowding(settings, shot.lighting.error) * counted.lattice_fullness;
-    int level = 0;
-    while (full / std::pow(kNodesOfParent, level) > 1.0)
-        ++level;
-    return level;
+        settings.lattice_level = std::max(0, settings.lattice_level - smoke_level);
+    return lattice_of_series(smoke_met(medium).coarser(smoke_level), settings, shot.lighting.error,
+                             ExtinctionPyramid::kMaxLevels - 1);
 }
 
 double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan, const CameraSettings& camera) {
@@ -96,10 +91,12 @@ double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& 
     double evaluations = kEvaluationsOfNode * nodes * std::pow(double(shot.lighting.alpha), kPowerOfAlpha);
     double coarse = 0.0;
     if (plan.multiple) {
-        const int series = forecast_lattice_level(shot, counted);
-        const double flights = 1.0 + (series > 0 ? kFineBounce * count_of_fine_bounces(orders_of(shot)) : 0.0);
+        const ScatteringSettings orders = orders_of(shot);
+        const LatticeChoice series = forecast_lattice(shot, counted.medium, levels.smoke.level);
+        const bool bounces = share_of_fine_bounces(series, orders, shot.lighting.error) > 0.0f;
+        const double flights = 1.0 + (bounces ? kFineBounce * count_of_fine_bounces(orders) : 0.0);
         evaluations += flights * kEvaluationsOfNode * of_smoke * std::pow(double(shot.scattering.alpha), kPowerOfAlpha);
-        coarse = counted.lit_nodes / std::pow(kNodesOfParent, series);
+        coarse = of_smoke / std::pow(kNodesOfParent, series.level);
     }
     const double map =
         std::pow(double(shadow_resolution(shot.lighting)), 2.0) * shadow_distances(shot.lighting) / kKnownMap;

@@ -5,6 +5,7 @@
 #include "forecast/plan.h"
 #include "medium/medium.h"
 #include "reference/path_tracer.h"
+#include "scattering/lattice_level.h"
 #include "shot/shot.h"
 
 namespace brisance {
@@ -13,15 +14,14 @@ namespace brisance {
 struct CountedMedium {
     explicit CountedMedium(const Medium& medium);
     const Medium& medium;
-    double lit_nodes = 0.0;   // at which light is gathered
-    double lattice_fullness;  // scattering/lattice_level.h
+    double lit_nodes = 0.0;  // at which light is gathered
 };
 
 // How the shot's orders of scattering are solved.
 ScatteringSettings orders_of(const Shot& shot);
 
-// That of the lattice on which the orders of scattering are solved, about.
-int forecast_lattice_level(const Shot& shot, const CountedMedium& counted);
+// The lattice on which the orders of scattering are solved, about, as levels above that of the smoke's light.
+LatticeChoice forecast_lattice(const Shot& shot, const Medium& medium, int smoke_level);
 
 // A picture by the lighting grid: evaluations of lights at nodes, shadow maps, orders of scattering, and the camera's
 // rays.

@@ -5,7 +5,6 @@
 #include "gathering/map_layouts.h"
 #include "medium/extinction_met.h"
 #include "medium_lighting/levels/lighting_level.h"
-#include "scattering/lattice_level.h"
 
 namespace brisance {
 
@@ -144,14 +143,15 @@ std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFra
     return out;
 }
 
-ExpectedError expected_error(const ModelledFrame& frame, const CountedMedium& counted) {
+ExpectedError expected_error(const ModelledFrame& frame) {
     const ScatteringSettings settings = orders_of(frame.shot);
-    const int level = forecast_lattice_level(frame.shot, counted);
     const LightingLevels levels = lighting_levels(frame.medium, frame.shot.lighting);
-    const double fine_bounces = share_of_fine_bounces({level}, settings, frame.shot.lighting.error);
-    ExpectedError out = ErrorModel(frame, levels.first.error, levels.interpolation, levels.smoke.level, level,
-                                   fine_bounces, settings.remainder)
-                            .of(brightest(frame.plan));
+    const LatticeChoice series = forecast_lattice(frame.shot, frame.medium, levels.smoke.level);
+    ExpectedError out =
+        ErrorModel(frame, levels.first.error, levels.interpolation, levels.smoke.level,
+                   levels.smoke.level + series.level,
+                   share_of_fine_bounces(series, settings, frame.shot.lighting.error), settings.remainder)
+            .of(brightest(frame.plan));
     out.cell.clear();
     return out;
 }

@@ -28,7 +28,7 @@ struct ModelledFrame {
 std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFrame& frame,
                                            const Statistics& statistics);
 
-// Of a picture that is not rendered yet. `counted`: the frame's medium.
-ExpectedError expected_error(const ModelledFrame& frame, const CountedMedium& counted);
+// Of a picture that is not rendered yet.
+ExpectedError expected_error(const ModelledFrame& frame);
 
 }  // namespace brisance

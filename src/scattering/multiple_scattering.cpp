@@ -11,7 +11,6 @@
 #include "lighting_grid/voxel_lights.h"
 #include "medium/phase.h"
 #include "scattering/coarse_operator.h"
-#include "scattering/lattice_level.h"
 
 namespace brisance {
 
@@ -207,7 +206,7 @@ std::vector<ScatteredLight> solve_scattering(const ScatteringInput& input, Scatt
     if (input.settings.bounces == 2 || !(total_luminance(orders[0].intensity) > 0.0))
         return orders;
 
-    const LatticeChoice lattice = lattice_of_series(*input.pyramid, input.settings, input.lighting.error);
+    const LatticeChoice& lattice = input.lattice;
     std::vector<ScatteredLight> further = solve(input, orders[0], lattice.level, 0, costs, progress);
     if (lattice.share_of_coarser > 0.0f) {
         ScatteringCosts coarser;

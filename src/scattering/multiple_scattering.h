@@ -31,6 +31,7 @@
 #include "scattering/bounce_balance.h"
 #include "scattering/coarse_operator.h"
 #include "scattering/diffused_light.h"
+#include "scattering/lattice_level.h"
 #include "scattering/settings.h"
 
 namespace brisance {
@@ -56,7 +57,8 @@ struct ScatteringInput {
     const ExtinctionPyramid* pyramid;
     const ScatteredLight* once;  // leaving the nodes after its first scattering, not sharpened; directional if g != 0
     LightingSettings lighting;
-    ScatteringSettings settings;
+    ScatteringSettings settings;  // but for their lattice_level
+    LatticeChoice lattice = {};   // of the pyramid
     bool separate_orders = false;
 };
 

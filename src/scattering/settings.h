@@ -13,7 +13,7 @@ enum class ScatteringSolver {
 struct ScatteringSettings {
     int bounces = -1;         // scatterings: 0 emission only, 1 single scattering, -1 all orders
     float remainder = 1e-3f;  // with all orders: stop when the part not yet accounted for is below this
-    int lattice_level = -1;   // orders above one are solved on voxels 2^level wide; -1: from the voxel count
+    int lattice_level = -1;   // orders above one are solved on voxels 2^level wide; -1: as the error allows
     float escape = -1.0f;     // the mean escape probability by which methods are chosen; below 0: the medium's own
     int fine_bounces = -1;    // on the light's own lattice, after those on a coarser one; -1: one, as the error allows
     float alpha = 1.5f;       // as LightingSettings::alpha, for scattered light

@@ -53,6 +53,15 @@ TEST(FineBounces, TakeAwayMostOfWhatACoarseLatticeErrsBy) {
     }
 }
 
+// The series may add 5/8 of lighting.error, and is on a coarser lattice than the light's own.
+TEST(SeriesLattice, AddsNoMoreThanTheErrorAllows) {
+    const Medium medium = lumpy_smoke(0.0f);
+    const Image chosen = picture(medium, -1, -1, 1), fine = picture(medium, -1, 0, 0);
+    const double added = layer_difference(chosen, fine);
+    EXPECT_GT(added, 0.0);
+    EXPECT_LT(added, 0.625 * 0.02);
+}
+
 // Of three scatterings the last is that toward the camera, and the fine bounce makes the second: nothing is left for
 // the coarse lattice.
 TEST(FineBounces, MakeTheLastOfCountedOrders) {

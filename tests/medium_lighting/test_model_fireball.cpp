@@ -71,13 +71,15 @@ TEST(ModelFireball, IsAsBrightAsTheIntegralEquationSays) {
 
 // The fire's light, all orders on the coarse lattice together, and the last flight: rays with no part in the balance
 // find that what is emitted collides or escapes. Four standard errors, seeds are fixed. Light of the fire on
-// the next coarser lattice, as far as it counts, has a row of its own.
+// the next coarser lattice, as far as it counts, has a row of its own, and so has the fine bounce.
 TEST(ModelFireball, WhatIsEmittedCollidesOrEscapes) {
     const Lit lit = light_ball(2.0f, 0.9f);
     int rows = 0, expected = 3;
     for (const StageCost& stage : lit.statistics.stages) {
         if (stage.name == "lattice of the light")
             expected += stage.detail["share_of_coarser_level"].get<double>() > 0.0;
+        if (stage.detail.contains("share_of_fine_bounces"))
+            expected += stage.detail["share_of_fine_bounces"].get<double>() > 0.0;
         if (stage.detail.contains("balance"))
             for (const auto& b : stage.detail["balance"]) {
                 const double error = b["escape_standard_error"].get<double>();

@@ -44,8 +44,8 @@ TEST(ChooseMethod, SmallPicturesTakePathsAndLargeOnesTheGrid) {
     EXPECT_EQ(forecast(shot_of(1024), medium).method, RenderMethod::LightingGrid);
 }
 
-// Four times the pixels need four times the paths, and so does half the error. The grid's shadow maps become finer,
-// which costs far less.
+// Four times the pixels need four times the paths, and so does half the error. The grid's shadow maps become finer, and
+// so does the lattice of its series, which costs less.
 TEST(ChooseMethod, PathsCostMoreWithPixelsAndLessError) {
     const Medium medium = glow(16);
     const MethodForecast one = forecast(shot_of(128, 0.01f), medium), finer = forecast(shot_of(128, 0.005f), medium),
@@ -53,7 +53,7 @@ TEST(ChooseMethod, PathsCostMoreWithPixelsAndLessError) {
     EXPECT_NEAR(finer.path_seconds / one.path_seconds, 4.0, 0.1);
     EXPECT_NEAR(larger.path_seconds / one.path_seconds, 4.0, 0.8);
     EXPECT_GT(finer.grid_seconds, one.grid_seconds);
-    EXPECT_LT(finer.grid_seconds, 2.0 * one.grid_seconds);
+    EXPECT_LT(finer.grid_seconds, 3.0 * one.grid_seconds);
 }
 
 // The pilot ignores that the path tracer's samples are stratified, which need up to a half fewer.

@@ -10,24 +10,43 @@
 #include "medium_lighting/balance_table.h"
 #include "medium_lighting/level_costs.h"
 #include "scattering/balance.h"
-#include "scattering/lattice_level.h"
 
 namespace brisance {
 
 namespace {
 
+// The lattice of the series, which is no finer than that of the light, as levels above it.
+struct SeriesLattice {
+    LatticeChoice choice;
+    SmokeMet smoke;
+    float error = 0.0f, error_of_coarser = 0.0f;  // that it is expected to add to the picture, and the next coarser one
+};
+
+SeriesLattice lattice_of(const LitLattice& lattice, const ScatteredLight& once, const ScatteringSettings& settings) {
+    SeriesLattice out;
+    out.smoke = smoke_met(lattice.medium(), once.intensity);
+    const float error = lattice.input().lighting.error;
+    out.choice = lattice_of_series(out.smoke, settings, error, lattice.pyramid().level_count() - 1);
+    out.error = error_of_series(out.smoke, settings, error, out.choice.level);
+    out.error_of_coarser = error_of_series(out.smoke, settings, error, out.choice.level + 1);
+    return out;
+}
+
 std::vector<ScatteredLight> orders_of_scattering(const LitLattice& lattice, const ScatteredLight& once,
-                                                 const ScatteringSettings& settings, float fine_bounces,
-                                                 Statistics& statistics, Progress& progress) {
+                                                 const ScatteringSettings& settings, const SeriesLattice& on,
+                                                 float fine_bounces, Statistics& statistics, Progress& progress) {
     progress.stage("orders of scattering");
     const Stopwatch watch;
     const MediumLightingInput& input = lattice.input();
     ScatteringCosts costs;
-    std::vector<ScatteredLight> orders =
-        solve_scattering({&lattice.pyramid(), &once, input.lighting, settings, input.orders_apart}, costs, progress);
+    std::vector<ScatteredLight> orders = solve_scattering(
+        {&lattice.pyramid(), &once, input.lighting, settings, on.choice, input.orders_apart}, costs, progress);
     StageCost series{"orders of scattering on the coarse lattice", watch.seconds(), costs.bytes, {}};
     series.detail = {{"lattice_level", lattice.level() + costs.lattice_level},
                      {"share_of_coarser_level", costs.share_of_coarser},
+                     {"depth_of_lit_voxel", on.smoke.depth},
+                     {"error", on.error},
+                     {"error_of_coarser_level", on.error_of_coarser},
                      {"nodes", costs.coarse_nodes},
                      {"share_of_fine_bounces", fine_bounces},
                      {"operator_seconds", costs.operator_seconds},
@@ -70,10 +89,8 @@ struct FineBounces {
 };
 
 // Where orders end at a stated number, the series in `settings` leaves the last of them to these bounces.
-FineBounces plan_fine_bounces(const LitLattice& lattice, ScatteringSettings& settings) {
-    const float error = lattice.input().lighting.error;
-    FineBounces out{count_of_fine_bounces(settings),
-                    share_of_fine_bounces(lattice_of_series(lattice.pyramid(), settings, error), settings, error)};
+FineBounces plan_fine_bounces(const LatticeChoice& series, float error, ScatteringSettings& settings) {
+    FineBounces out{count_of_fine_bounces(settings), share_of_fine_bounces(series, settings, error)};
     const bool endless = settings.bounces < 0;
     if (!endless)
         out.count = std::min(out.count, std::max(0, settings.bounces - 2));
@@ -247,9 +264,10 @@ Gathered gather_apart(const LitLattice& lattice, std::vector<ScatteredLight> ord
 SmokeLight light_from_smoke(const LitLattice& lattice, const ScatteredLight& once, Statistics& statistics,
                             Progress& progress) {
     ScatteringSettings settings = lattice.input().scattering;
-    const FineBounces bounces = plan_fine_bounces(lattice, settings);
-    std::vector<ScatteredLight> orders =
-        orders_of_scattering(lattice, once, settings, bounces.count > 0 ? bounces.share : 0.0f, statistics, progress);
+    const SeriesLattice series = lattice_of(lattice, once, settings);
+    const FineBounces bounces = plan_fine_bounces(series.choice, lattice.input().lighting.error, settings);
+    std::vector<ScatteredLight> orders = orders_of_scattering(
+        lattice, once, settings, series, bounces.count > 0 ? bounces.share : 0.0f, statistics, progress);
     progress.stage("light from the smoke (MM)");
     FineFlights flights(lattice, progress);
     SmokeLight out;

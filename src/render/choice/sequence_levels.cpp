@@ -23,26 +23,21 @@ private:
 
 bool leaves_lattices_open(const Shot& shot) {
     return shot.method != RenderMethod::Path &&
-           (shot.lighting.lattice_level < 0 || shot.lighting.smoke_lattice_level < 0 || shot.lighting.levels <= 0 ||
-            shot.scattering.lattice_level < 0);
+           (shot.lighting.lattice_level < 0 || shot.lighting.smoke_lattice_level < 0 || shot.lighting.levels <= 0);
 }
 
 void choose_lattices(Shot& shot, const FrameInput& input, const std::string& file, Progress& progress) {
-    const AutomaticLevels levels = automatic_levels_of(input.medium, input.surroundings.get(), shot.lighting,
-                                                       settings_of_orders(shot.scattering, shot.output.bounce_layers));
+    const AutomaticLevels levels = automatic_levels_of(input.medium, input.surroundings.get(), shot.lighting);
     if (shot.lighting.smoke_lattice_level < 0)
         shot.lighting.smoke_lattice_level = levels.smoke;
     if (shot.lighting.lattice_level < 0)
         shot.lighting.lattice_level = levels.light;
     if (shot.lighting.levels <= 0)
         shot.lighting.levels = levels.lighting;
-    if (shot.scattering.lattice_level < 0)
-        shot.scattering.lattice_level = levels.scattering;
     progress.notice(
         fmt::format("lattices of all frames, by the largest file, {}: lighting.levels={}, lighting.lattice_level={}, "
-                    "lighting.smoke_lattice_level={}, scattering.lattice_level={}",
-                    file, shot.lighting.levels, shot.lighting.lattice_level, shot.lighting.smoke_lattice_level,
-                    shot.scattering.lattice_level));
+                    "lighting.smoke_lattice_level={}",
+                    file, shot.lighting.levels, shot.lighting.lattice_level, shot.lighting.smoke_lattice_level));
 }
 
 void choose_escape(Shot& shot, const Medium& medium, const std::string& file, Progress& progress) {

@@ -10,8 +10,8 @@
 
 namespace brisance {
 
-// Whether the shot leaves lighting.levels, lighting.lattice_level, lighting.smoke_lattice_level,
-// scattering.lattice_level or scattering.escape open and its method looks at them.
+// Whether the shot leaves lighting.levels, lighting.lattice_level, lighting.smoke_lattice_level or scattering.escape
+// open and its method looks at them.
 bool leaves_levels_open(const Shot& shot);
 
 // The shot with these as the medium of this frame has them; what the shot states stays. Reads the frame's files. Which

@@ -65,7 +65,7 @@ Option grid_option(const Timing& t, const Plan& plan) {
             break;
     }
     out.shot.method = RenderMethod::LightingGrid;
-    out.error = expected_error({out.shot, t.medium, plan}, counted).error;
+    out.error = expected_error({out.shot, t.medium, plan}).error;
     out.text = fmt::format("the lighting grid with lighting.error={:.3g} and lighting.alpha={:.2g}",
                            out.shot.lighting.error, out.shot.lighting.alpha);
     return out;

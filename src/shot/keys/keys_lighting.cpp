@@ -56,7 +56,8 @@ void add_lighting_keys(std::vector<Key>& keys) {
         "scattering.remainder", "with all bounces: the share of the light that may be left over",
         real_float({0.0, 1.0, true, true}), [](Shot & s) -> auto& { return s.scattering.remainder; }));
     keys.push_back(make_key(
-        "scattering.lattice_level", "bounces above one are solved on voxels 2^n wide",
+        "scattering.lattice_level",
+        "bounces above one are solved on voxels 2^n wide; auto: as wide as lighting.error allows",
         or_word(whole(0, 16), "auto", -1), [](Shot & s) -> auto& { return s.scattering.lattice_level; }));
     keys.push_back(make_key(
         "scattering.fine_bounces",
