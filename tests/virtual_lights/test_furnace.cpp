@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "room.h"
+#include "virtual_lights/bounce_cache.h"
 
 namespace brisance {
 namespace {
@@ -42,6 +43,41 @@ TEST_P(Furnaces, ReflectWhatTheSeriesSays) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Furnaces, ::testing::Combine(::testing::Values(0.2f, 0.5f, 0.9f), ::testing::Bool()));
+
+// What lights gather themselves is the same constant, of the share that they are trusted with: all of it where walls
+// are far, less in corners. The first directions are given, as at points that share a pixel.
+TEST(BounceCaches, GiveBackTheConstantOfTheFurnace) {
+    const float albedo = 0.5f;
+    const Room room(furnace(albedo));
+    VirtualLightSettings settings = few_lights();
+    settings.count = 400;
+    const VirtualLights lights = room.lights(settings);
+    BounceCache cache(lights, 16, 1, [&](const PathVertex& base, std::uint64_t, int path, Rng& rng) {
+        const dvec3 numbers{rng.next_double(), (path % 4 + rng.next_double()) / 4.0,
+                            (path / 4 + rng.next_double()) / 4.0};
+        double distance = 1e9;
+        VirtualLights::Shading how;
+        how.numbers = &numbers;
+        how.distance = &distance;
+        return BounceCache::Sample{{lights.shade(base, rng, how), Rgb(0.0f)}, 1.0 / distance};
+    });
+    const auto covering = [&](double x, double y) {
+        const RaySegment segment = room.direct.segment_along(room.ray(x, y));
+        return lights.covering(*segment.hit, *segment.point);
+    };
+    double light = 0.0, share = 0.0;
+    for (int i = 0; i < 256; ++i) {
+        const LightShares at = covering((i % 16 + 0.5) / 16.0, (i / 16 + 0.5) / 16.0);
+        cache.gather(std::span(at.light.data(), std::size_t(at.count)));
+        const BounceCache::Found found = cache.at(at);
+        EXPECT_LE(found.share, 1.0f + 1e-5f);
+        light += found.light.surfaces.x;
+        share += found.share;
+    }
+    EXPECT_GT(share, 0.7 * 256.0);
+    // A path of the furnace has a standard deviation of at most what it brings; hundreds of lights gather by 16.
+    EXPECT_NEAR(light / share / (albedo / (1.0 - albedo)), 1.0, 0.01 + kSigmas / std::sqrt(200.0 * 16.0));
+}
 
 // Every photon's power is shared out whole, and all arrivals add up to emitted / (1 - albedo) where nothing escapes.
 TEST(Photons, ConserveEnergy) {
