@@ -85,11 +85,10 @@ struct BaseLighting::SamplesOfReceivers {
     std::span<const std::uint32_t> of(std::size_t receiver) const {
         return std::span(samples).subspan(first[receiver], first[receiver + 1] - first[receiver]);
     }
-    std::size_t count() const { return first.size() - 1; }
     // Pixel of each receiver.
     std::vector<std::uint32_t> pixels(std::span<const BasePoint> points) const {
         std::vector<std::uint32_t> out;
-        for (std::size_t r = 0; r < count(); ++r)
+        for (std::size_t r = 0; r + 1 < first.size(); ++r)
             out.push_back(points[of(r)[0]].pixel);
         return out;
     }
@@ -286,10 +285,9 @@ void BaseLighting::measure(int light, const SurfaceReceiver& receiver, TargetPoo
     BatchMean known;
     float all = 0.0f;
     const float start = rng.next();
-    const std::size_t batches = std::min(n, most_batches);
     // Where samples get unequally many draws, chance decides which get more.
-    const std::size_t first = batches < n ? static_cast<std::size_t>(rng.next() * float(n)) : 0;
-    for (std::size_t b = 0; b < batches; ++b) {
+    const std::size_t first = most_batches < n ? static_cast<std::size_t>(rng.next() * float(n)) : 0;
+    for (std::size_t b = 0; b < std::min(n, most_batches); ++b) {
         ratios_[light]->weigh(lit, pool.batch(start, b), draws);
         float of_batch = 0.0f, seen_of_batch = 0.0f;
         for (std::size_t k = 0; k < draws.size(); ++k) {
