@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "medium/lattice/node_fields.h"
 
 namespace brisance {
@@ -83,19 +84,26 @@ void set_transform(Medium& medium, std::span<const MediumPart> parts) {
 // Keeps only the bricks within one node of a node that absorbs, scatters or emits.
 void trim(Medium& medium, const BrickLattice& lattice, NodeFields& f) {
     std::vector<std::uint8_t> marked(lattice.node_count());
-    for (std::size_t i = 0; i < marked.size(); ++i)
-        marked[i] = f.extinction[i] > 0.0f || (!f.emission.empty() && f.emission[i] != Rgb(0.0f));
+    parallel_for(
+        marked.size(),
+        [&](std::size_t i) {
+            marked[i] = f.extinction[i] > 0.0f || (!f.emission.empty() && f.emission[i] != Rgb(0.0f));
+        },
+        4096);
     medium.lattice = BrickLattice(bricks_around(lattice, marked, 1));
     const auto move = [&](auto& from, auto& to) {
         if (from.empty())
             return;
         to.resize(medium.lattice.node_count());
-        for (std::size_t b = 0; b < medium.lattice.brick_count(); ++b) {
-            const int old = lattice.find(medium.lattice.brick(b));
-            if (old >= 0)
-                std::copy_n(&from[std::size_t(old) * BrickLattice::kNodes], BrickLattice::kNodes,
-                            &to[b * BrickLattice::kNodes]);
-        }
+        parallel_for(
+            medium.lattice.brick_count(),
+            [&](std::size_t b) {
+                const int old = lattice.find(medium.lattice.brick(b));
+                if (old >= 0)
+                    std::copy_n(&from[std::size_t(old) * BrickLattice::kNodes], BrickLattice::kNodes,
+                                &to[b * BrickLattice::kNodes]);
+            },
+            16);
         from.clear();
         from.shrink_to_fit();
     };

@@ -43,17 +43,19 @@ RenderedFrame picture_on(const Medium& medium, int level) {
 
 TEST(LightingLevel, LinearLightIsInterpolatedAsItIs) {
     const Medium fine = smooth_fire(1.0f);
-    const Medium coarse = medium_to_light(fine, 1);
     const auto light_at = [](const ivec3& node) {
-        return Rgb(100.0f + float(node.x), 100.0f - 2.0f * float(node.y), 5.0f);
+        return Rgb(100.0f + float(node.x), 100.0f - 2.0f * float(node.y), 100.0f + 3.0f * float(node.z));
     };
-    std::vector<Rgb> light(coarse.lattice.node_count());
-    for (std::size_t i = 0; i < light.size(); ++i)
-        light[i] = light_at(coarse.lattice.node(i) * 2);
-    const std::vector<Rgb> found = light_at_fine_nodes(coarse.lattice, light, 1, fine.lattice);
-    for (std::size_t i = 0; i < found.size(); ++i)
-        for (int c = 0; c < 3 && fine.extinction[i] > 0.0f; ++c)
-            ASSERT_NEAR(found[i][c], light_at(fine.lattice.node(i))[c], 1e-3f);
+    for (const int level : {1, 2, 3}) {
+        const Medium coarse = medium_to_light(fine, level);
+        std::vector<Rgb> light(coarse.lattice.node_count());
+        for (std::size_t i = 0; i < light.size(); ++i)
+            light[i] = light_at(coarse.lattice.node(i) << level);
+        const std::vector<Rgb> found = light_at_fine_nodes(coarse.lattice, light, level, fine.lattice);
+        for (std::size_t i = 0; i < found.size(); ++i)
+            for (int c = 0; c < 3 && fine.extinction[i] > 0.0f; ++c)
+                ASSERT_NEAR(found[i][c], light_at(fine.lattice.node(i))[c], 1e-3f) << level;
+    }
 }
 
 TEST(LightingLevel, TheMeanMediumEmitsAndExtinguishesAsMuch) {

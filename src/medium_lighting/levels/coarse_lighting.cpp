@@ -48,7 +48,50 @@ public:
             out[c] /= all;
     }
 
+    // At all nodes of the brick, from all corners: along one axis after the other, a row of nodes at once.
+    void at_all(const ivec3& first_fine, float* out) const {
+        constexpr int kSide = BrickLattice::kSize, kPlane = kSide * kSide;
+        const std::array<Axis, 3> axes = {axis(first_fine.x, low_.x), axis(first_fine.y, low_.y),
+                                          axis(first_fine.z, low_.z)};
+        std::array<float, kMostParents * kMostParents * kSide> along_z;
+        std::array<float, kMostParents * kPlane> along_yz;
+        for (int c = 0; c < channels; ++c) {
+            const float* const box = &box_[std::size_t(c * wide_ * wide_ * wide_)];
+            for (int row = 0; row < wide_ * wide_; ++row)
+                for (int z = 0; z < kSide; ++z)
+                    along_z[row * kSide + z] =
+                        axes[2].between(z, box[row * wide_ + axes[2].cell[z]], box[row * wide_ + axes[2].cell[z] + 1]);
+            for (int x = 0; x < wide_; ++x)
+                for (int y = 0; y < kSide; ++y) {
+                    const float* const from = &along_z[std::size_t((x * wide_ + axes[1].cell[y]) * kSide)];
+                    for (int z = 0; z < kSide; ++z)
+                        along_yz[x * kPlane + y * kSide + z] = axes[1].between(y, from[z], from[kSide + z]);
+                }
+            for (int x = 0; x < kSide; ++x) {
+                const float* const from = &along_yz[std::size_t(axes[0].cell[x] * kPlane)];
+                for (int i = 0; i < kPlane; ++i)
+                    out[(x * kPlane + i) * channels + c] = axes[0].between(x, from[i], from[kPlane + i]);
+            }
+        }
+    }
+
 private:
+    // Of the nodes of a brick along one axis: the parent below, counted from the box's first, and how far beyond it.
+    struct Axis {
+        std::array<int, BrickLattice::kSize> cell;
+        std::array<float, BrickLattice::kSize> beyond;
+        float between(int node, float below, float above) const { return below + beyond[node] * (above - below); }
+    };
+    Axis axis(int first_fine, int low) const {
+        Axis out;
+        for (int k = 0; k < BrickLattice::kSize; ++k) {
+            const int base = (first_fine + k) >> level_;
+            out.cell[k] = base - low;
+            out.beyond[k] = float(first_fine + k - (base << level_)) / float(1 << level_);
+        }
+        return out;
+    }
+
     int level_;
     ivec3 low_;
     int wide_;
@@ -63,10 +106,12 @@ void at_fine_nodes(const BrickLattice& coarse, std::span<const float> values, in
         [&](std::size_t b) {
             const ivec3 first = fine.first_node(b);
             const Parents<channels> parents(coarse, values, first, level);
+            float* const here = out + b * BrickLattice::kNodes * channels;
             const CornersSeen::OfBrick* const corners = seen ? seen->of_brick(b) : nullptr;
+            if (!corners)
+                return parents.at_all(first, here);
             for (int k = 0; k < BrickLattice::kNodes; ++k)
-                parents.at(first + BrickLattice::node_in_brick(k), corners ? (*corners)[k] : CornersSeen::kAll,
-                           out + (b * BrickLattice::kNodes + k) * channels);
+                parents.at(first + BrickLattice::node_in_brick(k), (*corners)[k], here + k * channels);
         },
         16);
 }
