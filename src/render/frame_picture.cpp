@@ -264,7 +264,6 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
                           takes_peaks_for_straight(input_) ? 0.0f : input_.plan.emitters_by_rays,
                           settings_.parts,
                           camera.settings().width,
-                          camera.settings().height,
                           static_cast<float>(input_.shot.lighting.error),
                           shading_tolerance(),
                           samples_of_pixel(camera),

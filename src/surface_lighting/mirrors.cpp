@@ -29,7 +29,7 @@ bool has_narrow_lobes(const SurfaceMaterial& m) {
 
 BehindMirrors Mirrors::follow(const SurfaceSample& sample, const SurfacePoint& point, Rng& medium_rng,
                               CellSum& light) const {
-    BehindMirrors at{sample.hit, point, sample.ray.direction};
+    BehindMirrors at{point, sample.ray.direction};
     Rng rng(Stream::Mirror, sample.pixel | std::uint64_t(seed_) << 32, sample.number);
     go_on(at, false, rng, medium_rng, light);
     return at;
@@ -56,7 +56,6 @@ BehindMirrors Mirrors::reflected(const SurfaceSample& sample, const BehindMirror
     at.throughput *= float(scene_.lines().transmittance(segment.ray, segment.end, medium_rng));
     if (at.throughput == Rgb(0.0f))
         return at;
-    at.hit = *segment.hit;
     at.point = *segment.point;
     at.arriving = segment.ray.direction;
     at.lost = false;
@@ -88,7 +87,6 @@ void Mirrors::go_on(BehindMirrors& at, bool seen_by_first, Rng& rng, Rng& medium
         at.throughput *= std::exp(-seen.depth);
         if (!segment.point || !beyond_ || seen.depth > kOpaqueDepth)
             return;
-        at.hit = *segment.hit;
         at.point = *segment.point;
         at.arriving = segment.ray.direction;
         at.lost = false;

@@ -12,7 +12,6 @@ namespace brisance {
 
 // The surface point to shade instead of the one that the camera ray hit.
 struct BehindMirrors {
-    SurfaceHit hit;
     SurfacePoint point;
     dvec3 arriving{0.0};  // unit: direction of the ray that reaches the point
     Rgb throughput{1.0f};

@@ -12,9 +12,7 @@ namespace {
 
 using Apart = SharedBounce::Apart;
 
-constexpr Stream kGloss = stream_of("surface_lighting/gloss"),
-                 kBaseLight = stream_of("surface_lighting/light of bases"),
-                 kGlossLight = stream_of("surface_lighting/light of gloss");
+constexpr Stream kGloss = stream_of("surface_lighting/gloss");
 
 }  // namespace
 
@@ -54,59 +52,15 @@ bool SurfaceShader::shares_gloss(const ShadedPoint& at) const {
            m.transmission == 0.0f && has_wide_lobes(m) && !shows_others(at);
 }
 
-VirtualLights::Shading SurfaceShader::shading() const {
-    VirtualLights::Shading out;
-    out.panes = samples_through_panes() ? VirtualLights::Panes::Sampled : VirtualLights::Panes::Followed;
-    out.smoke = &smoke_of_paths_;
-    out.walks = walks_;
-    out.lights_apart = input_.unified != nullptr;
-    return out;
-}
-
 VirtualLights::Shading SurfaceShader::shading(ShadedPoint& at) const {
-    VirtualLights::Shading out = shading();
-    out.vertices = &at.vertices;
-    out.bound = input_.bound ? &at.bound : nullptr;
-    return out;
-}
-
-// What the virtual lights around a base know of its light; nothing where they have not gathered any.
-BounceCache::Found SurfaceShader::known_at(const ShadedPoint& at) const {
-    return bounces_ && at.lights.count > 0 ? bounces_->at(at.lights) : BounceCache::Found{};
-}
-
-// Nothing of it is left to other pixels: the virtual lights around know most of what the base reflects. The point
-// gathers the rest of that in proportion.
-Rgb SurfaceShader::behind_mirrors(const SurfaceSample& sample, Rng& rng, ShadedPoint& at) const {
-    const SurfacePoint& point = at.seen.point;
-    const bool base = has_base(point.material), narrow = shows_others(at);  // those by shade_reflected()
-    const BounceCache::Found known = base ? known_at(at) : BounceCache::Found{};
-    Rgb sum(0.0f);
-    if (known.share > 0.0f)
-        sum = Bsdf(point.material, point.frame, Lobes::Base).base_albedo(-at.seen.arriving) * known.light.surfaces;
-    const bool knows_base = known.share > 0.0f && rng.next() < known.share;
-    if (knows_base ? narrow || !has_specular(point.material) : narrow && !base)
-        return sum;
-    const Lobes which = knows_base ? Lobes::Specular : narrow ? Lobes::Base : Lobes::All;
-    const PathVertex lobes(point, Bsdf(point.material, point.frame, which), at.seen.arriving);
-    return sum + shade_vertex(sample, lobes, which, shading(at), rng, at);
-}
-
-// Likewise.
-Rgb SurfaceShader::emitters_behind_mirrors(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng,
-                                           const ShadedPoint& at) const {
-    const BounceCache::Found known = input_.shared_sky ? known_at(at) : BounceCache::Found{};
-    const std::optional<PathVertex> base = base_of(at);
-    if (!base || known.share == 0.0f)
-        return emitters_.at(sample, vertex, rng).all();
-    const SurfacePoint& point = at.seen.point;
-    const Rgb sky = Bsdf(point.material, point.frame, Lobes::Base).base_albedo(-at.seen.arriving) * known.light.sky;
-    const LightOfEmitters::Seen of_base = emitters_.at(sample, *base, rng);
-    const Rgb own = sky + of_base.other + (1.0f - known.share) * of_base.even;
-    if (!has_specular(point.material))
-        return own;
-    const Bsdf lobes(point.material, point.frame, Lobes::Specular);
-    return own + emitters_.at(sample, PathVertex(point, lobes, at.seen.arriving), rng).all();
+    return {samples_through_panes() ? VirtualLights::Panes::Sampled : VirtualLights::Panes::Followed,
+            &smoke_of_paths_,
+            walks_,
+            &at.vertices,
+            nullptr,
+            nullptr,
+            input_.bound ? &at.bound : nullptr,
+            input_.unified != nullptr};
 }
 
 // What the sample itself shows; the rest is left to all pixels, where they share it.
@@ -114,8 +68,12 @@ Rgb SurfaceShader::from_virtual_lights(const SurfaceSample& sample, const PathVe
                                        ShadedPoint& at) const {
     const SurfacePoint& point = at.seen.point;
     const bool reflected = shows_others(at);  // by shade_reflected()
-    if (at.seen.mirrors > 0 || !input_.shared)
-        return behind_mirrors(sample, rng, at);
+    if (!input_.shared || at.seen.mirrors > 0) {
+        if (!reflected)
+            return shade_vertex(sample, vertex, Lobes::All, shading(at), rng, at);
+        const std::optional<PathVertex> base = base_of(at);
+        return base ? shade_vertex(sample, *base, Lobes::Base, shading(at), rng, at) : Rgb(0.0f);
+    }
     if (has_base(point.material)) {
         const Bsdf base(point.material, point.frame, Lobes::Base);
         if (const Rgb albedo = base.base_albedo(-at.seen.arriving); albedo != Rgb(0.0f))
@@ -157,9 +115,6 @@ SharedBounce::Sample SurfaceShader::shared_sample(const SurfaceSample& sample, c
     double distance = std::numeric_limits<double>::infinity();
     how.distance = &distance;
     how.blur = input_.shared->angle(found.lobe);
-    const dvec3 numbers =
-        lobe_numbers(which == Lobes::Base ? kBaseLight : kGlossLight, sample, input_.samples, input_.seed, rng);
-    how.numbers = &numbers;
     const Rgb own_residual = std::exchange(at.bound.residual, Rgb(0.0f));
     found.light = shade_vertex(sample, PathVertex(at.seen.point, lobes, at.seen.arriving), which, how, rng, at);
     if (!at.chosen.empty())
@@ -175,11 +130,9 @@ Rgb SurfaceShader::from_emitters(const SurfaceSample& sample, const PathVertex& 
                                  ShadedPoint& at) const {
     if (input_.unified)
         return emitters_.by_ray(sample, vertex, rng).all();
-    if (at.seen.mirrors > 0)
-        return emitters_behind_mirrors(sample, vertex, rng, at);
     const SurfacePoint& point = at.seen.point;
     const Bsdf base(point.material, point.frame, Lobes::Base);
-    const Rgb albedo = input_.shared_sky ? base.base_albedo(-at.seen.arriving) : Rgb(0.0f);
+    const Rgb albedo = input_.shared_sky && at.seen.mirrors == 0 ? base.base_albedo(-at.seen.arriving) : Rgb(0.0f);
     const bool shares = shares_gloss(at);
     if (albedo == Rgb(0.0f) && !shares)
         return emitters_.at(sample, vertex, rng).all();

@@ -22,7 +22,6 @@ struct SurfaceShader::ShadedPoint {
     SharedBounce::Aparts of_gloss = {};              // left to them with the gloss, ...
     std::optional<double> closeness = std::nullopt;  // ... by what its ray met [1/m]
     std::vector<LightReuse::Sample> chosen = {};     // left to samples around
-    LightShares lights = {};                         // that cover it, where bounces_ holds their light
     BoundTally bound = {};                           // of what is not left to all pixels
 };
 

@@ -1,8 +1,6 @@
 #include "surface_lighting/surface_shader.h"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -10,7 +8,6 @@
 #include "core/cpu_clock.h"
 #include "core/parallel.h"
 #include "pixel_sharing/shown_area.h"
-#include "surface_lighting/lobe_numbers.h"
 #include "surface_lighting/shaded_point.h"
 
 namespace brisance {
@@ -21,13 +18,6 @@ constexpr std::size_t kSamplesAtOnce = 256;
 
 // What a puddle shows of a window is followed to what the window shows. Beyond that, paths find it.
 constexpr int kMostReflections = 2;
-
-// Paths at each virtual light, along a side of their square: at most two for every ray of a pixel along a side, so that
-// noise vanishes with more rays. In small pictures so few points see a light that fewer do.
-constexpr double kSideForRays = 2.0, kPathsOfSample = 0.25;
-constexpr int kLeastSide = 3;
-
-constexpr Stream kBounce = stream_of("surface_lighting/bounces");
 
 using Apart = SharedBounce::Apart;
 
@@ -45,14 +35,6 @@ bool reflects_narrowly(const SurfaceLightingInput& input) {
            !input.unified && !input.reuse && !input.bound && !input.compensation;
 }
 
-int paths_at_light(const SurfaceLightingInput& input) {
-    const double samples = double(input.width) * input.height * input.samples;
-    const double lights = std::max(double(input.virtual_lights->lights().size()), 1.0);
-    const double most = std::max(double(kLeastSide), kSideForRays * std::sqrt(double(input.samples)));
-    const int side = int(std::clamp(std::sqrt(kPathsOfSample * samples / lights), double(kLeastSide), most));
-    return side * side;
-}
-
 }  // namespace
 
 SurfaceShader::SurfaceShader(const SurfaceLightingInput& input)
@@ -67,16 +49,7 @@ SurfaceShader::SurfaceShader(const SurfaceLightingInput& input)
       planar_(input.paths.direct().field().medium()),
       smoke_of_paths_(medium_),
       reflects_(reflects_narrowly(input)),
-      walks_(share_of_walks(input)) {
-    if (!reflects_ || !input.shared)
-        return;
-    const int paths = paths_at_light(input);
-    sky_of_bounces_.emplace(input.paths.direct(), paths, ~input.seed);
-    bounces_.emplace(*input.virtual_lights, paths, input.seed,
-                     [this](const PathVertex& base, std::uint64_t light, int path, Rng& rng) {
-                         return bounce(base, light, path, rng);
-                     });
-}
+      walks_(share_of_walks(input)) {}
 
 std::vector<SurfaceShader::ShadedPoint> SurfaceShader::shaded_points(const std::vector<SurfaceSample>& samples,
                                                                      std::vector<CellSum>& light) const {
@@ -173,8 +146,6 @@ void SurfaceShader::tell(const std::vector<SurfaceSample>& samples, const std::v
 
 void SurfaceShader::shade_some(const std::vector<SurfaceSample>& samples, const std::vector<std::size_t>& some,
                                std::vector<ShadedPoint>& points, std::vector<CellSum>& found) {
-    if (bounces_)
-        gather_bounces(some, points);
     parallel_for(
         some.size(),
         [&](std::size_t k) {
@@ -184,41 +155,6 @@ void SurfaceShader::shade_some(const std::vector<SurfaceSample>& samples, const 
         kSamplesAtOnce);
     if (reflects_)
         shade_reflected(samples, some, points, found);
-}
-
-// Light between surfaces that bases behind mirrors reflect, at the virtual lights around them.
-void SurfaceShader::gather_bounces(const std::vector<std::size_t>& some, std::vector<ShadedPoint>& points) {
-    parallel_for(
-        some.size(),
-        [&](std::size_t k) {
-            ShadedPoint& at = points[some[k]];
-            if (at.seen.mirrors > 0 && !at.seen.lost && has_base(at.seen.point.material))
-                at.lights = input_.virtual_lights->covering(at.seen.hit, at.seen.point);
-        },
-        kSamplesAtOnce);
-    std::vector<std::uint32_t> wanted;
-    for (const std::size_t i : some)
-        wanted.insert(wanted.end(), points[i].lights.light.begin(),
-                      points[i].lights.light.begin() + points[i].lights.count);
-    bounces_->gather(wanted);
-}
-
-// One path at a virtual light.
-BounceCache::Sample SurfaceShader::bounce(const PathVertex& base, std::uint64_t light, int path, Rng& rng) const {
-    SurfaceSample as_ray{};
-    as_ray.pixel = static_cast<std::uint32_t>(light ^ light >> 32);
-    as_ray.number = static_cast<std::uint64_t>(path);
-    const dvec3 numbers = lobe_numbers(kBounce, as_ray, bounces_->paths(), input_.seed, rng);
-    VirtualLights::Shading how = shading();
-    double distance = std::numeric_limits<double>::infinity();
-    how.distance = &distance;
-    how.numbers = &numbers;
-    BounceCache::Sample out;
-    out.light.surfaces = input_.virtual_lights->shade(base, rng, how);
-    if (input_.shared_sky)
-        out.light.sky = sky_of_bounces_->at(as_ray, base, rng).even;
-    out.closeness = 1.0 / distance;
-    return out;
 }
 
 // Whether what the point's lobes show of other surfaces is found by shade_reflected().

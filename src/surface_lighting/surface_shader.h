@@ -40,7 +40,6 @@
 #include "surface_lighting/screen_space_compensation.h"
 #include "surface_lighting/surface_rounds.h"
 #include "unified_lights/unified_lights.h"
-#include "virtual_lights/bounce_cache.h"
 #include "virtual_lights/virtual_lights.h"
 
 namespace brisance {
@@ -55,7 +54,7 @@ struct SurfaceLightingInput {
     const InScattering* in_scattering = nullptr;      // null: it does not own SM
     float emitters_by_rays = 0.0f;                    // share of MA along rays (medium_along_ray.h)
     int parts = 2;                                    // that of PictureSettings
-    int width = 0, height = 0;                        // of the picture, in pixels
+    int width = 0;                                    // of the picture, in pixels
     float base_tolerance = 0.0f;                      // that of BaseLighting
     float tolerance = 0.0f;                           // that of SurfaceRounds
     int samples = 1;                                  // rays of a pixel
@@ -91,7 +90,6 @@ private:
               SurfaceRounds::Found& known) const;
     void shade_some(const std::vector<SurfaceSample>& samples, const std::vector<std::size_t>& some,
                     std::vector<ShadedPoint>& points, std::vector<CellSum>& found);
-    void gather_bounces(const std::vector<std::size_t>& some, std::vector<ShadedPoint>& points);
     void shade_reflected(const std::vector<SurfaceSample>& samples, const std::vector<std::size_t>& some,
                          std::vector<ShadedPoint>& points, std::vector<CellSum>& found);
     void light_reflected(const std::vector<SurfaceSample>& by, std::vector<ShadedPoint>& there,
@@ -104,15 +102,9 @@ private:
     Rgb base_from_fire(const SurfaceSample& sample, const ShadedPoint& at) const;
     void add_unified(const SurfaceSample& sample, const PathVertex& vertex, const ShadedPoint& at, CellSum& out) const;
     Rgb from_virtual_lights(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng, ShadedPoint& at) const;
-    Rgb behind_mirrors(const SurfaceSample& sample, Rng& rng, ShadedPoint& at) const;
-    Rgb emitters_behind_mirrors(const SurfaceSample& sample, const PathVertex& vertex, Rng& rng,
-                                const ShadedPoint& at) const;
-    BounceCache::Found known_at(const ShadedPoint& at) const;
-    BounceCache::Sample bounce(const PathVertex& base, std::uint64_t light, int path, Rng& rng) const;
     SharedBounce::Sample shared_sample(const SurfaceSample& sample, const Bsdf& lobes, Lobes which, LightToShare found,
                                        Rng& rng, ShadedPoint& at) const;
     bool shares_gloss(const ShadedPoint& at) const;
-    VirtualLights::Shading shading() const;
     VirtualLights::Shading shading(ShadedPoint& at) const;
     Rgb shade_vertex(const SurfaceSample& sample, const PathVertex& vertex, Lobes which, VirtualLights::Shading how,
                      Rng& rng, ShadedPoint& at) const;
@@ -141,10 +133,8 @@ private:
     Mirrors mirrors_;
     PlanarLight planar_;
     LitSmokeAlongRay smoke_of_paths_;
-    bool reflects_;                       // narrow lobes show surfaces as mirrors do
-    float walks_;                         // of the paths between surfaces, the share that walks through the smoke
-    std::optional<BounceCache> bounces_;  // of surfaces behind mirrors; none: each point gathers its own
-    std::optional<LightOfEmitters> sky_of_bounces_;
+    bool reflects_;  // narrow lobes show surfaces as mirrors do
+    float walks_;    // of the paths between surfaces, the share that walks through the smoke
 };
 
 }  // namespace brisance

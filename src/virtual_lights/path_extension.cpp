@@ -123,7 +123,6 @@ public:
           lights_apart_(how.lights_apart),
           bound_(how.bound),
           blur_(how.blur),
-          numbers_(how.numbers),
           lamps_along_(scene_.has_emitters() && aims_at_lamps(scene_) && !scene_.field().bricks().empty()) {}
 
     Rgb own_lights(const PathState& state, Rng& rng) {
@@ -137,10 +136,6 @@ public:
                         return lights_.from_lights(state.vertex, rng);
                     })
             .light;
-    }
-
-    std::optional<PathVertex::Sample> direction(const PathState& state, Rng& rng) const {
-        return numbers_ && state.order == 1 ? state.vertex.sample_lobes(*numbers_) : PlainPath::direction(state, rng);
     }
 
     // Where lamps are estimated along segments, vertices in the medium would count their light twice. Estimates there
@@ -243,7 +238,6 @@ private:
     bool lights_apart_;          // from the receiver
     BoundWatch bound_;
     double blur_;               // of the receiver
-    const dvec3* numbers_;      // of its direction; null: drawn
     bool lamps_along_;          // estimate lamps along segments, not at vertices in the medium
     bool receiver_lit_ = true;  // by the medium along the current segment
     Rgb sum_{0.0f};

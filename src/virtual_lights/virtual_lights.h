@@ -48,8 +48,7 @@ public:
     // `lights_apart`: the caller lights the vertex by each_light(); the lights' share is missing in the sum then.
     // `blur`: angle by which receivers lie apart that share the sum, seen from what they are lit by [rad]; 0: none
     // share. Later vertices of the path widen their lobes to it. `bound`: gets what the bound of point lights and its
-    // compensation do to the sum; processor time is taken for it. `numbers`: of the first direction, for
-    // PathVertex::sample_lobes; null: `rng` draws them.
+    // compensation do to the sum; processor time is taken for it.
     enum class Panes { Followed, Sampled };
     struct Shading {
         Panes panes = Panes::Followed;
@@ -61,7 +60,6 @@ public:
         BoundTally* bound = nullptr;
         bool lights_apart = false;
         double blur = 0.0;
-        const dvec3* numbers = nullptr;
     };
     Rgb shade(const PathVertex& vertex, Rng& rng, const Shading& how) const;
     Rgb shade(const PathVertex& vertex, Rng& rng) const { return shade(vertex, rng, Shading{}); }
@@ -77,10 +75,10 @@ public:
     std::unique_ptr<const SingleLights> each_light() const { return single_(*set_); }
     // Radiance of a light of its own surface's colour [W/(m^2 sr)]. `toward`: unit, world.
     Rgb radiance(const VirtualLight& light, const dvec3& toward) const { return set_->radiance(light, toward); }
-    // The lights that cover a point where a ray has met a surface; none: paths continue there.
-    LightShares covering(const SurfaceHit& hit, const SurfacePoint& point) const { return set_->shares_at(hit, point); }
-    // How many, up to LightShares::kMost.
-    int count_covering(const SurfaceHit& hit, const SurfacePoint& point) const { return covering(hit, point).count; }
+    // How many lights cover a point where a ray has met a surface, up to LightShares::kMost; 0: paths continue there.
+    int count_covering(const SurfaceHit& hit, const SurfacePoint& point) const {
+        return set_->shares_at(hit, point).count;
+    }
     // Whether the Lambert base of a point that a ray has met is among what the lights reflect, by their base_flux.
     bool hold_base(const SurfaceHit& hit, const SurfacePoint& point) const;
     const Profiles& profiles() const { return set_->profiles; }

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "room.h"
-#include "virtual_lights/bounce_cache.h"
 
 namespace brisance {
 namespace {
@@ -43,47 +42,6 @@ TEST_P(Furnaces, ReflectWhatTheSeriesSays) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Furnaces, ::testing::Combine(::testing::Values(0.2f, 0.5f, 0.9f), ::testing::Bool()));
-
-// What lights gather themselves, of the share that they are trusted with, at 256 points that the camera sees. First
-// directions are given, as at points that share a pixel.
-BounceCache::Found gathered_in(const Room& room, int count) {
-    VirtualLightSettings settings = few_lights();
-    settings.count = count;
-    const VirtualLights lights = room.lights(settings);
-    BounceCache cache(lights, 16, 1, [&](const PathVertex& base, std::uint64_t, int path, Rng& rng) {
-        const dvec3 numbers{rng.next_double(), (path % 4 + rng.next_double()) / 4.0,
-                            (path / 4 + rng.next_double()) / 4.0};
-        double distance = 1e9;
-        VirtualLights::Shading how;
-        how.numbers = &numbers;
-        how.distance = &distance;
-        return BounceCache::Sample{{lights.shade(base, rng, how), Rgb(0.0f)}, 1.0 / distance};
-    });
-    BounceCache::Found sum;
-    for (int i = 0; i < 256; ++i) {
-        const RaySegment segment = room.direct.segment_along(room.ray((i % 16 + 0.5) / 16.0, (i / 16 + 0.5) / 16.0));
-        const LightShares at = lights.covering(*segment.hit, *segment.point);
-        cache.gather(std::span(at.light.data(), std::size_t(at.count)));
-        const BounceCache::Found found = cache.at(at);
-        EXPECT_LE(found.share, 1.0f + 1e-5f);
-        sum.light.surfaces += found.light.surfaces;
-        sum.share += found.share;
-    }
-    return sum;
-}
-
-// The constant comes back whatever the share is, and lights that are small beside their distance to other walls are
-// trusted more. A path has a standard deviation of at most what it brings; hundreds of lights gather by 16.
-TEST(BounceCaches, GiveBackTheConstantOfTheFurnace) {
-    const float albedo = 0.5f;
-    const Room room(furnace(albedo));
-    const BounceCache::Found coarse = gathered_in(room, 400), fine = gathered_in(room, 2000);
-    for (const BounceCache::Found& found : {coarse, fine})
-        EXPECT_NEAR(found.light.surfaces.x / found.share / (albedo / (1.0 - albedo)), 1.0,
-                    0.01 + kSigmas / std::sqrt(200.0 * 16.0));
-    EXPECT_GT(coarse.share, 0.25f * 256.0f);
-    EXPECT_GT(fine.share, 1.5f * coarse.share);
-}
 
 // Every photon's power is shared out whole, and all arrivals add up to emitted / (1 - albedo) where nothing escapes.
 TEST(Photons, ConserveEnergy) {
