@@ -96,7 +96,7 @@ double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& 
         const bool bounces = share_of_fine_bounces(series, orders, shot.lighting.error) > 0.0f;
         const double flights = 1.0 + (bounces ? kFineBounce * count_of_fine_bounces(orders) : 0.0);
         evaluations += flights * kEvaluationsOfNode * of_smoke * std::pow(double(shot.scattering.alpha), kPowerOfAlpha);
-        coarse = of_smoke / std::pow(kNodesOfParent, series.level);
+        coarse = of_smoke / std::pow(kNodesOfParent, double(series.level) + series.share_of_coarser);
     }
     const double map =
         std::pow(double(shadow_resolution(shot.lighting)), 2.0) * shadow_distances(shot.lighting) / kKnownMap;

@@ -33,6 +33,8 @@ double limited(double error) {
     return error / (1.0 + error);
 }
 
+const std::string kSeries = "orders of scattering on the coarse lattice";
+
 // A number that a stage noted; 0 where it did not run.
 double noted(const Statistics& statistics, const std::string& stage, const char* key) {
     for (const StageCost& s : statistics.stages)
@@ -119,11 +121,10 @@ double sum_of_squares(const Layer& layer) {
 std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFrame& frame,
                                            const Statistics& statistics) {
     const std::string lattice = "lattice of the light";
-    const std::string series = "orders of scattering on the coarse lattice";
     const ErrorModel model(
         frame, noted(statistics, lattice, "error"), noted(statistics, lattice, "interpolation"),
-        noted(statistics, lattice, "smoke_lattice_level"), noted(statistics, series, "lattice_level"),
-        noted(statistics, series, "share_of_fine_bounces"), noted(statistics, series, "estimated_remainder"));
+        noted(statistics, lattice, "smoke_lattice_level"), noted(statistics, kSeries, "lattice_level"),
+        noted(statistics, kSeries, "share_of_fine_bounces"), noted(statistics, kSeries, "estimated_remainder"));
     std::vector<ExpectedError> out(1);
     double errors = 0.0, spreads = 0.0, light = 0.0;
     for (const std::string& cell : frame.plan.cells())
@@ -140,6 +141,13 @@ std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFra
         out[0] = light > 0.0 ? ExpectedError{"", std::sqrt(errors / all), std::sqrt(spreads / light)}
                              : model.of(brightest(frame.plan));
     out[0].cell.clear();
+    return out;
+}
+
+Shot as_solved(const Shot& shot, const Statistics& statistics) {
+    Shot out = shot;
+    if (noted(statistics, kSeries, "nodes") > 0.0)
+        out.scattering.lattice_level = static_cast<int>(noted(statistics, kSeries, "lattice_level"));
     return out;
 }
 

@@ -28,6 +28,10 @@ struct ModelledFrame {
 std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFrame& frame,
                                            const Statistics& statistics);
 
+// The shot of a frame that has been rendered, with the lattice on which its orders of scattering were solved: before
+// that is known, grid_seconds() can only guess where the light is.
+Shot as_solved(const Shot& shot, const Statistics& statistics);
+
 // Of a picture that is not rendered yet.
 ExpectedError expected_error(const ModelledFrame& frame);
 

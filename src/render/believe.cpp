@@ -31,8 +31,10 @@ std::size_t draws_for(std::size_t samples, double noise_square, double error) {
     return static_cast<std::size_t>(std::clamp(double(samples) / each, kLeastDraws, kMostDraws));
 }
 
-std::optional<Certificate> survey(const Image& image, const DrawInput& input, double expected, Progress& progress) {
-    const double of_grid = grid_seconds(input.shot, CountedMedium(input.medium), input.plan, input.camera.settings());
+std::optional<Certificate> survey(const Image& image, const DrawInput& input, const Statistics& statistics,
+                                  double expected, Progress& progress) {
+    const double of_grid = grid_seconds(as_solved(input.shot, statistics), CountedMedium(input.medium), input.plan,
+                                        input.camera.settings());
     const double seconds = input.shot.certify.belief * of_grid - tracer_seconds(input.medium);
     if (!(seconds > 0.0))
         return std::nullopt;
@@ -60,7 +62,7 @@ Belief believe_lights(const Image& image, const DrawInput& input, const Statisti
     Belief out;
     std::optional<Certificate> samples;
     if (expected[0].error > 0.0 && input.shot.certify.belief > 0.0)
-        samples = survey(image, input, expected[0].error, progress);
+        samples = survey(image, input, statistics, expected[0].error, progress);
     if (samples) {
         out.samples = samples->samples;
         out.pixels = samples->pixels;
