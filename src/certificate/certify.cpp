@@ -8,7 +8,7 @@
 #include <numeric>
 #include <span>
 
-#include "camera/pixel_filter.h"
+#include "certificate/estimated_layers.h"
 #include "core/parallel.h"
 
 namespace brisance {
@@ -35,38 +35,6 @@ std::size_t draws_of(int samples) {
     return std::clamp<std::size_t>(std::lround(draws), 2, std::max(2, samples / 2));
 }
 
-// Layers that are certified: the beauty and its cells, each of one or several orders of scattering. With surroundings,
-// paths are recorded by cell.
-constexpr std::size_t kMostTargets = 1 + kCells;
-
-struct Target {
-    const Layer* layer;
-    int first_order, end_order;
-    int cell = -1;  // instead of the orders
-    dvec3 pixel(std::size_t p) const {
-        const float* v = &layer->pixels[p * layer->channels.size()];
-        return {v[0], v[1], v[2]};
-    }
-};
-
-std::vector<Target> targets_of(const Image& image, bool surroundings) {
-    std::vector<Target> targets;
-    const auto add = [&](const char* name, int first_order, int end_order, int cell) {
-        for (const Layer& layer : image.layers)
-            if (layer.name == name)
-                targets.push_back({&layer, first_order, end_order, cell});
-    };
-    add("", 0, kPathOrders, -1);
-    for (int cell = 0; cell < kCells && surroundings; ++cell)
-        add(kCellNames[cell], 0, 0, cell);
-    if (surroundings)
-        return targets;
-    add("V", 0, 1, -1);
-    add("MV", 1, 2, -1);
-    add("MM", 2, kPathOrders, -1);
-    return targets;
-}
-
 double sum_of(const dvec3& c) {
     return c.x + c.y + c.z;
 }
@@ -77,7 +45,7 @@ struct DrawEstimate {
     double difference = 0.0;  // I - R
     double energy = 0.0;      // I^2 - R^2
 };
-using AllEstimates = std::array<DrawEstimate, kMostTargets>;
+using AllEstimates = std::array<DrawEstimate, kMostEstimatedLayers>;
 
 DrawEstimate estimate_of(const dvec3& image, const dvec3& sum, const dvec3& squares, int samples, double weight) {
     const double n = samples;
@@ -87,17 +55,17 @@ DrawEstimate estimate_of(const dvec3& image, const dvec3& sum, const dvec3& squa
 
 class Sampler {
 public:
-    Sampler(const std::vector<Target>& targets, const MomentTracers& tracers, int seed, int samples)
+    Sampler(const std::vector<EstimatedLayer>& targets, const MomentTracers& tracers, int seed, int samples)
         : targets_(targets), tracers_(tracers), seed_(seed), samples_(samples) {}
 
     AllEstimates sample(std::size_t number, const PixelSurvey::Draw& draw) {
-        std::array<dvec3, kMostTargets> image{}, sum{}, squares{};
+        std::array<dvec3, kMostEstimatedLayers> image{}, sum{}, squares{};
         for (std::size_t t = 0; t < targets_.size(); ++t)
             image[t] = targets_[t].pixel(draw.pixel);
         for (int k = 0; k < samples_; ++k) {
             const PathSum path = trace(number, k, draw.pixel);
             for (std::size_t t = 0; t < targets_.size(); ++t) {
-                const dvec3 d = image[t] - seen(targets_[t], path);
+                const dvec3 d = image[t] - targets_[t].seen(path);
                 sum[t] += d;
                 squares[t] += d * d;
             }
@@ -111,39 +79,17 @@ public:
     std::uint64_t not_finite() const { return not_finite_; }
 
 private:
-    static dvec3 seen(const Target& target, const PathSum& path) {
-        if (target.cell >= 0)
-            return dvec3(path.cells[target.cell]);
-        dvec3 sum(0.0);
-        for (int order = target.first_order; order < target.end_order; ++order)
-            sum += dvec3(path[order]);
-        return sum;
-    }
-
-    // Each sample is independent of every other: there is no sequence and no stratification.
     PathSum trace(std::size_t number, int k, std::size_t pixel) {
-        const CameraSettings& s = tracers_.camera(0).settings();
         Rng rng(Stream::Certificate, std::uint64_t(seed_) << 32 | number, std::uint64_t(k) + 1);
-        const double x = rng.next_double() - 0.5, y = rng.next_double() - 0.5, position = rng.next_double();
-        const double column = double(pixel % s.width) + 0.5 + x * s.filter_width_pixels;
-        const std::size_t rows_above = pixel / s.width;
-        const double row = double(rows_above) + 0.5 + y * s.filter_width_pixels;
-        const std::size_t moment = tracers_.count() > 1 ? tracers_.at(rng.next_double()) : 0;
-        PathSum path{};
-        PathStatistics ignored;
-        tracers_.tracer(moment).trace(tracers_.camera(moment).ray(column, row), position, rng, path, ignored);
+        const PathSum path = tracers_.sample(pixel, rng);
         if (!std::isfinite(sum_of(dvec3(std::accumulate(path.begin(), path.end(), Rgb(0.0f)))))) {
             ++not_finite_;
             return {};
         }
-        for (Rgb& order : path)
-            order *= filter_weight(s.filter, x, y);
-        for (Rgb& cell : path.cells)
-            cell *= filter_weight(s.filter, x, y);
         return path;
     }
 
-    const std::vector<Target>& targets_;
+    const std::vector<EstimatedLayer>& targets_;
     const MomentTracers& tracers_;
     int seed_, samples_;
     std::atomic<std::uint64_t> not_finite_ = 0;
@@ -152,11 +98,11 @@ private:
 // The picture as a population of pixels: the pixels that can be sampled, and how often each should be.
 class Population {
 public:
-    Population(const Image& image, const std::vector<Target>& targets)
+    Population(const Image& image, const std::vector<EstimatedLayer>& targets)
         : targets_(targets), width_(image.width), height_(image.height) {
         usable_.resize(std::size_t(width_) * height_, 1.0);
         for (std::size_t p = 0; p < usable_.size(); ++p)
-            for (const Target& t : targets)
+            for (const EstimatedLayer& t : targets)
                 if (!std::isfinite(sum_of(t.pixel(p))))
                     usable_[p] = 0.0;
     }
@@ -176,7 +122,7 @@ public:
     std::vector<double> sizes() const {
         std::vector<double> size(usable_.size(), 0.0);
         add(size, usable_, kEvenly);
-        for (const Target& t : targets_) {
+        for (const EstimatedLayer& t : targets_) {
             add(size, blurred([&](std::size_t p) { return glm::length(t.pixel(p)); }), kByRadiance / targets_.size());
             add(size, blurred([&](std::size_t p) { return glm::dot(t.pixel(p), t.pixel(p)); }),
                 kBySquare / targets_.size());
@@ -204,7 +150,7 @@ private:
         return out;
     }
 
-    const std::vector<Target>& targets_;
+    const std::vector<EstimatedLayer>& targets_;
     int width_, height_;
     std::vector<double> usable_;  // 1, or 0 where a target is not finite
 };
@@ -244,7 +190,7 @@ void estimate_mean(CertifiedError& e, const SurveyedSums& s, double total) {
         e.mean_interval.low = -kInfinity;
 }
 
-CertifiedError certified_error(const Population& population, const Target& target,
+CertifiedError certified_error(const Population& population, const EstimatedLayer& target,
                                std::span<const AllEstimates> estimates, std::size_t index) {
     std::vector<double> square, difference, energy;
     for (const AllEstimates& all : estimates) {
@@ -262,7 +208,7 @@ CertifiedError certified_error(const Population& population, const Target& targe
 }
 
 // The result for a target whose truth is black as well, so that no ratio is defined.
-CertifiedError error_of_black(const Target& target) {
+CertifiedError error_of_black(const EstimatedLayer& target) {
     CertifiedError e;
     e.cell = target.layer->name;
     return e;
@@ -293,7 +239,7 @@ MomentTracers tracers_of(const CertifiedScene& scene) {
 
 Certificate certify(const Image& image, const CertifiedScene& scene, const MomentTracers& tracers,
                     const SurveySize& size, Progress& progress) {
-    const std::vector<Target> targets = targets_of(image, scene.surroundings);
+    const std::vector<EstimatedLayer> targets = estimated_layers(image, scene.surroundings);
     const Population population(image, targets);
     const PixelSurvey survey(population.sizes(), image.width, size.draws, size.seed);
     const auto& draws = survey.draws();

@@ -106,6 +106,10 @@ double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& 
            kCoarseNode * coarse + kCameraRay * camera_rays(shot, counted.medium, camera);
 }
 
+bool grid_is_forecast(const Plan& plan) {
+    return !plan.surfaces && !plan.emitters && !plan.scattering_method && !plan.fire_sampling && !plan.unified_sampling;
+}
+
 double tracer_seconds(const Medium& medium) {
     return kTrackingOfVoxel * double(medium.lattice.node_count());
 }
@@ -129,14 +133,17 @@ PathPilot trace_pilot(const PathTracer& tracer, const Camera& camera, std::size_
     });
     double variance = 0.0, square = 0.0;
     std::uint64_t segments = 0;
+    std::size_t lit = 0;
     for (const PilotPixel& p : pixels) {
+        lit += p.variance > 0.0 || p.square > 0.0;
         variance += p.variance;
         square += p.square;
         segments += p.paths.paths + p.paths.scatterings;
     }
     // A black pilot needs no paths. Where noise hides all light, paths are taken to need far too many.
     const double noise = variance > 0.0 ? variance / std::max(square, 1e-12 * variance) : 0.0;
-    return {noise, double(segments) / (double(count) * double(kPilotSamples))};
+    return {noise, double(segments) / (double(count) * double(kPilotSamples)),
+            double(std::max<std::size_t>(lit, 1)) / double(count)};
 }
 
 }  // namespace brisance

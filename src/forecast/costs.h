@@ -27,6 +27,9 @@ LatticeChoice forecast_lattice(const Shot& shot, const Medium& medium, int smoke
 // rays.
 double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan, const CameraSettings& camera);
 
+// Whether that is known for pictures of the plan: not with surfaces, lamps and methods other than the hierarchy's.
+bool grid_is_forecast(const Plan& plan);
+
 // Set-up of the path tracer.
 double tracer_seconds(const Medium& medium);
 
@@ -34,6 +37,7 @@ double tracer_seconds(const Medium& medium);
 struct PathPilot {
     double square_error = 0.0;   // of a picture of one camera ray per pixel: the square of its relative standard error
     double segments = 0.0;       // of all paths that one camera ray begins
+    double lit = 1.0;            // share of the pixels in which light was found
     double ray_seconds() const;  // of a camera ray with its paths
 };
 

@@ -118,8 +118,8 @@ double sum_of_squares(const Layer& layer) {
 
 }  // namespace
 
-std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFrame& frame,
-                                           const Statistics& statistics) {
+std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFrame& frame, const Statistics& statistics,
+                                           const std::function<double(const std::string& cell)>& left) {
     const std::string lattice = "lattice of the light";
     const ErrorModel model(
         frame, noted(statistics, lattice, "error"), noted(statistics, lattice, "interpolation"),
@@ -131,6 +131,7 @@ std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFra
         for (const Layer& layer : image.layers)
             if (const double part = layer.name == cell ? sum_of_squares(layer) : 0.0; part > 0.0) {
                 out.push_back(model.of(cell));
+                out.back().error *= left(cell);
                 errors += part * square(out.back().error);
                 spreads += part * square(out.back().spread);
                 light += part;

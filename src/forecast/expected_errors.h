@@ -9,6 +9,8 @@
 // scattering methods with random samples is not modelled: its expected error is little more than a guess.
 #pragma once
 
+#include <functional>
+
 #include "certificate/believed_error.h"
 #include "film/image.h"
 #include "forecast/costs.h"
@@ -24,9 +26,11 @@ struct ModelledFrame {
     const Plan& plan;
 };
 
-// Of a finished picture and of its cells, the picture first. A black picture has an expected error of 0.
-std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFrame& frame,
-                                           const Statistics& statistics);
+// Of a finished picture and of its cells, the picture first. A black picture has an expected error of 0. `left`: of the
+// error of a cell's light, what is left in the picture, since that was corrected.
+std::vector<ExpectedError> expected_errors(
+    const Image& image, const ModelledFrame& frame, const Statistics& statistics,
+    const std::function<double(const std::string& cell)>& left = [](const std::string&) { return 1.0; });
 
 // The shot of a frame that has been rendered, with the lattice on which its orders of scattering were solved: before
 // that is known, grid_seconds() can only guess where the light is.

@@ -31,6 +31,10 @@ public:
     const Camera& camera(std::size_t moment) const { return *cameras_[moment]; }
     std::uint64_t bytes() const;
 
+    // One sample of a pixel: a camera ray within the pixel's filter, at one moment, with its paths [W/(m^2 sr)].
+    // Samples are independent of each other: there is no sequence and no stratification.
+    PathSum sample(std::size_t pixel, Rng& rng) const;
+
     // The moment for u in [0, 1).
     std::size_t at(double u) const { return std::min(count() - 1, static_cast<std::size_t>(u * double(count()))); }
 

@@ -56,9 +56,11 @@ const CertifiedError* sampled(const std::optional<Certificate>& survey, const st
     return nullptr;
 }
 
-Belief believe_lights(const Image& image, const DrawInput& input, const Statistics& statistics, Progress& progress) {
-    const std::vector<ExpectedError> expected =
-        expected_errors(image, {input.shot, input.medium, input.plan}, statistics);
+Belief believe_lights(const Image& image, const DrawInput& input, const Statistics& statistics,
+                      const Correction& correction, Progress& progress) {
+    const std::vector<ExpectedError> expected = expected_errors(
+        image, {input.shot, input.medium, input.plan}, statistics,
+        [&](const std::string& cell) { return correction.of(cell) ? correction.of(cell)->left() : 1.0; });
     Belief out;
     std::optional<Certificate> samples;
     if (expected[0].error > 0.0 && input.shot.certify.belief > 0.0)
@@ -112,18 +114,19 @@ CertifiedScene certified_scene(const DrawInput& input) {
             input.moments()};
 }
 
-Belief believe(const RenderedFrame& frame, const DrawInput& input, StageCost& cost, Progress& progress) {
+Belief believe(const RenderedFrame& frame, const DrawInput& input, const Shot& shot, const Correction& correction,
+               StageCost& cost, Progress& progress) {
     progress.stage("believed error");
     const Stopwatch watch;
     const std::clock_t cpu = std::clock();
     Belief out = frame.halves.size() == 2 ? believe_paths(frame.halves, input.plan)
-                                          : believe_lights(frame.image, input, frame.statistics, progress);
+                                          : believe_lights(frame.image, input, frame.statistics, correction, progress);
     cost = {"believed error",
             watch.seconds(),
             0,
             {{"samples", out.samples}, {"cpu_seconds", double(std::clock() - cpu) / CLOCKS_PER_SEC}}};
     progress.notice("believed error: " + out.line());
-    const auto [asked, key] = error_asked(input.shot);
+    const auto [asked, key] = error_asked(shot);
     if (asked > 0.0 && out.errors[0].error > asked)
         progress.warning("error", fmt::format("{}={:.3g} is not reached: the picture is believed to have an error of "
                                               "{:.2g} %",

@@ -8,13 +8,15 @@
 
 #include "certificate/believed_error.h"
 #include "certificate/certify.h"
+#include "correction/correct.h"
 #include "render/draw.h"
 #include "render/render_frame.h"
 
 namespace brisance {
 
-// Says it, and warns where it is above the error asked for.
-Belief believe(const RenderedFrame& frame, const DrawInput& input, StageCost& cost, Progress& progress);
+// Says it, and warns where it is above the error that the shot `asked` for.
+Belief believe(const RenderedFrame& frame, const DrawInput& input, const Shot& asked, const Correction& correction,
+               StageCost& cost, Progress& progress);
 
 // The scene that samples of the picture are unbiased of.
 CertifiedScene certified_scene(const DrawInput& input);

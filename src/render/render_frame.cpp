@@ -2,12 +2,14 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <ctime>
 #include <functional>
 
 #include "camera/camera.h"
 #include "certificate/certify.h"
 #include "core/stopwatch.h"
+#include "forecast/correction_plan.h"
 #include "forecast/machine_speed.h"
 #include "forecast/plan.h"
 #include "reference/trace_picture.h"
@@ -16,6 +18,7 @@
 #include "render/checkpoint_key.h"
 #include "render/choice/choose_method.h"
 #include "render/choice/time_budget.h"
+#include "render/correct_frame.h"
 #include "render/draw.h"
 #include "render/input/frame_input.h"
 #include "render/input/kept_inputs.h"
@@ -59,9 +62,10 @@ std::string joined(const std::vector<std::string>& names) {
     return all;
 }
 
-Belief add_belief(RenderedFrame& out, const DrawInput& input, Progress& progress) {
+Belief add_belief(RenderedFrame& out, const DrawInput& input, const Shot& asked, const Correction& correction,
+                  Progress& progress) {
     StageCost cost;
-    Belief belief = believe(out, input, cost, progress);
+    Belief belief = believe(out, input, asked, correction, cost, progress);
     out.statistics.stages.push_back(std::move(cost));
     return belief;
 }
@@ -83,8 +87,9 @@ Certificate add_certificate(RenderedFrame& out, const DrawInput& input, const Be
 }
 
 // What is believed of the picture's error, and what is certified of it if the shot asks for that.
-void add_errors(RenderedFrame& out, const DrawInput& input, Progress& progress) {
-    const Belief belief = add_belief(out, input, progress);
+void add_errors(RenderedFrame& out, const DrawInput& input, const Shot& asked, const Correction& correction,
+                Progress& progress) {
+    const Belief belief = add_belief(out, input, asked, correction, progress);
     std::optional<Certificate> certificate;
     if (input.shot.certify.enabled)
         certificate = add_certificate(out, input, belief, progress);
@@ -107,6 +112,25 @@ void draw_into(RenderedFrame& out, const DrawInput& input, Progress& progress) {
     out.image = std::move(drawn.image);
     out.light_pictures = std::move(drawn.light_pictures);
     out.metadata.samples_per_pixel = drawn.samples_per_pixel;
+}
+
+// Draws by many lights and corrects. That needs layers of cells, which are taken off where the shot wants none.
+Correction draw_and_correct(RenderedFrame& out, const DrawInput& input, const Shot& asked, Progress& progress) {
+    if (!may_be_corrected(asked, input.plan)) {
+        draw_into(out, input, progress);
+        return {};
+    }
+    Shot with_cells = input.shot;
+    with_cells.output.cell_layers = true;
+    draw_into(
+        out,
+        {with_cells, input.plan, input.medium, input.surroundings, input.camera, input.shutter, input.light_positions},
+        progress);
+    Correction correction = correct_frame(out, input, asked, progress);
+    if (!input.shot.output.cell_layers)
+        std::erase_if(out.image.layers,
+                      [](const Layer& layer) { return std::ranges::find(kCellNames, layer.name) != kCellNames.end(); });
+    return correction;
 }
 
 // Resolves method=auto for this frame alone.
@@ -156,8 +180,9 @@ void render_into(RenderedFrame& out, const Shot& given, const FrameView& frame, 
                  const PositionsFor& positions_for, Progress& progress) {
     const Medium& medium = frame.medium;
     const Surroundings* const surroundings = frame.surroundings;
-    const Shot shot = with_chosen_method(given, medium, surroundings, frame.camera, out, progress);
-    const Plan plan = plan_cells(shot, medium, surroundings);
+    const Shot asked = with_chosen_method(given, medium, surroundings, frame.camera, out, progress);
+    const Plan plan = plan_cells(asked, medium, surroundings);
+    const Shot shot = asked.method == RenderMethod::Path ? asked : shot_of_lights(asked, plan);
     add_plan(plan, out.statistics);
     warn_of_darkness(medium, surroundings, progress);
     const Camera camera(frame.camera, medium);
@@ -170,11 +195,12 @@ void render_into(RenderedFrame& out, const Shot& given, const FrameView& frame, 
         if (const std::optional<std::string> reason = why_no_virtual_lights(shot, plan))
             progress.warning("virtual-lights", kNoLightPictures + *reason);
     check_bound_layers(shot, plan, progress);
+    Correction correction;
     if (shot.method == RenderMethod::Path)
         trace_into(out, input, checkpoint, progress);
     else
-        draw_into(out, input, progress);
-    add_errors(out, input, progress);
+        correction = draw_and_correct(out, input, asked, progress);
+    add_errors(out, input, asked, correction, progress);
     out.metadata.camera_from_world = camera.camera_from_world();
     out.metadata.vertical_fov_degrees = frame.camera.vertical_fov_degrees;
     out.metadata.text["brisance/cells"] = joined(plan.cells());

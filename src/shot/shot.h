@@ -8,6 +8,7 @@
 
 #include "camera/settings.h"
 #include "certificate/settings.h"
+#include "correction/settings.h"
 #include "film/settings.h"
 #include "fire_lights/settings.h"
 #include "gathering/settings.h"
@@ -60,6 +61,7 @@ struct Shot {
     ScatteringMethodSettings scattering_methods;
     VirtualLightSettings virtual_lights;
     TracingSettings tracing;
+    CorrectionSettings correction;
     CertifySettings certify;
     OutputSettings output;
 };

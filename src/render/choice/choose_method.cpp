@@ -8,7 +8,7 @@
 #include "camera/camera.h"
 #include "core/available_memory.h"
 #include "core/stopwatch.h"
-#include "forecast/costs.h"
+#include "forecast/correction_plan.h"
 #include "forecast/memory_need.h"
 #include "forecast/plan.h"
 #include "render/input/frame_input.h"
@@ -34,7 +34,7 @@ MethodForecast without_forecast(RenderMethod method, const std::string& reason) 
 
 MethodForecast from_counts(const Shot& shot, const Medium& medium, const Plan& plan, const CameraSettings& camera) {
     MethodForecast out;
-    out.grid_seconds = grid_seconds(shot, CountedMedium(medium), plan, camera);
+    out.grid_seconds = corrected_seconds(shot, CountedMedium(medium), plan, camera);
     const PathTracer tracer(medium, shot.tracing, shot.scattering.bounces, nullptr);
     const PathPilot pilot = trace_pilot(tracer, Camera(camera, medium), kPilotPixels);
     const double wanted = error_wanted(shot);

@@ -6,7 +6,8 @@
 #include "camera/camera.h"
 #include "camera_rays/picture.h"
 #include "core/stopwatch.h"
-#include "forecast/costs.h"
+#include "correction/correct.h"
+#include "forecast/correction_plan.h"
 #include "forecast/memory_need.h"
 #include "forecast/plan.h"
 #include "medium/lattice/voxel_walk.h"
@@ -68,6 +69,15 @@ std::uint64_t bytes_between_pixels(const Shot& shot, const FrameInput& input, co
     return sum;
 }
 
+std::uint64_t bytes_for_correction(const Shot& shot, const FrameInput& input, const Plan& plan) {
+    const bool corrects = shot.correction.samples > 0 || most_of_correction(shot, plan) > 0.0;
+    if (shot.method == RenderMethod::Path || !corrects)
+        return 0;
+    const auto stated = static_cast<std::size_t>(std::max(shot.correction.samples, 0));
+    return kTracerMedia * input.medium.bytes() +
+           Corrector::bytes_of(input.camera.width, input.camera.height, plan.cells().size(), stated);
+}
+
 std::uint64_t bytes_needed(const Shot& shot, const FrameInput& input, const Plan& plan, const Statistics& read) {
     std::uint64_t grids = 0;
     for (const StageCost& stage : read.stages)
@@ -77,8 +87,8 @@ std::uint64_t bytes_needed(const Shot& shot, const FrameInput& input, const Plan
                                    ? kTracerMedia * medium
                                    : bytes_to_light(input.medium, plan.directional, shot.lighting.memory_limit_bytes);
     return kProgramBytes + picture_bytes(input.camera, plan.cells().size()) + medium +
-           bytes_between_pixels(shot, input, plan) + (input.surroundings ? input.surroundings->bytes() : 0) +
-           std::max(grids, work);
+           bytes_between_pixels(shot, input, plan) + bytes_for_correction(shot, input, plan) +
+           (input.surroundings ? input.surroundings->bytes() : 0) + std::max(grids, work);
 }
 
 // Core seconds of the path tracer; none where it stops by nothing that is known.
@@ -101,9 +111,8 @@ void add_seconds(FrameForecast& out, const Shot& shot, const FrameInput& input, 
     std::optional<double> core;
     if (shot.method == RenderMethod::Path)
         core = path_seconds(shot, input);
-    else if (!plan.surfaces && !plan.emitters && !plan.scattering_method && !plan.fire_sampling &&
-             !plan.unified_sampling)
-        core = (1.0 + shot.certify.belief) * grid_seconds(shot, CountedMedium(input.medium), plan, input.camera);
+    else if (grid_is_forecast(plan))
+        core = (1.0 + shot.certify.belief) * corrected_seconds(shot, CountedMedium(input.medium), plan, input.camera);
     else
         out.why_no_seconds = "surfaces, lamps and other scattering methods are not forecast for the lighting grid";
     if (core)

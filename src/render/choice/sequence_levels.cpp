@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "forecast/correction_plan.h"
 #include "forecast/mean_escape.h"
 #include "forecast/scattering_choice.h"
 #include "medium_lighting/automatic_levels.h"
@@ -27,7 +28,11 @@ bool leaves_lattices_open(const Shot& shot) {
 }
 
 void choose_lattices(Shot& shot, const FrameInput& input, const std::string& file, Progress& progress) {
-    const AutomaticLevels levels = automatic_levels_of(input.medium, input.surroundings.get(), shot.lighting);
+    Shot by_grid = shot;
+    by_grid.method = RenderMethod::LightingGrid;
+    const Plan plan = plan_cells(by_grid, input.medium, input.surroundings.get());
+    const LightingSettings lights = shot_of_lights(by_grid, plan).lighting;
+    const AutomaticLevels levels = automatic_levels_of(input.medium, input.surroundings.get(), lights);
     if (shot.lighting.smoke_lattice_level < 0)
         shot.lighting.smoke_lattice_level = levels.smoke;
     if (shot.lighting.lattice_level < 0)

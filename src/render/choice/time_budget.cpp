@@ -8,7 +8,7 @@
 
 #include "camera/camera.h"
 #include "core/stopwatch.h"
-#include "forecast/costs.h"
+#include "forecast/correction_plan.h"
 #include "forecast/expected_errors.h"
 #include "forecast/machine_speed.h"
 #include "render/input/frame_input.h"
@@ -17,21 +17,24 @@ namespace brisance {
 
 namespace {
 
-// From coarse to fine. The middle ones are those of `brisance report`.
+// From coarse to fine. Errors below 0.02 are reached by a correction (correction/correct.h).
 struct Step {
     float error, alpha, scattering_alpha;
+    double correction = 0.0;  // seconds of unbiased samples over those of the picture
 };
 constexpr std::array<Step, 6> kGridSteps = {{{0.1f, 1.0f, 1.0f},
                                              {0.05f, 1.0f, 1.0f},
                                              {0.03f, 1.5f, 1.25f},
                                              {0.02f, 2.0f, 1.5f},
-                                             {0.01f, 3.0f, 2.0f},
-                                             {0.005f, 4.0f, 3.0f}}};
+                                             {0.02f, 2.0f, 1.5f, 1.5},
+                                             {0.01f, 3.0f, 2.0f, 2.0}}};
 
 // Forecasts of the lighting grid are up to 30 % too low (docs/numbers.md).
 constexpr double kMargin = 1.3;
 // Of the path tracer they matter for its set-up and its last pass only.
 constexpr double kPathMargin = 1.1;
+// The error falls about as this power of the time while a correction takes more of it (docs/numbers.md).
+constexpr double kCorrected = 0.45;
 constexpr double kWriting = 0.02;  // of the time, for alpha, depth and files
 constexpr std::size_t kTimedPixels = 512;
 constexpr const char* kStage = "choice for the time";
@@ -54,20 +57,26 @@ struct Timing {
 Option grid_option(const Timing& t, const Plan& plan) {
     Option out;
     const CountedMedium counted(t.medium);
+    double share = 0.0;
     for (int step = step_count() - 1; step >= 0; --step) {
         out.shot = with_step(t.shot, step);
+        share = kGridSteps.at(static_cast<std::size_t>(step)).correction;
         CameraSettings camera = t.camera;
         if (step == 0)
             camera.samples_per_axis = 1;
-        const double cost = grid_seconds(out.shot, counted, plan, camera);
+        const double cost = (1.0 + share) * grid_seconds(out.shot, counted, plan, camera);
         out.seconds = kMargin * (1.0 + t.shot.certify.belief) * cost / t.budget.speed;
         if (out.seconds <= t.left())
             break;
     }
     out.shot.method = RenderMethod::LightingGrid;
-    out.error = expected_error({out.shot, t.medium, plan}).error;
-    out.text = fmt::format("the lighting grid with lighting.error={:.3g} and lighting.alpha={:.2g}",
-                           out.shot.lighting.error, out.shot.lighting.alpha);
+    out.shot.correction.samples =
+        static_cast<int>(samples_of_share(share, out.shot, counted, plan, Camera(t.camera, t.medium)));
+    out.error = expected_error({out.shot, t.medium, plan}).error * std::pow(1.0 + share, -kCorrected);
+    out.text = fmt::format(
+        "the lighting grid with lighting.error={:.3g}, lighting.alpha={:.2g} and {}correction", out.shot.lighting.error,
+        out.shot.lighting.alpha,
+        out.shot.correction.samples > 0 ? fmt::format("{} samples for its ", out.shot.correction.samples) : "no ");
     return out;
 }
 
@@ -85,11 +94,6 @@ Option path_option(const Timing& t, const Surroundings* surroundings) {
     out.error = std::sqrt(pilot.square_error / (2.0 * std::max(1.0, (tracing + pass) / pass)));
     out.text = fmt::format("the path tracer with tracing.seconds={:.3g}", tracing);
     return out;
-}
-
-// Whether the lighting grid's time is known.
-bool grid_is_forecast(const Plan& plan) {
-    return !plan.surfaces && !plan.emitters && !plan.scattering_method && !plan.fire_sampling && !plan.unified_sampling;
 }
 
 // None: nothing can be forecast.

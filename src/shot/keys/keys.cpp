@@ -30,6 +30,7 @@ std::vector<Key> all_keys() {
     add_virtual_light_keys(keys);
     add_unified_light_keys(keys);
     add_tracing_keys(keys);
+    add_correction_keys(keys);
     add_certify_keys(keys);
     add_output_keys(keys);
     for (Key& key : keys)
@@ -61,6 +62,7 @@ Sections all_sections() {
         {"unified_lights",
          "light on surfaces and in smoke, from all of virtual lights, fire and emitters chosen together"},
         {"tracing", "the reference path tracer (method path)"},
+        {"correction", "what unbiased samples find that a picture by many lights misses"},
         {"certify", "how far the finished frame is from the truth"},
         {"output", "what is written"},
         {"output.layers", "layers of the EXR besides the beauty"}};
@@ -75,7 +77,7 @@ Affects affected_by(const std::string& path) {
     if (path == "scattering.bounces")
         return Affects::Picture;
     for (const char* section : {"lighting.", "fire_lights.", "scattering.", "virtual_lights.", "unified_lights.",
-                                "tracing.", "certify.", "output."})
+                                "tracing.", "correction.", "certify.", "output."})
         if (path.starts_with(section))
             return Affects::Method;
     for (const ScatteringMethod& method : scattering_methods())

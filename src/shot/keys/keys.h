@@ -77,6 +77,7 @@ void add_unified_light_keys(std::vector<Key>& keys);
 void add_scattering_method_keys(std::vector<Key>& keys);
 void add_virtual_light_keys(std::vector<Key>& keys);
 void add_tracing_keys(std::vector<Key>& keys);
+void add_correction_keys(std::vector<Key>& keys);
 void add_certify_keys(std::vector<Key>& keys);
 void add_output_keys(std::vector<Key>& keys);
 

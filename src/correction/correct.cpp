@@ -1,0 +1,166 @@
+#include "correction/correct.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "core/parallel.h"
+
+namespace brisance {
+
+namespace {
+
+constexpr Stream kCorrection = stream_of("correction/samples");
+
+// The first round's, beyond those of certify.seed and of believed errors: neither shares pixels with the other.
+constexpr std::uint64_t kSeed = (1u << 30) + 2;
+
+// Draws whose light is kept before it is summed.
+constexpr std::size_t kDrawsAtOnce = 1 << 16;
+
+std::size_t pixels_of(const Image& image) {
+    return std::size_t(image.width) * std::size_t(image.height);
+}
+
+// The root of a layer's luminance; 0 where there is none, or none that is known.
+std::vector<float> weights_of(const EstimatedLayer& layer, std::size_t pixels) {
+    std::vector<float> out(pixels, 0.0f);
+    for (std::size_t p = 0; p < pixels; ++p)
+        if (const float shown = luminance(Rgb(layer.pixel(p))); std::isfinite(shown) && shown > 0.0f)
+            out[p] = std::sqrt(shown);
+    return out;
+}
+
+// By which pixels are drawn: the root of the luminance of scattered light. What is seen directly has hardly an error.
+std::vector<double> sizes_of(const std::vector<EstimatedLayer>& layers, std::size_t pixels) {
+    std::vector<double> out(pixels, 0.0);
+    for (const EstimatedLayer& layer : layers)
+        if (layer.layer->name != name_of(Cell::V) && layer.layer->name != name_of(Cell::A))
+            for (std::size_t p = 0; p < pixels; ++p)
+                if (const double shown = luminance(Rgb(layer.pixel(p))); std::isfinite(shown) && shown > 0.0)
+                    out[p] += shown;
+    for (double& size : out)
+        size = std::sqrt(size);
+    return out;
+}
+
+// The cells, or the beauty alone.
+std::vector<EstimatedLayer> corrected_layers(const Image& image, bool surroundings) {
+    std::vector<EstimatedLayer> out = estimated_layers(image, surroundings);
+    if (out.size() > 1)
+        out.erase(out.begin());
+    return out;
+}
+
+// Adds the residual to a layer, without making light negative, and what that adds to the beauty too.
+void add_residual(const std::vector<Rgb>& residual, Layer& layer, Layer& beauty) {
+    parallel_for(
+        residual.size(),
+        [&](std::size_t p) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                float& shown = layer.pixels[p * layer.channels.size() + c];
+                const float before = shown, after = std::max(shown + residual[p][int(c)], 0.0f);
+                if (!(before > 0.0f))
+                    continue;
+                shown = after;
+                if (&layer != &beauty)
+                    beauty.pixels[p * beauty.channels.size() + c] += after - before;
+            }
+        },
+        4096);
+}
+
+}  // namespace
+
+double CorrectedLayer::left(double samples) const {
+    double all = 0.0, left = 0.0;
+    for (const ResidualBand& band : bands) {
+        all += std::max(band.residual, 0.0);
+        left += band.left(samples);
+    }
+    return all > 0.0 ? std::sqrt(left / all) : 1.0;
+}
+
+const CorrectedLayer* Correction::of(const std::string& cell) const {
+    const auto found = std::ranges::find(layers, cell, &CorrectedLayer::name);
+    return found == layers.end() ? nullptr : &*found;
+}
+
+Corrector::Corrector(Image& image, const MomentTracers& tracers, bool surroundings)
+    : image_(image), tracers_(tracers), layers_(corrected_layers(image, surroundings)) {
+    const std::size_t pixels = pixels_of(image);
+    const std::vector<Rgb> none(pixels, Rgb(0.0f));
+    for (const EstimatedLayer& layer : layers_)
+        sums_.push_back({image.width, image.height, {none, none}, weights_of(layer, pixels)});
+}
+
+// Draws 2 h and 2 h + 1 of a survey are independent, and each estimate has one of them: twice the weight.
+void Corrector::add(const PixelSurvey::Draw& draw, bool second, const PathSum& found) {
+    const Rgb light = std::accumulate(found.begin(), found.end(), Rgb(0.0f));
+    if (!std::isfinite(light.x + light.y + light.z)) {
+        ++not_finite_;
+        return;
+    }
+    for (std::size_t k = 0; k < layers_.size(); ++k)
+        sums_[k].estimates[second][draw.pixel] +=
+            Rgb(2.0 * draw.weight * (layers_[k].seen(found) - layers_[k].pixel(draw.pixel)));
+}
+
+void Corrector::sample(std::size_t samples, Progress& progress) {
+    const PixelSurvey survey(sizes_of(layers_, pixels_of(image_)), image_.width, samples, kSeed + rounds_);
+    const std::vector<PixelSurvey::Draw>& draws = survey.draws();
+    const double count = double(draws.size());
+    std::vector<PathSum> found(std::min(draws.size(), kDrawsAtOnce));
+    for (std::size_t begin = 0; begin < draws.size(); begin += kDrawsAtOnce) {
+        const std::size_t some = std::min(draws.size() - begin, kDrawsAtOnce);
+        parallel_for(
+            some,
+            [&](std::size_t i) {
+                Rng rng(kCorrection, rounds_ << 32 | (begin + i));
+                found[i] = tracers_.sample(draws[begin + i].pixel, rng);
+            },
+            64);
+        for (std::size_t i = 0; i < some; ++i)
+            add({draws[begin + i].pixel, count * draws[begin + i].weight}, (begin + i) % 2 == 1, found[i]);
+        progress.fraction(double(begin + some) / count);
+    }
+    samples_ += draws.size();
+    ++rounds_;
+}
+
+SmoothResidual Corrector::smooth(std::size_t layer) const {
+    NoisyResidual mean = sums_[layer];
+    for (std::vector<Rgb>& estimate : mean.estimates)
+        for (Rgb& sum : estimate)
+            sum /= float(samples_);
+    return smooth_residual(std::move(mean));
+}
+
+Correction Corrector::measured() const {
+    Correction out{samples_, not_finite_, {}};
+    for (std::size_t k = 0; k < layers_.size() && samples_ > 0; ++k)
+        out.layers.push_back({layers_[k].layer->name, smooth(k).bands});
+    return out;
+}
+
+Correction Corrector::correct() {
+    Correction out{samples_, not_finite_, {}};
+    for (std::size_t k = 0; k < layers_.size() && samples_ > 0; ++k) {
+        SmoothResidual residual = smooth(k);
+        out.layers.push_back({layers_[k].layer->name, std::move(residual.bands)});
+        add_residual(residual.values, image_.layer(layers_[k].layer->name), image_.layer(""));
+    }
+    return out;
+}
+
+std::uint64_t Corrector::bytes_of(int width, int height, std::size_t layers, std::size_t samples) {
+    // Of each layer two estimates and a weight; of one, their pyramid and copies while it is made; the survey's order
+    // and running sums.
+    constexpr std::uint64_t kLayer = 2 * sizeof(Rgb) + sizeof(float),
+                            kPyramid = 2 * (3 * sizeof(Rgb) + 3 * sizeof(float)), kSurvey = 4 * sizeof(double);
+    return std::uint64_t(width) * std::uint64_t(height) * (layers * kLayer + kPyramid + kSurvey) +
+           samples * sizeof(PixelSurvey::Draw) + kDrawsAtOnce * sizeof(PathSum);
+}
+
+}  // namespace brisance

@@ -1,0 +1,68 @@
+// Puts back what unbiased samples find that a picture by many lights misses.
+//
+// Samples are camera rays with all their paths, as the reference traces them. The difference R - I of each from the
+// picture has the mean of the picture's residual. It is far noisier than the picture is wrong, but a picture by many
+// lights errs alike over many pixels: smooth_residual() blurs the differences as much as their noise demands, and what
+// is left of them is added to the picture. Each cell of the ledger that has a layer is corrected by its own light, so
+// that one which is exact stays so, and cells still add up.
+//
+// Pixels are drawn by a survey (certificate/pixel_survey.h) in proportion to the root of the light that is scattered:
+// between even, which a smooth residual wants, and in proportion to it, as the noise of bright pixels wants. Black
+// pixels stay black. The expected error falls with every sample, and the correction vanishes where the samples say
+// nothing: of noise, or of a picture that is right. A certificate draws samples of its own, and judges it as any other
+// picture.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "certificate/estimated_layers.h"
+#include "certificate/pixel_survey.h"
+#include "core/progress.h"
+#include "correction/residual_pyramid.h"
+#include "film/image.h"
+#include "reference/moment_tracers.h"
+
+namespace brisance {
+
+struct CorrectedLayer {
+    std::string name;                 // empty: the picture
+    std::vector<ResidualBand> bands;  // those of SmoothResidual
+    // Of the layer's error, what should be left, or would be with so many times the samples.
+    double left(double samples = 1.0) const;
+};
+
+struct Correction {
+    std::uint64_t samples = 0, not_finite = 0;  // the latter are left out
+    std::vector<CorrectedLayer> layers;         // the cells, or the beauty where there are none
+    const CorrectedLayer* of(const std::string& cell) const;
+};
+
+class Corrector {
+public:
+    // Keeps references. `surroundings`: that of the tracers, whether there is one.
+    Corrector(Image& image, const MomentTracers& tracers, bool surroundings);
+
+    // About as many samples more; none of a black picture. The bits do not depend on the number of threads.
+    void sample(std::size_t samples, Progress& progress);
+    // What they would do.
+    Correction measured() const;
+    // Does it, once.
+    Correction correct();
+
+    // What it needs besides the picture, of which it corrects so many layers.
+    static std::uint64_t bytes_of(int width, int height, std::size_t layers, std::size_t samples);
+
+private:
+    void add(const PixelSurvey::Draw& draw, bool second, const PathSum& found);
+    SmoothResidual smooth(std::size_t layer) const;
+
+    Image& image_;
+    const MomentTracers& tracers_;
+    std::vector<EstimatedLayer> layers_;
+    std::vector<NoisyResidual> sums_;  // of the layers, times the number of samples
+    std::uint64_t samples_ = 0, not_finite_ = 0, rounds_ = 0;
+};
+
+}  // namespace brisance

@@ -1,0 +1,35 @@
+// How many unbiased samples correct a picture by many lights (correction/correct.h), decided from counts.
+//
+// Below some hundredths the error of lighting grids falls slowly: half the error takes several times as long, and some
+// of it stays. Samples of what the picture misses are cheaper there. With correction.samples=auto the lights are
+// therefore built for an error of 0.02, or for twice that which is asked where that is less, and samples follow until
+// the picture is expected to err as little as is asked. They may take up to three times as long as the picture; between
+// 0.02 and 0.015 that share falls to nothing. Only frames that are forecast (grid_is_forecast()) are corrected so: of
+// others it is not known whether samples would tell anything.
+#pragma once
+
+#include <cstddef>
+
+#include "forecast/costs.h"
+
+namespace brisance {
+
+// lighting.error that the lights are built for.
+float error_of_lights(const Shot& shot, const Plan& plan);
+// The shot with that error.
+Shot shot_of_lights(Shot shot, const Plan& plan);
+
+// Forecast seconds of the samples over those of the picture that they correct: at most, and as they usually are. 0
+// where the shot states a number.
+double most_of_correction(const Shot& shot, const Plan& plan);
+double usual_correction(const Shot& shot, const Plan& plan);
+
+// grid_seconds() of a picture with its usual correction. `shot`: with the error that is asked.
+double corrected_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan,
+                         const CameraSettings& camera);
+
+// Samples that take so many times the forecast seconds of the picture. `shot`: that of the lights.
+std::size_t samples_of_share(double share, const Shot& shot, const CountedMedium& counted, const Plan& plan,
+                             const Camera& camera);
+
+}  // namespace brisance

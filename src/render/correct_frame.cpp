@@ -1,0 +1,109 @@
+#include "render/correct_frame.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+
+#include "core/stopwatch.h"
+#include "forecast/correction_plan.h"
+#include "forecast/expected_errors.h"
+#include "render/believe.h"
+
+namespace brisance {
+
+namespace {
+
+// Of the time that samples may take: the first ones, which tell how many are needed.
+constexpr double kFirst = 1.0 / 12.0;
+
+// Parts of the picture's squared error, by the error model, that are those of the corrected layers.
+std::vector<double> squared_errors(const Correction& correction, const RenderedFrame& frame, const DrawInput& input) {
+    std::vector<double> out;
+    for (const CorrectedLayer& layer : correction.layers) {
+        const auto alone = [&](const std::string& cell) { return cell == layer.name ? 1.0 : 0.0; };
+        const double error =
+            expected_errors(frame.image, {input.shot, input.medium, input.plan}, frame.statistics, alone)[0].error;
+        out.push_back(error * error);
+    }
+    return out;
+}
+
+// How many times the samples that there are leave no more than `wanted`; at most `most`.
+double samples_for(double wanted, const Correction& correction, const std::vector<double>& squares, double most) {
+    const auto square_left = [&](double samples) {
+        double sum = 0.0;
+        for (std::size_t k = 0; k < squares.size(); ++k)
+            sum += squares[k] * std::pow(correction.layers[k].left(samples), 2);
+        return sum;
+    };
+    double enough = most, too_few = 1.0;
+    if (!(square_left(most) < wanted * wanted))
+        return most;
+    for (int step = 0; step < 30; ++step) {
+        const double middle = std::sqrt(too_few * enough);
+        (square_left(middle) < wanted * wanted ? enough : too_few) = middle;
+    }
+    return enough;
+}
+
+void sample(Corrector& corrector, const RenderedFrame& frame, const DrawInput& input, const Shot& asked,
+            Progress& progress) {
+    if (asked.correction.samples > 0) {
+        corrector.sample(static_cast<std::size_t>(asked.correction.samples), progress);
+        return;
+    }
+    const Shot solved = as_solved(input.shot, frame.statistics);
+    const std::size_t most = samples_of_share(most_of_correction(asked, input.plan), solved,
+                                              CountedMedium(input.medium), input.plan, input.camera);
+    const auto first = static_cast<std::size_t>(kFirst * double(most));
+    if (first == 0)
+        return;
+    corrector.sample(first, progress);
+    const Correction measured = corrector.measured();
+    const double times = samples_for(asked.lighting.error, measured, squared_errors(measured, frame, input),
+                                     double(most) / double(first));
+    if (const double more = (times - 1.0) * double(first); more >= 2.0)
+        corrector.sample(static_cast<std::size_t>(more), progress);
+}
+
+void note(const Correction& correction, StageCost& cost) {
+    cost.detail["samples"] = correction.samples;
+    for (const CorrectedLayer& layer : correction.layers) {
+        nlohmann::ordered_json gains = nlohmann::ordered_json::array();
+        for (const ResidualBand& band : layer.bands)
+            gains.push_back(band.gain());
+        cost.detail[layer.name.empty() ? "picture" : layer.name] = {{"left", layer.left()}, {"gains", gains}};
+    }
+}
+
+}  // namespace
+
+bool may_be_corrected(const Shot& asked, const Plan& plan) {
+    return asked.correction.samples > 0 || most_of_correction(asked, plan) > 0.0;
+}
+
+Correction correct_frame(RenderedFrame& frame, const DrawInput& input, const Shot& asked, Progress& progress) {
+    progress.stage("correction");
+    const Stopwatch watch;
+    const std::clock_t cpu = std::clock();
+    const MomentTracers tracers = tracers_of(certified_scene(input));
+    Corrector corrector(frame.image, tracers, input.surroundings != nullptr);
+    sample(corrector, frame, input, asked, progress);
+    const Correction correction = corrector.correct();
+    if (correction.not_finite > 0)
+        progress.warning("correction",
+                         fmt::format("{} samples were not finite and are left out", correction.not_finite));
+    StageCost cost{"correction",
+                   watch.seconds(),
+                   tracers.bytes() + Corrector::bytes_of(frame.image.width, frame.image.height,
+                                                         correction.layers.size(), correction.samples),
+                   {}};
+    note(correction, cost);
+    cost.detail["cpu_seconds"] = double(std::clock() - cpu) / CLOCKS_PER_SEC;
+    frame.statistics.stages.push_back(std::move(cost));
+    return correction;
+}
+
+}  // namespace brisance
