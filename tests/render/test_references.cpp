@@ -60,6 +60,7 @@ TEST_P(References, AreMetWithFineShadows) {
         GTEST_SKIP() << "BRISANCE_DATA is not set: no reference images";
     testing::ReferenceShot reference = testing::reference_shot(data, GetParam());
     reference.shot.lighting.error = kFineShadows;
+    reference.shot.correction.samples = 0;
     Progress silent;
     const Image image = render_frame(reference.shot, reference.volume, 0, silent).image;
     const auto expect = [&](const std::vector<std::string>& cells, const std::string& order, double error,

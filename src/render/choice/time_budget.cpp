@@ -60,7 +60,8 @@ Option grid_option(const Timing& t, const Plan& plan) {
     double share = 0.0;
     for (int step = step_count() - 1; step >= 0; --step) {
         out.shot = with_step(t.shot, step);
-        share = kGridSteps.at(static_cast<std::size_t>(step)).correction;
+        if (t.shot.correction.samples == kAutomaticCorrection)
+            share = kGridSteps.at(static_cast<std::size_t>(step)).correction;
         CameraSettings camera = t.camera;
         if (step == 0)
             camera.samples_per_axis = 1;
@@ -70,8 +71,9 @@ Option grid_option(const Timing& t, const Plan& plan) {
             break;
     }
     out.shot.method = RenderMethod::LightingGrid;
-    out.shot.correction.samples =
-        static_cast<int>(samples_of_share(share, out.shot, counted, plan, Camera(t.camera, t.medium)));
+    if (t.shot.correction.samples == kAutomaticCorrection)
+        out.shot.correction.samples =
+            static_cast<int>(samples_of_share(share, out.shot, counted, plan, Camera(t.camera, t.medium)));
     out.error = expected_error({out.shot, t.medium, plan}).error * std::pow(1.0 + share, -kCorrected);
     out.text = fmt::format(
         "the lighting grid with lighting.error={:.3g}, lighting.alpha={:.2g} and {}correction", out.shot.lighting.error,

@@ -13,8 +13,9 @@ void add_tracing_keys(std::vector<Key>& keys) {
         [](Shot & s) -> auto& { return s.method; }));
     keys.push_back(make_key(
         "seconds",
-        "wall time for a frame with all but its certificate [s]: replaces lighting.error, lighting.alpha and "
-        "scattering.alpha, or sets tracing.seconds, so that the error is least; none: the shot's own settings",
+        "wall time for a frame with all but its certificate [s]: replaces lighting.error, lighting.alpha, "
+        "scattering.alpha and correction.samples=auto, or sets tracing.seconds, so that the error is least; none: the "
+        "shot's own settings",
         or_word(real(above(0.0)), "none", 0.0), [](Shot & s) -> auto& { return s.seconds; }));
     keys.push_back(make_key(
         "tracing.seed", "other seeds draw other random numbers: independent renders of one picture", whole(0, 1 << 30),

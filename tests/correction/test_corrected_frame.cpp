@@ -1,0 +1,108 @@
+// Frames that are asked for less than the lighting grid reaches are corrected, and no others.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "fixtures/media.h"
+#include "fixtures/sets.h"
+#include "render/choice/time_budget.h"
+#include "render/render_frame.h"
+
+namespace brisance::test_corrected_frame {
+namespace {
+
+using namespace testing;
+
+// Voxels of an optical depth of two: the lighting grid errs by some percent.
+Medium glow() {
+    Recipe r = glowing_ball(8, 30.0f);
+    r.settings.smoke.albedo = Rgb(0.8f);
+    return make_medium(r);
+}
+
+Shot shot_of(float error) {
+    Shot shot;
+    shot.camera_given = true;
+    shot.camera.eye = {0.3, -5.0, 1.5};
+    shot.camera.target = {0.0, 0.0, 0.0};
+    shot.camera.vertical_fov_degrees = 32.0;
+    shot.camera.width = shot.camera.height = 64;
+    shot.lighting.error = error;
+    shot.certify.belief = 0.0;
+    return shot;
+}
+
+RenderedFrame render(const Shot& shot, const Surroundings* set = nullptr) {
+    Progress silent;
+    return render_medium(shot, glow(), silent, set);
+}
+
+double samples_of(const RenderedFrame& frame) {
+    for (const StageCost& stage : frame.statistics.stages)
+        if (stage.name == "correction")
+            return stage.detail["samples"];
+    return 0.0;
+}
+
+double certified(const RenderedFrame& frame) {
+    return frame.statistics.certificate["picture"]["error"];
+}
+
+TEST(CorrectedFrames, ErrLessWhenLessIsAskedFor) {
+    Shot usual = shot_of(0.02f), fine = shot_of(0.01f);
+    usual.certify.enabled = fine.certify.enabled = true;
+    const RenderedFrame plain = render(usual), corrected = render(fine);
+    EXPECT_EQ(samples_of(plain), 0.0);
+    EXPECT_GT(samples_of(corrected), 4096.0);
+    std::printf("certified: %.4f, corrected %.4f\n", certified(plain), certified(corrected));
+    EXPECT_LT(certified(corrected), 0.6 * certified(plain));
+}
+
+TEST(CorrectedFrames, TakeAsManySamplesAsTheShotStates) {
+    Shot shot = shot_of(0.02f);
+    shot.correction.samples = 5000;
+    EXPECT_EQ(samples_of(render(shot)), 5000.0);
+    shot = shot_of(0.01f);
+    shot.correction.samples = 0;
+    EXPECT_EQ(samples_of(render(shot)), 0.0);
+    shot.method = RenderMethod::Path;
+    shot.tracing.samples = 4;
+    shot.correction.samples = 5000;
+    EXPECT_EQ(samples_of(render(shot)), 0.0);
+}
+
+// Whether layers are written does not change the picture.
+TEST(CorrectedFrames, AreTheSameWithoutLayersOfCells) {
+    Shot with = shot_of(0.02f);
+    with.correction.samples = 5000;
+    Shot without = with;
+    without.output.cell_layers = false;
+    const RenderedFrame layered = render(with), bare = render(without);
+    EXPECT_EQ(layered.image.layer("").pixels, bare.image.layer("").pixels);
+    EXPECT_GT(layered.image.layers.size(), bare.image.layers.size());
+    EXPECT_TRUE(std::ranges::none_of(bare.image.layers, [](const Layer& layer) { return layer.name == "MV"; }));
+}
+
+// Of sets it is not known beforehand whether samples tell anything: they are asked for, or there are none.
+TEST(CorrectedFrames, OfSetsAreCorrectedOnRequest) {
+    Scene scene;
+    add_quad(scene, {-4, -4, -1.1f}, {8, 0, 0}, {0, 8, 0}, lambert(0.7f));
+    const Surroundings set(std::move(scene), {});
+    Shot shot = shot_of(0.015f);
+    shot.camera.width = shot.camera.height = 32;
+    shot.virtual_lights.count = 200;
+    shot.virtual_lights.photons = 20000;
+    EXPECT_EQ(samples_of(render(shot, &set)), 0.0);
+    shot.correction.samples = 5000;
+    const RenderedFrame frame = render(shot, &set);
+    EXPECT_EQ(samples_of(frame), 5000.0);
+    for (std::size_t p = 0; p < 32 * 32; ++p) {
+        double sum = 0.0;
+        for (const char* cell : {"V", "MV", "MM", "MS", "SV", "SM", "SS"})
+            sum += frame.image.layer(cell).pixels[3 * p];
+        EXPECT_NEAR(frame.image.layer("").pixels[4 * p], sum, 1e-4 * (1.0 + sum));
+    }
+}
+
+}  // namespace
+}  // namespace brisance::test_corrected_frame

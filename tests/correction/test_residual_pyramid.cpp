@@ -1,0 +1,116 @@
+// A residual that is known with noise is found where it is smooth, and noise is not taken for it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/rng.h"
+#include "correction/residual_pyramid.h"
+
+namespace brisance::test_residual_pyramid {
+namespace {
+
+constexpr int kWidth = 96, kHeight = 64;
+constexpr std::size_t kPixels = std::size_t(kWidth) * kHeight;
+constexpr Stream kNoise = stream_of("tests/correction/noise");
+
+double noise(int estimate, std::size_t pixel) {
+    Rng rng(kNoise, pixel, std::uint64_t(estimate));
+    return std::sqrt(12.0) * (rng.next_double() - 0.5);  // of variance 1
+}
+
+// Waves some thirty pixels long.
+float wave(std::size_t pixel) {
+    const double x = double(pixel % kWidth), y = double(pixel / kWidth);
+    return float(std::sin(0.2 * x) * std::cos(0.15 * y) + 0.5);
+}
+
+NoisyResidual residual(float of_wave, float of_noise) {
+    NoisyResidual out{kWidth, kHeight, {}, std::vector<float>(kPixels, 1.0f)};
+    for (int k = 0; k < 2; ++k)
+        for (std::size_t p = 0; p < kPixels; ++p)
+            out.estimates[k].push_back(Rgb(of_wave * wave(p) + of_noise * float(noise(k, p))));
+    return out;
+}
+
+double mean_square(const std::vector<Rgb>& values, float of_wave) {
+    double sum = 0.0;
+    for (std::size_t p = 0; p < kPixels; ++p)
+        sum += std::pow(double(values[p].x) - of_wave * wave(p), 2) / kPixels;
+    return sum;
+}
+
+TEST(ResidualPyramid, KeepsWhatIsKnownWithoutNoise) {
+    const SmoothResidual smooth = smooth_residual(residual(1.0f, 0.0f));
+    EXPECT_LT(mean_square(smooth.values, 1.0f), 1e-10);
+    for (const ResidualBand& band : smooth.bands)
+        EXPECT_NEAR(band.gain(), 1.0, 1e-9);
+}
+
+TEST(ResidualPyramid, TakesNoNoiseForAResidual) {
+    const SmoothResidual smooth = smooth_residual(residual(0.0f, 1.0f));
+    // The mean of both estimates has a mean square of 0.5; a hundredth of it is what gains that chance puts above 0
+    // let through (measured: 0.002).
+    EXPECT_LT(mean_square(smooth.values, 0.0f), 0.005);
+}
+
+TEST(ResidualPyramid, FindsASmoothResidualBelowItsNoise) {
+    // Mean squares: the residual's 0.5, of the noise in the mean of both estimates 4.5.
+    const SmoothResidual smooth = smooth_residual(residual(1.0f, 3.0f));
+    const double error = mean_square(smooth.values, 1.0f);
+    EXPECT_LT(error, 0.125);                      // half the error (measured: 0.088)
+    EXPECT_LT(smooth.bands.front().gain(), 0.1);  // single pixels are noise
+    double left = 0.0;
+    for (const ResidualBand& band : smooth.bands)
+        left += band.left(1.0) / (3.0 * kPixels);
+    // What it says of its own error: bands overlap, so that their squares do not quite add up.
+    EXPECT_GT(left, error / 3.0);
+    EXPECT_LT(left, error * 2.0);
+}
+
+TEST(ResidualPyramid, PutsNothingWhereTheWeightIsZero) {
+    NoisyResidual half = residual(1.0f, 0.0f);
+    for (std::size_t p = 0; p < kPixels; ++p)
+        if (p % kWidth < kWidth / 2) {
+            half.weight[p] = 0.0f;
+            half.estimates[0][p] = half.estimates[1][p] = Rgb(0.0f);
+        }
+    const SmoothResidual smooth = smooth_residual(half);
+    for (std::size_t p = 0; p < kPixels; ++p)
+        EXPECT_NEAR(smooth.values[p].x, p % kWidth < kWidth / 2 ? 0.0f : wave(p), 1e-5f);
+}
+
+TEST(ResidualPyramid, ScalesWithTheWeight) {
+    // Light that is everywhere off by a tenth: the residual relative to the weight is even, whatever the weight is.
+    NoisyResidual tenth{kWidth, kHeight, {}, {}};
+    for (std::size_t p = 0; p < kPixels; ++p) {
+        tenth.weight.push_back(p / kWidth % 7 == 0 ? 5.0f : 0.1f);
+        for (int k = 0; k < 2; ++k)
+            tenth.estimates[k].push_back(Rgb(tenth.weight[p] * (0.1f + 0.2f * float(noise(k, p)))));
+    }
+    const SmoothResidual smooth = smooth_residual(tenth);
+    for (std::size_t p = 0; p < kPixels; p += 17)
+        EXPECT_NEAR(smooth.values[p].x / tenth.weight[p], 0.1f, 0.05f);
+}
+
+TEST(ResidualPyramid, MoreSamplesLeaveLess) {
+    const ResidualBand band{2.0, 3.0};
+    EXPECT_NEAR(band.gain(), 0.4, 1e-12);
+    EXPECT_NEAR(band.left(1.0), 2.0 * 0.6, 1e-12);  // Wiener: residual (1 - gain)
+    EXPECT_NEAR(band.left(3.0), 2.0 * 1.0 / 3.0, 1e-12);
+    EXPECT_EQ((ResidualBand{-1.0, 3.0}).gain(), 0.0);
+    EXPECT_EQ((ResidualBand{-1.0, 3.0}).left(1.0), 0.0);
+}
+
+// Small pictures have few levels or one.
+TEST(ResidualPyramid, TakesPicturesOfAnySize) {
+    for (const auto& [width, height] : {std::pair(1, 1), std::pair(3, 50), std::pair(5, 4), std::pair(17, 9)}) {
+        NoisyResidual even{width, height, {}, std::vector<float>(std::size_t(width) * height, 2.0f)};
+        for (std::vector<Rgb>& estimate : even.estimates)
+            estimate.assign(even.weight.size(), Rgb(0.25f));
+        for (const Rgb& value : smooth_residual(even).values)
+            EXPECT_NEAR(value.x, 0.25f, 1e-5f);
+    }
+}
+
+}  // namespace
+}  // namespace brisance::test_residual_pyramid
