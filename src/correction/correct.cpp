@@ -13,11 +13,13 @@ namespace {
 
 constexpr Stream kCorrection = stream_of("correction/samples");
 
-// The first round's, beyond those of certify.seed and of believed errors: neither shares pixels with the other.
+// The first survey's, beyond those of certify.seed and of believed errors: neither shares pixels with the other.
 constexpr std::uint64_t kSeed = (1u << 30) + 2;
 
 // Draws whose light is kept before it is summed.
 constexpr std::size_t kDrawsAtOnce = 1 << 16;
+// Of one survey: more samples are several.
+constexpr std::size_t kDrawsOfSurvey = 1 << 22;
 
 std::size_t pixels_of(const Image& image) {
     return std::size_t(image.width) * std::size_t(image.height);
@@ -53,8 +55,23 @@ std::vector<EstimatedLayer> corrected_layers(const Image& image, bool surroundin
     return out;
 }
 
-// Adds the residual to a layer, without making light negative, and what that adds to the beauty too.
-void add_residual(const std::vector<Rgb>& residual, Layer& layer, Layer& beauty) {
+// Layers that show parts of a cell: orders of scattering, and what a bound leaves.
+bool is_part_of(const std::string& cell, const std::string& layer) {
+    if (cell == name_of(Cell::MV))
+        return layer == "bounce1";
+    if (cell == name_of(Cell::MM))
+        return layer.starts_with("bounce") && layer != "bounce1";
+    return cell == name_of(Cell::SS) && layer.starts_with("SS_");
+}
+
+// Adds the residual to a layer, without making light negative, and what that adds to the beauty, too. Parts of the
+// layer grow with it.
+void add_residual(const std::vector<Rgb>& residual, const std::string& name, Image& image) {
+    Layer &layer = image.layer(name), &beauty = image.layer("");
+    std::vector<Layer*> parts;
+    for (Layer& other : image.layers)
+        if (is_part_of(name, other.name))
+            parts.push_back(&other);
     parallel_for(
         residual.size(),
         [&](std::size_t p) {
@@ -66,6 +83,8 @@ void add_residual(const std::vector<Rgb>& residual, Layer& layer, Layer& beauty)
                 shown = after;
                 if (&layer != &beauty)
                     beauty.pixels[p * beauty.channels.size() + c] += after - before;
+                for (Layer* part : parts)
+                    part->pixels[p * part->channels.size() + c] *= after / before;
             }
         },
         4096);
@@ -108,25 +127,32 @@ void Corrector::add(const PixelSurvey::Draw& draw, bool second, const PathSum& f
 }
 
 void Corrector::sample(std::size_t samples, Progress& progress) {
-    const PixelSurvey survey(sizes_of(layers_, pixels_of(image_)), image_.width, samples, kSeed + rounds_);
+    for (std::size_t done = 0; done < samples; done += kDrawsOfSurvey) {
+        survey(std::min(samples - done, kDrawsOfSurvey));
+        progress.fraction(std::min(1.0, double(done + kDrawsOfSurvey) / double(samples)));
+    }
+}
+
+void Corrector::survey(std::size_t samples) {
+    const PixelSurvey survey(sizes_of(layers_, pixels_of(image_)), image_.width, samples, kSeed + surveys_);
     const std::vector<PixelSurvey::Draw>& draws = survey.draws();
-    const double count = double(draws.size());
     std::vector<PathSum> found(std::min(draws.size(), kDrawsAtOnce));
     for (std::size_t begin = 0; begin < draws.size(); begin += kDrawsAtOnce) {
         const std::size_t some = std::min(draws.size() - begin, kDrawsAtOnce);
         parallel_for(
             some,
             [&](std::size_t i) {
-                Rng rng(kCorrection, rounds_ << 32 | (begin + i));
+                Rng rng(kCorrection, surveys_ << 32 | (begin + i));
                 found[i] = tracers_.sample(draws[begin + i].pixel, rng);
             },
             64);
-        for (std::size_t i = 0; i < some; ++i)
-            add({draws[begin + i].pixel, count * draws[begin + i].weight}, (begin + i) % 2 == 1, found[i]);
-        progress.fraction(double(begin + some) / count);
+        for (std::size_t i = 0; i < some; ++i) {
+            const PixelSurvey::Draw& draw = draws[begin + i];
+            add({draw.pixel, double(draws.size()) * draw.weight}, (begin + i) % 2 == 1, found[i]);
+        }
     }
     samples_ += draws.size();
-    ++rounds_;
+    ++surveys_;
 }
 
 SmoothResidual Corrector::smooth(std::size_t layer) const {
@@ -149,7 +175,7 @@ Correction Corrector::correct() {
     for (std::size_t k = 0; k < layers_.size() && samples_ > 0; ++k) {
         SmoothResidual residual = smooth(k);
         out.layers.push_back({layers_[k].layer->name, std::move(residual.bands)});
-        add_residual(residual.values, image_.layer(layers_[k].layer->name), image_.layer(""));
+        add_residual(residual.values, layers_[k].layer->name, image_);
     }
     return out;
 }
@@ -160,7 +186,7 @@ std::uint64_t Corrector::bytes_of(int width, int height, std::size_t layers, std
     constexpr std::uint64_t kLayer = 2 * sizeof(Rgb) + sizeof(float),
                             kPyramid = 2 * (3 * sizeof(Rgb) + 3 * sizeof(float)), kSurvey = 4 * sizeof(double);
     return std::uint64_t(width) * std::uint64_t(height) * (layers * kLayer + kPyramid + kSurvey) +
-           samples * sizeof(PixelSurvey::Draw) + kDrawsAtOnce * sizeof(PathSum);
+           std::min(samples, kDrawsOfSurvey) * sizeof(PixelSurvey::Draw) + kDrawsAtOnce * sizeof(PathSum);
 }
 
 }  // namespace brisance

@@ -55,6 +55,7 @@ public:
     static std::uint64_t bytes_of(int width, int height, std::size_t layers, std::size_t samples);
 
 private:
+    void survey(std::size_t samples);
     void add(const PixelSurvey::Draw& draw, bool second, const PathSum& found);
     SmoothResidual smooth(std::size_t layer) const;
 
@@ -62,7 +63,7 @@ private:
     const MomentTracers& tracers_;
     std::vector<EstimatedLayer> layers_;
     std::vector<NoisyResidual> sums_;  // of the layers, times the number of samples
-    std::uint64_t samples_ = 0, not_finite_ = 0, rounds_ = 0;
+    std::uint64_t samples_ = 0, not_finite_ = 0, surveys_ = 0;
 };
 
 }  // namespace brisance

@@ -83,6 +83,28 @@ TEST(CorrectedFrames, AreTheSameWithoutLayersOfCells) {
     EXPECT_TRUE(std::ranges::none_of(bare.image.layers, [](const Layer& layer) { return layer.name == "MV"; }));
 }
 
+// Layers of bounces still add up to the cells.
+TEST(CorrectedFrames, KeepTheSumsOfBounces) {
+    Shot shot = shot_of(0.02f);
+    shot.correction.samples = 5000;
+    shot.output.bounce_layers = true;
+    const Image image = render(shot).image;
+    std::vector<double> multiple(image.layer("MM").pixels.size(), 0.0);
+    int bounces = 0;
+    for (const Layer& layer : image.layers)
+        if (layer.name.starts_with("bounce") && layer.name != "bounce1") {
+            ++bounces;
+            for (std::size_t i = 0; i < multiple.size(); ++i)
+                multiple[i] += layer.pixels[i];
+        }
+    EXPECT_GT(bounces, 2);
+    for (std::size_t i = 0; i < multiple.size(); ++i) {
+        EXPECT_NEAR(image.layer("bounce1").pixels[i], image.layer("MV").pixels[i],
+                    1e-4 * image.layer("MV").pixels[i] + 1e-9);
+        EXPECT_NEAR(multiple[i], image.layer("MM").pixels[i], 1e-3 * image.layer("MM").pixels[i] + 1e-7);
+    }
+}
+
 // Of sets it is not known beforehand whether samples tell anything: they are asked for, or there are none.
 TEST(CorrectedFrames, OfSetsAreCorrectedOnRequest) {
     Scene scene;

@@ -160,7 +160,7 @@ TEST(Corrector, KeepsTheSumOfCellsAndBlackPixels) {
     EXPECT_GT(black, 0);
 }
 
-TEST(Corrector, RoundsCountAsOneSetOfSamples) {
+TEST(Corrector, TakesMoreSamplesAsPartsOfOneSet) {
     Image once = spoiled(), twice = spoiled();
     correct(once, 20000);
     const Correction correction = correct(twice, 20000, 2);
