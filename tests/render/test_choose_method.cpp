@@ -44,16 +44,32 @@ TEST(ChooseMethod, SmallPicturesTakePathsAndLargeOnesTheGrid) {
     EXPECT_EQ(forecast(shot_of(1024), medium).method, RenderMethod::LightingGrid);
 }
 
+Shot by_lights_alone(Shot shot) {
+    shot.correction.samples = 0;
+    return shot;
+}
+
 // Four times the pixels need four times the paths, and so does half the error. The grid's shadow maps become finer, and
 // so does the lattice of its series, which costs less.
 TEST(ChooseMethod, PathsCostMoreWithPixelsAndLessError) {
     const Medium medium = glow(16);
-    const MethodForecast one = forecast(shot_of(128, 0.01f), medium), finer = forecast(shot_of(128, 0.005f), medium),
-                         larger = forecast(shot_of(256, 0.01f), medium);
+    const MethodForecast one = forecast(by_lights_alone(shot_of(128, 0.01f)), medium),
+                         finer = forecast(by_lights_alone(shot_of(128, 0.005f)), medium),
+                         larger = forecast(by_lights_alone(shot_of(256, 0.01f)), medium);
     EXPECT_NEAR(finer.path_seconds / one.path_seconds, 4.0, 0.1);
     EXPECT_NEAR(larger.path_seconds / one.path_seconds, 4.0, 0.8);
     EXPECT_GT(finer.grid_seconds, one.grid_seconds);
     EXPECT_LT(finer.grid_seconds, 3.0 * one.grid_seconds);
+}
+
+// The samples of a correction count for the grid's picture, which is lit as for the default error.
+TEST(ChooseMethod, CorrectionsTakeTheirTime) {
+    const Medium medium = glow(16);
+    const double usual = forecast(shot_of(128, 0.02f), medium).grid_seconds;
+    EXPECT_NEAR(forecast(shot_of(128, 0.01f), medium).grid_seconds / usual, 3.0, 1e-6);
+    EXPECT_NEAR(forecast(by_lights_alone(shot_of(128, 0.02f)), medium).grid_seconds / usual, 1.0, 1e-6);
+    EXPECT_GT(forecast(shot_of(128, 0.019f), medium).grid_seconds, usual);
+    EXPECT_LT(forecast(shot_of(128, 0.019f), medium).grid_seconds, 1.5 * usual);
 }
 
 // The pilot ignores that the path tracer's samples are stratified, which need up to a half fewer.
