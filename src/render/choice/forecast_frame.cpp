@@ -69,6 +69,7 @@ std::uint64_t bytes_between_pixels(const Shot& shot, const FrameInput& input, co
     return sum;
 }
 
+// When the lights are gone.
 std::uint64_t bytes_for_correction(const Shot& shot, const FrameInput& input, const Plan& plan) {
     const bool corrects = shot.correction.samples > 0 || most_of_correction(shot, plan) > 0.0;
     if (shot.method == RenderMethod::Path || !corrects)
@@ -87,8 +88,8 @@ std::uint64_t bytes_needed(const Shot& shot, const FrameInput& input, const Plan
                                    ? kTracerMedia * medium
                                    : bytes_to_light(input.medium, plan.directional, shot.lighting.memory_limit_bytes);
     return kProgramBytes + picture_bytes(input.camera, plan.cells().size()) + medium +
-           bytes_between_pixels(shot, input, plan) + bytes_for_correction(shot, input, plan) +
-           (input.surroundings ? input.surroundings->bytes() : 0) + std::max(grids, work);
+           bytes_between_pixels(shot, input, plan) + (input.surroundings ? input.surroundings->bytes() : 0) +
+           std::max({grids, work, bytes_for_correction(shot, input, plan)});
 }
 
 // Core seconds of the path tracer; none where it stops by nothing that is known.
