@@ -28,11 +28,10 @@ LightSettings lamp() {
 }
 
 // Both lengths of rays against the same paths.
-void expect_same_by_both(const Stage& stage, const std::string& what, std::uint64_t path_samples,
-                         std::uint64_t sets_of_long = 1) {
+void expect_same_by_both(const Stage& stage, const std::string& what, std::uint64_t path_samples) {
     const Estimate paths = mean_by_paths(stage, path_samples);
     expect_same_light(stage, few(), (what + ", short").c_str(), paths);
-    expect_same_light(stage, few(RayLength::Long), (what + ", long").c_str(), paths, sets_of_long);
+    expect_same_light(stage, few(RayLength::Long), (what + ", long").c_str(), paths);
 }
 
 TEST(AgainstPaths, Ball) {
@@ -43,20 +42,21 @@ TEST(AgainstPaths, LumpyBallOverAFloor) {
     expect_same_by_both(Stage(lumpy_ball(8, 3.0f, 0.0f), floor_below(0.7f)), "lumps", kPathsOverFloor);
 }
 
-// Long rays that scatter forward have rare bright samples: two sets, so that their error stays below its bound.
-TEST(AgainstPaths, ForwardScatteringOverAFloor) {
-    expect_same_by_both(Stage(lumpy_ball(8, 3.0f, 0.6f), floor_below(0.7f)), "lumps, g 0.6", kPathsOverFloor, 2);
-}
-
-// Points drawn by tables, on short and on long rays, in smoke and at a floor.
-TEST(AgainstPaths, TabulatedSampling) {
+// Points drawn in closed form and by tables, in smoke and at a floor. Long rays that scatter forward have rare bright
+// samples: two sets, so that their error stays below its bound.
+TEST(AgainstPaths, ForwardScatteringOverAFloorByEverySampling) {
     const Stage stage(lumpy_ball(8, 3.0f, 0.6f), floor_below(0.7f));
-    const Estimate paths = mean_by_paths(stage, kPathsOverFloor);
-    RayLightSettings tables = few();
-    tables.sampling = RaySampling::Tabulated;
-    expect_same_light(stage, tables, "lumps, g 0.6, tables", paths);
-    tables.length = RayLength::Long;
-    expect_same_light(stage, tables, "lumps, g 0.6, tables, long", paths, 2);
+    const Estimate paths = mean_by_paths(stage, kPathsOverFloor);  // one truth for all
+    for (const RaySampling sampling : {RaySampling::ClosedForm, RaySampling::Tabulated}) {
+        const std::string what = sampling == RaySampling::Tabulated ? "lumps, g 0.6, tables" : "lumps, g 0.6";
+        for (const RayLength length : {RayLength::Short, RayLength::Long}) {
+            RayLightSettings settings = few(length);
+            settings.sampling = sampling;
+            const bool is_long = length == RayLength::Long;
+            expect_same_light(stage, settings, (what + (is_long ? ", long" : ", short")).c_str(), paths,
+                              is_long ? 2 : 1);
+        }
+    }
 }
 
 TEST(AgainstPaths, BackwardScattering) {
