@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "camera_rays/pixel_rays.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "fixtures/instant_radiosity.h"
@@ -118,12 +119,26 @@ TEST_P(UnifiedPictures, AddUp) {
     }
 }
 
+// Three tiles of rays, and more points of surfaces than one thread lights at once, so that threads do take turns.
+// Floor, wall, mirror and smoke are in it. No light is well sampled, as none has to be.
+Shot shot_for_threads(const std::string& sampling) {
+    Shot shot = small_shot(sampling);
+    shot.camera.target.z = -0.5;
+    shot.camera.vertical_fov_degrees = 14.0;
+    shot.camera.width = 2 * kSideOfTile + kSideOfTile / 2;
+    shot.camera.samples_per_axis = 1;
+    shot.virtual_lights = instant_radiosity("point", 100, 5000);
+    shot.unified_lights.points = 2;
+    shot.unified_lights.samples = 2;
+    return shot;
+}
+
 TEST_P(UnifiedPictures, AreTheSameOnAnyNumberOfThreads) {
     const Medium medium = smoke();
     const Surroundings set = set_with_lights();
     const auto pixels = [&](int threads) {
         const ThreadLimit limit(threads);
-        return rendered(small_shot(GetParam()), medium, &set).image.layer("").pixels;
+        return rendered(shot_for_threads(GetParam()), medium, &set).image.layer("").pixels;
     };
     EXPECT_EQ(pixels(1), pixels(3));
 }
