@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "camera_rays/pixel_rays.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "fire_lights/samplings.h"
@@ -178,10 +179,17 @@ TEST_P(FireLightPictures, HaveThePathTracersSV) {
     expect_mean_of_paths("SV", paths, lit, medium, &set, seeds);
 }
 
+// Three tiles of rays through the smoke onto the floor, and more points of the floor than one thread lights at once, so
+// that threads do take turns.
 TEST_P(FireLightPictures, AreTheSameOnAnyNumberOfThreads) {
     const Medium medium = smoke(0.4f);
     const Surroundings set = floor_of_metal();
     Shot shot = small_shot(GetParam());
+    shot.camera.target.z = -0.5;
+    shot.camera.vertical_fov_degrees = 10.0;
+    shot.camera.width = 2 * kSideOfTile + kSideOfTile / 2;
+    shot.camera.height = 8;
+    shot.camera.samples_per_axis = 1;
     shot.scattering.bounces = 1;
     shot.fire_lights.points = GetParam() == "all" ? 1 : 3;
     const auto pixels = [&](int threads) {
