@@ -180,7 +180,7 @@ TEST(PlainPoints, AreUnbiasedWithCompensation) {
 }
 
 // Of Lambert surfaces there is nothing else; of a rough metal floor nothing is left.
-TEST(DiffusePoints, LoseWhatIsNotLambert) {
+TEST(PlainPoints, OfDiffuseLightLoseWhatIsNotLambert) {
     VirtualLightSettings diffuse = of_photons("diffuse_point"), full = of_photons("point");
     const Room plain(coloured_room()), glossy(glossy_room());
     expect_same(by_lights(plain, diffuse, 128), by_lights(plain, full, 128), 0.0, "Lambert surfaces");
@@ -304,7 +304,7 @@ TEST(Resampling, OfManyCandidatesHasLessNoise) {
 
 // One direction is of the cone alone; of sixteen some are of the floor's BSDF and some of a glossy light's. Each of the
 // three alone has the same mean.
-TEST(SphereSamples, OfAnyNumberAndAnyTechniqueHaveOneMean) {
+TEST(EverySampling, HasOneMeanForAnyNumberAndTechniqueOfSphereSamples) {
     const Room room(glossy_room());
     for (VirtualLightSettings settings : {of_photons("sphere"), sampled_by("power", "sphere")}) {
         settings.sphere_samples = 1;
@@ -337,7 +337,7 @@ std::vector<float> fingerprint(const VirtualLightSettings& settings, int threads
     return out;
 }
 
-TEST(Baselines, AreTheSameBitsOnAnyThreads) {
+TEST(EverySampling, HasTheSameBitsOnAnyThreads) {
     VirtualLightSettings rich = sampled_by("resampled", "sphere");
     rich.placement = "relaxed_light_paths";
     VirtualLightSettings rejected = of_photons("point", "lightcuts"), mutated = of_photons("point", "plain_power");

@@ -83,7 +83,7 @@ std::vector<float> fingerprint(int threads) {
     return out;
 }
 
-TEST(Threads, ChangeNoBit) {
+TEST(Sampling, HasTheSameBitsOnAnyThreads) {
     const std::vector<float> one = fingerprint(1);
     EXPECT_GT(one.size(), 2000u);
     EXPECT_EQ(one, fingerprint(2));
