@@ -21,8 +21,19 @@ constexpr std::size_t kDrawsAtOnce = 1 << 16;
 // Of one survey: more samples are several.
 constexpr std::size_t kDrawsOfSurvey = 1 << 22;
 
+// Degrees of freedom of what they measure: sums over many pixels are nearly normal.
+constexpr std::size_t kStrata = 64;
+
 std::size_t pixels_of(const Image& image) {
     return std::size_t(image.width) * std::size_t(image.height);
+}
+
+double square_of(const EstimatedLayer& layer, std::size_t pixels) {
+    double sum = 0.0;
+    for (std::size_t p = 0; p < pixels; ++p)
+        if (const double own = glm::dot(layer.pixel(p), layer.pixel(p)); std::isfinite(own))
+            sum += own;
+    return sum;
 }
 
 // The root of a layer's luminance; 0 where there is none, or none that is known.
@@ -92,6 +103,23 @@ void add_residual(const std::vector<Rgb>& residual, const std::string& name, Ima
 
 }  // namespace
 
+CertifiedError CorrectedLayer::before() const {
+    CertifiedError out;
+    out.cell = name;
+    double residual = 0.0, variance = 0.0;
+    for (const ResidualBand& band : bands) {
+        residual += band.residual;
+        variance += band.variance;
+    }
+    if (!(square > 0.0))
+        return out;
+    out.square = residual / square;
+    out.error = std::sqrt(std::max(0.0, out.square));
+    out.square_deviation = std::sqrt(variance) / square;
+    out.strata = kStrata;
+    return out;
+}
+
 double CorrectedLayer::left(double samples) const {
     double all = 0.0, left = 0.0;
     for (const ResidualBand& band : bands) {
@@ -110,8 +138,10 @@ Corrector::Corrector(Image& image, const MomentTracers& tracers, bool surroundin
     : image_(image), tracers_(tracers), layers_(corrected_layers(image, surroundings)) {
     const std::size_t pixels = pixels_of(image);
     const std::vector<Rgb> none(pixels, Rgb(0.0f));
-    for (const EstimatedLayer& layer : layers_)
+    for (const EstimatedLayer& layer : layers_) {
+        squares_.push_back(square_of(layer, pixels));
         sums_.push_back({image.width, image.height, {none, none}, weights_of(layer, pixels)});
+    }
 }
 
 // Draws 2 h and 2 h + 1 of a survey are independent, and each estimate has one of them: twice the weight.
@@ -166,7 +196,7 @@ SmoothResidual Corrector::smooth(std::size_t layer) const {
 Correction Corrector::measured() const {
     Correction out{samples_, not_finite_, {}};
     for (std::size_t k = 0; k < layers_.size() && samples_ > 0; ++k)
-        out.layers.push_back({layers_[k].layer->name, smooth(k).bands});
+        out.layers.push_back({layers_[k].layer->name, smooth(k).bands, squares_[k]});
     return out;
 }
 
@@ -174,7 +204,7 @@ Correction Corrector::correct() {
     Correction out{samples_, not_finite_, {}};
     for (std::size_t k = 0; k < layers_.size() && samples_ > 0; ++k) {
         SmoothResidual residual = smooth(k);
-        out.layers.push_back({layers_[k].layer->name, std::move(residual.bands)});
+        out.layers.push_back({layers_[k].layer->name, std::move(residual.bands), squares_[k]});
         add_residual(residual.values, layers_[k].layer->name, image_);
     }
     return out;

@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "certificate/certificate.h"
 #include "certificate/estimated_layers.h"
 #include "certificate/pixel_survey.h"
 #include "core/progress.h"
@@ -29,6 +30,9 @@ namespace brisance {
 struct CorrectedLayer {
     std::string name;                 // empty: the picture
     std::vector<ResidualBand> bands;  // those of SmoothResidual
+    double square = 0.0;              // sum of its own squares before the correction
+    // The error before the correction, as the samples measured it.
+    CertifiedError before() const;
     // Of the layer's error, what should be left, or would be with so many times the samples.
     double left(double samples = 1.0) const;
 };
@@ -62,6 +66,7 @@ private:
     Image& image_;
     const MomentTracers& tracers_;
     std::vector<EstimatedLayer> layers_;
+    std::vector<double> squares_;      // of the layers, summed
     std::vector<NoisyResidual> sums_;  // of the layers, times the number of samples
     std::uint64_t samples_ = 0, not_finite_ = 0, surveys_ = 0;
 };

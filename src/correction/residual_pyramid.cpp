@@ -102,14 +102,19 @@ ResidualBand energy_of(const Level& band, double pixels) {
         for (int x = 0; x < band.square.width; ++x) {
             const Rgb &a = band.estimates[0].row(y)[x], &b = band.estimates[1].row(y)[x];
             const Rgb noise = 0.5f * (a - b);
+            const double own = double(band.square.row(y)[x]) * glm::dot(noise, noise);
             rows[std::size_t(y)].residual += double(band.square.row(y)[x]) * glm::dot(a, b);
-            rows[std::size_t(y)].noise += double(band.square.row(y)[x]) * glm::dot(noise, noise);
+            rows[std::size_t(y)].noise += own;
+            // Of noise with a variance s of each estimate, a b has the variance s^2, and (a - b)^4 / 16 the mean
+            // 3 s^2 / 4.
+            rows[std::size_t(y)].variance += 4.0 / 3.0 * own * own;
         }
     });
     ResidualBand sum;
     for (const ResidualBand& row : rows) {
         sum.residual += pixels * row.residual;
         sum.noise += pixels * row.noise;
+        sum.variance += pixels * pixels * row.variance;
     }
     return sum;
 }

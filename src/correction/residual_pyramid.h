@@ -25,7 +25,8 @@ struct NoisyResidual {
 
 // Sums over all pixels of the squares of the residual and of its noise, in the mean of both estimates.
 struct ResidualBand {
-    double residual = 0.0, noise = 0.0;  // either may fall below 0 by chance
+    double residual = 0.0, noise = 0.0;  // the former may fall below 0 by chance
+    double variance = 0.0;               // of the former
     // Of least square error, from 0 to 1.
     double gain() const;
     // What it leaves of the residual's square, if there were so many times the samples.

@@ -119,7 +119,7 @@ double sum_of_squares(const Layer& layer) {
 }  // namespace
 
 std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFrame& frame, const Statistics& statistics,
-                                           const std::function<double(const std::string& cell)>& left) {
+                                           const std::function<void(ExpectedError&)>& change) {
     const std::string lattice = "lattice of the light";
     const ErrorModel model(
         frame, noted(statistics, lattice, "error"), noted(statistics, lattice, "interpolation"),
@@ -131,7 +131,8 @@ std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFra
         for (const Layer& layer : image.layers)
             if (const double part = layer.name == cell ? sum_of_squares(layer) : 0.0; part > 0.0) {
                 out.push_back(model.of(cell));
-                out.back().error *= left(cell);
+                if (change)
+                    change(out.back());
                 errors += part * square(out.back().error);
                 spreads += part * square(out.back().spread);
                 light += part;

@@ -26,11 +26,10 @@ struct ModelledFrame {
     const Plan& plan;
 };
 
-// Of a finished picture and of its cells, the picture first. A black picture has an expected error of 0. `left`: of the
-// error of a cell's light, what is left in the picture, since that was corrected.
-std::vector<ExpectedError> expected_errors(
-    const Image& image, const ModelledFrame& frame, const Statistics& statistics,
-    const std::function<double(const std::string& cell)>& left = [](const std::string&) { return 1.0; });
+// Of a finished picture and of its cells, the picture first. A black picture has an expected error of 0. `change`: of
+// what the model expects of a cell, where more is known; empty: nothing is.
+std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFrame& frame, const Statistics& statistics,
+                                           const std::function<void(ExpectedError&)>& change = {});
 
 // The shot of a frame that has been rendered, with the lattice on which its orders of scattering were solved: before
 // that is known, grid_seconds() can only guess where the light is.

@@ -9,6 +9,7 @@
 #include "core/stopwatch.h"
 #include "forecast/costs.h"
 #include "forecast/expected_errors.h"
+#include "render/correct_frame.h"
 
 namespace brisance {
 
@@ -58,12 +59,12 @@ const CertifiedError* sampled(const std::optional<Certificate>& survey, const st
 
 Belief believe_lights(const Image& image, const DrawInput& input, const Statistics& statistics,
                       const Correction& correction, Progress& progress) {
-    const std::vector<ExpectedError> expected = expected_errors(
-        image, {input.shot, input.medium, input.plan}, statistics,
-        [&](const std::string& cell) { return correction.of(cell) ? correction.of(cell)->left() : 1.0; });
+    const std::vector<ExpectedError> expected =
+        expected_errors(image, {input.shot, input.medium, input.plan}, statistics,
+                        [&](ExpectedError& e) { e = error_left(e, correction); });
     Belief out;
     std::optional<Certificate> samples;
-    if (expected[0].error > 0.0 && input.shot.certify.belief > 0.0)
+    if (expected[0].error > 0.0 && input.shot.certify.belief > 0.0 && correction.layers.empty())
         samples = survey(image, input, statistics, expected[0].error, progress);
     if (samples) {
         out.samples = samples->samples;

@@ -3,7 +3,8 @@
 // Of a traced picture it is the standard error that its two halves show. Of a picture by many lights, an error model
 // (expected_errors.h) and a survey of few unbiased samples say it together. The survey may cost certify.belief of the
 // frame's forecast time. That is of counts, so that a frame is believed to have the same error on any machine. Where it
-// does not suffice to set up the path tracer, the model stands alone.
+// does not suffice to set up the path tracer, the model stands alone. Where a picture
+// was corrected, the samples of the correction take the place of the survey (correct_frame.h).
 #pragma once
 
 #include "certificate/believed_error.h"

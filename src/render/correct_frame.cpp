@@ -19,12 +19,15 @@ namespace {
 constexpr double kFirst = 1.0 / 12.0;
 // Of the error asked for: a little less is aimed at, since the samples' own error is known by chance.
 constexpr double kAim = 0.95;
+// So many that sums over them are normally distributed.
+constexpr std::size_t kManyPixels = 1 << 16;
 
-// Parts of the picture's squared error, by the error model, that are those of the corrected layers.
+// Parts of the picture's squared error, by the error model, that are those of the corrected layers. The first samples
+// are too few to tell it better: where they have heavy tails, they find too little most of the time.
 std::vector<double> squared_errors(const Correction& correction, const RenderedFrame& frame, const DrawInput& input) {
     std::vector<double> out;
     for (const CorrectedLayer& layer : correction.layers) {
-        const auto alone = [&](const std::string& cell) { return cell == layer.name ? 1.0 : 0.0; };
+        const auto alone = [&](ExpectedError& e) { e.error *= e.cell == layer.name ? 1.0 : 0.0; };
         const double error =
             expected_errors(frame.image, {input.shot, input.medium, input.plan}, frame.statistics, alone)[0].error;
         out.push_back(error * error);
@@ -63,8 +66,8 @@ void sample(Corrector& corrector, const RenderedFrame& frame, const DrawInput& i
     if (first == 0)
         return;
     corrector.sample(first, progress);
-    const Correction measured = corrector.measured();
-    const double times = samples_for(kAim * asked.lighting.error, measured, squared_errors(measured, frame, input),
+    const Correction first_look = corrector.measured();
+    const double times = samples_for(kAim * asked.lighting.error, first_look, squared_errors(first_look, frame, input),
                                      double(most) / double(first));
     if (const double more = (times - 1.0) * double(first); more >= 2.0)
         corrector.sample(static_cast<std::size_t>(more), progress);
@@ -81,6 +84,20 @@ void note(const Correction& correction, StageCost& cost) {
 }
 
 }  // namespace
+
+ExpectedError error_left(ExpectedError error, const Correction& correction) {
+    const CorrectedLayer* const layer = correction.of(error.cell);
+    if (!layer)
+        return error;
+    const CertifiedError before = layer->before();
+    const BelievedError measured = believed_error(error, &before);
+    if (error.spread > 0.0 && measured.interval.low > 0.0) {
+        error.error = measured.error;
+        error.spread = std::log(measured.interval.high / measured.interval.low) / (2.0 * half_width(kManyPixels));
+    }
+    error.error *= layer->left();
+    return error;
+}
 
 bool may_be_corrected(const Shot& asked, const Plan& plan) {
     return asked.correction.samples > 0 || most_of_correction(asked, plan) > 0.0;

@@ -51,11 +51,17 @@ double certified(const RenderedFrame& frame) {
 TEST(CorrectedFrames, ErrLessWhenLessIsAskedFor) {
     Shot usual = shot_of(0.02f), fine = shot_of(0.01f);
     usual.certify.enabled = fine.certify.enabled = true;
+    fine.certify.belief = 0.03;
     const RenderedFrame plain = render(usual), corrected = render(fine);
     EXPECT_EQ(samples_of(plain), 0.0);
     EXPECT_GT(samples_of(corrected), 4096.0);
     std::printf("certified: %.4f, corrected %.4f\n", certified(plain), certified(corrected));
     EXPECT_LT(certified(corrected), 0.6 * certified(plain));
+    // What it believes of its own error comes from the samples that corrected it.
+    const auto& believed = corrected.statistics.believed_error;
+    EXPECT_EQ(believed["samples"], 0);
+    EXPECT_GT(believed["picture"]["error"].get<double>(), 0.5 * certified(corrected));
+    EXPECT_LT(believed["picture"]["error"].get<double>(), 2.0 * certified(corrected));
 }
 
 TEST(CorrectedFrames, TakeAsManySamplesAsTheShotStates) {
