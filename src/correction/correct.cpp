@@ -157,13 +157,12 @@ void Corrector::add(const PixelSurvey::Draw& draw, bool second, const PathSum& f
 }
 
 void Corrector::sample(std::size_t samples, Progress& progress) {
-    for (std::size_t done = 0; done < samples; done += kDrawsOfSurvey) {
-        survey(std::min(samples - done, kDrawsOfSurvey));
-        progress.fraction(std::min(1.0, double(done + kDrawsOfSurvey) / double(samples)));
-    }
+    for (std::size_t done = 0; done < samples; done += kDrawsOfSurvey)
+        survey(std::min(samples - done, kDrawsOfSurvey),
+               [&](std::size_t drawn) { progress.fraction(std::min(1.0, double(done + drawn) / double(samples))); });
 }
 
-void Corrector::survey(std::size_t samples) {
+void Corrector::survey(std::size_t samples, const std::function<void(std::size_t)>& drawn) {
     const PixelSurvey survey(sizes_of(layers_, pixels_of(image_)), image_.width, samples, kSeed + surveys_);
     const std::vector<PixelSurvey::Draw>& draws = survey.draws();
     std::vector<PathSum> found(std::min(draws.size(), kDrawsAtOnce));
@@ -180,6 +179,7 @@ void Corrector::survey(std::size_t samples) {
             const PixelSurvey::Draw& draw = draws[begin + i];
             add({draw.pixel, double(draws.size()) * draw.weight}, (begin + i) % 2 == 1, found[i]);
         }
+        drawn(begin + some);
     }
     samples_ += draws.size();
     ++surveys_;

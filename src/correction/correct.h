@@ -14,6 +14,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -59,7 +60,7 @@ public:
     static std::uint64_t bytes_of(int width, int height, std::size_t layers, std::size_t samples);
 
 private:
-    void survey(std::size_t samples);
+    void survey(std::size_t samples, const std::function<void(std::size_t)>& drawn);
     void add(const PixelSurvey::Draw& draw, bool second, const PathSum& found);
     SmoothResidual smooth(std::size_t layer) const;
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
+#include "core/cpu_clock.h"
 #include "core/stopwatch.h"
 #include "forecast/costs.h"
 #include "forecast/expected_errors.h"
@@ -119,13 +119,11 @@ Belief believe(const RenderedFrame& frame, const DrawInput& input, const Shot& s
                StageCost& cost, Progress& progress) {
     progress.stage("believed error");
     const Stopwatch watch;
-    const std::clock_t cpu = std::clock();
+    const double cpu = process_cpu_seconds();
     Belief out = frame.halves.size() == 2 ? believe_paths(frame.halves, input.plan)
                                           : believe_lights(frame.image, input, frame.statistics, correction, progress);
-    cost = {"believed error",
-            watch.seconds(),
-            0,
-            {{"samples", out.samples}, {"cpu_seconds", double(std::clock() - cpu) / CLOCKS_PER_SEC}}};
+    cost = {
+        "believed error", watch.seconds(), 0, {{"samples", out.samples}, {"cpu_seconds", process_cpu_seconds() - cpu}}};
     progress.notice("believed error: " + out.line());
     const auto [asked, key] = error_asked(shot);
     if (asked > 0.0 && out.errors[0].error > asked)

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
+#include "core/cpu_clock.h"
 #include "core/stopwatch.h"
 #include "forecast/correction_plan.h"
 #include "forecast/expected_errors.h"
@@ -106,7 +106,7 @@ bool may_be_corrected(const Shot& asked, const Plan& plan) {
 Correction correct_frame(RenderedFrame& frame, const DrawInput& input, const Shot& asked, Progress& progress) {
     progress.stage("correction");
     const Stopwatch watch;
-    const std::clock_t cpu = std::clock();
+    const double cpu = process_cpu_seconds();
     const MomentTracers tracers = tracers_of(certified_scene(input));
     Corrector corrector(frame.image, tracers, input.surroundings != nullptr);
     sample(corrector, frame, input, asked, progress);
@@ -120,7 +120,7 @@ Correction correct_frame(RenderedFrame& frame, const DrawInput& input, const Sho
                                                          correction.layers.size(), correction.samples),
                    {}};
     note(correction, cost);
-    cost.detail["cpu_seconds"] = double(std::clock() - cpu) / CLOCKS_PER_SEC;
+    cost.detail["cpu_seconds"] = process_cpu_seconds() - cpu;
     frame.statistics.stages.push_back(std::move(cost));
     return correction;
 }

@@ -3,11 +3,11 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <ctime>
 #include <functional>
 
 #include "camera/camera.h"
 #include "certificate/certify.h"
+#include "core/cpu_clock.h"
 #include "core/stopwatch.h"
 #include "forecast/correction_plan.h"
 #include "forecast/machine_speed.h"
@@ -72,14 +72,13 @@ Belief add_belief(RenderedFrame& out, const DrawInput& input, const Shot& asked,
 
 Certificate add_certificate(RenderedFrame& out, const DrawInput& input, const Belief& belief, Progress& progress) {
     const Stopwatch watch;
-    const std::clock_t cpu = std::clock();
+    const double cpu = process_cpu_seconds();
     Certificate certificate = certify(out.image, certified_scene(input), input.shot.certify, progress);
     out.statistics.certificate = certificate.to_json();
-    out.statistics.stages.push_back(
-        {"certificate",
-         watch.seconds(),
-         0,
-         {{"samples", certificate.samples}, {"cpu_seconds", double(std::clock() - cpu) / CLOCKS_PER_SEC}}});
+    out.statistics.stages.push_back({"certificate",
+                                     watch.seconds(),
+                                     0,
+                                     {{"samples", certificate.samples}, {"cpu_seconds", process_cpu_seconds() - cpu}}});
     out.metadata.text["brisance/certificate"] = certificate.to_json().dump();
     const std::string ratios = belief.ratios(certificate);
     progress.notice("certificate: " + certificate.line() + (ratios.empty() ? "" : "; " + ratios));
