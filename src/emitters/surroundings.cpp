@@ -23,9 +23,12 @@ Surroundings::Surroundings(Scene scene, std::vector<LightSettings> lights, std::
       intersector_(scene_),
       emitters_(scene_, lights_, pointers_to(pictures_)) {
     // Computes the tables now, before threads use them concurrently.
-    for (const SceneMaterial& material : scene_.materials)
+    for (const SceneMaterial& material : scene_.materials) {
         if (needs_energy_tables(material.surface))
             energy_tables(material.surface.ior);
+        if (needs_interface_tables(material.surface))
+            interface_tables(material.surface.ior);
+    }
 }
 
 }  // namespace brisance

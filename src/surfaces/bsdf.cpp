@@ -53,12 +53,10 @@ double refraction_jacobian(double cos_o, double cos_i, double eta) {
 
 }  // namespace
 
-Bsdf::Bsdf(const SurfaceMaterial& material, const ShadingFrame& frame, Lobes lobes)
-    : Bsdf(material, frame, needs_energy_tables(material) ? &energy_tables(material.ior) : nullptr, lobes) {}
-
-Bsdf::Bsdf(const SurfaceMaterial& m, const ShadingFrame& frame, const EnergyTables* tables, Lobes lobes)
+Bsdf::Bsdf(const SurfaceMaterial& m, const ShadingFrame& frame, Lobes lobes)
     : frame_(frame),
-      tables_(tables),
+      tables_(needs_energy_tables(m) ? &energy_tables(m.ior) : nullptr),
+      interface_(needs_interface_tables(m) ? &interface_tables(m.ior) : nullptr),
       ggx_{std::max(double(m.roughness) * m.roughness, kSmoothAlpha)},
       ior_(m.ior),
       smooth_(double(m.roughness) * m.roughness < kSmoothAlpha),
@@ -72,25 +70,28 @@ Bsdf::Bsdf(const SurfaceMaterial& m, const ShadingFrame& frame, const EnergyTabl
       sheet_(m.thin ? (1.0f - m.metallic) * m.transmission : 0.0f),
       specular_(matched_ ? 0.0f : m.specular),
       f0_(glm::min(float(normal_reflectance(ior_)) * m.specular_colour, Rgb(1.0f))) {
-    assert(valid(m) && (tables ? tables->ior() == double(m.ior) : !needs_energy_tables(m)));
+    assert(valid(m));
     f0_max_ = max_channel(f0_);
-    if (!tables)
+    if (!tables_)
         return;
-    const float mean_blend = static_cast<float>(tables->mean_blend());
+    const float mean_blend = static_cast<float>(tables_->mean_blend());
     base_share_mean_ = 1.0f - specular_ * (f0_max_ + (1.0f - f0_max_) * mean_blend);
     const float crossing = base_share_mean_;
     if (smooth_)
         return;
-    row_ = EnergyTables::row(ggx_.alpha);
-    const Albedos means = tables->mean(ggx_.alpha);
+    row_ = AlbedoRow(ggx_.alpha);
+    const Albedos means = tables_->mean(ggx_.alpha);
     lost_mean_ = 1.0 - means.reflect;
     metal_multiple_ = multiple_scattering_albedo(mean_schlick_fresnel(base_), lost_mean_);
     coat_multiple_ = multiple_scattering_albedo(specular_ * (f0_ + (Rgb(1.0f) - f0_) * mean_blend), lost_mean_);
     const double blended = means.reflect_blend;
     base_share_mean_ = static_cast<float>(1.0 - specular_ * (f0_max_ * (means.reflect - blended) + blended) -
                                           max_channel(coat_multiple_) * lost_mean_);
+    if (!interface_)
+        return;
+    const InterfaceAlbedos both = interface_->mean(ggx_.alpha);
     for (int side = 0; side < 2; ++side)
-        lost_both_mean_[side] = lost_both(side, means);
+        lost_both_mean_[side] = lost_both(side, both);
     // The share that crosses a smooth interface, scaled so that both sides are reciprocal and neither exceeds it.
     const double larger = std::max(lost_both_mean_[0], lost_both_mean_[1]);
     if (larger > 0.0) {
@@ -103,7 +104,11 @@ Albedos Bsdf::albedos(double cosine) const {
     return tables_ ? tables_->at(row_, cosine) : Albedos{};
 }
 
-double Bsdf::lost_both(int side, const Albedos& albedos) const {
+double Bsdf::lost_both(int side, double cosine) const {
+    return interface_ ? lost_both(side, interface_->at(row_, cosine)) : 0.0;
+}
+
+double Bsdf::lost_both(int side, const InterfaceAlbedos& albedos) const {
     const double a = specular_ * f0_max_, b = specular_ * (1.0 - f0_max_);
     return std::max(0.0, 1.0 - albedos.all(side, a, b));
 }
@@ -161,7 +166,7 @@ Bsdf::View Bsdf::view_from(const dvec3& world) const {
     if (!smooth_) {
         a = albedos(cosine);
         view.lost = 1.0 - a.reflect;
-        view.lost_both = matched_ ? 0.0 : lost_both(view.side, a);
+        view.lost_both = lost_both(view.side, cosine);
     }
     view.base_share = std::max(0.0f, 1.0f - coat_albedo(a, cosine));
     choose_lobes(view);
@@ -224,8 +229,9 @@ Rgb Bsdf::reflected(const View& view, const dvec3& wi) const {
         const dvec3 h = glm::normalize(view.wo + wi);
         const double facets = ggx_.density(h) * ggx_.correlated_masking_per_cosines(view.wo.z, wi.z) * wi.z / 4.0;
         sum += facet_reflectance(view, std::clamp(glm::dot(view.wo, h), 0.0, 1.0)) * static_cast<float>(facets);
-        if (glass_ > 0.0f && !matched_ && lost_both_mean_[view.side] > 0.0) {
-            const double multiple = view.lost_both * lost_both(view.side, there) / lost_both_mean_[view.side];
+        if (lost_both_mean_[view.side] > 0.0) {
+            const double multiple =
+                view.lost_both * lost_both(view.side, std::min(wi.z, 1.0)) / lost_both_mean_[view.side];
             sum += glass_ * static_cast<float>(multiple * (1.0 - crossing_[view.side]) * cosine_density(wi.z));
         }
     }
@@ -257,7 +263,7 @@ Rgb Bsdf::refracted(const View& view, const dvec3& wi) const {
     }
     const int other = 1 - view.side;
     if (lost_both_mean_[other] > 0.0) {
-        const double multiple = view.lost_both * lost_both(other, albedos(below)) / lost_both_mean_[other];
+        const double multiple = view.lost_both * lost_both(other, below) / lost_both_mean_[other];
         sum += glass_ * base_ * static_cast<float>(multiple * crossing_[view.side] * cosine_density(below));
     }
     return sum;

@@ -48,9 +48,6 @@ public:
     // Tables of the material's ior are looked up; the first such call makes them (energy_tables.h). Every number of the
     // material must lie in the range that its comment gives.
     Bsdf(const SurfaceMaterial& material, const ShadingFrame& frame, Lobes lobes = Lobes::All);
-    // `tables`: of the material's ior; null for a material that needs none.
-    Bsdf(const SurfaceMaterial& material, const ShadingFrame& frame, const EnergyTables* tables,
-         Lobes lobes = Lobes::All);
 
     // BSDF times |cosine of wi to the normal| [1/sr], without delta lobes.
     Rgb evaluate(const dvec3& wo, const dvec3& wi, Transport transport = Transport::Radiance) const;
@@ -90,7 +87,8 @@ private:
     void choose_lobes(View& view) const;
     Rgb straight_weight(const View& view) const;
     Albedos albedos(double cosine) const;
-    double lost_both(int side, const Albedos& albedos) const;
+    double lost_both(int side, double cosine) const;
+    double lost_both(int side, const InterfaceAlbedos& albedos) const;
     float coat_albedo(const Albedos& albedos, double cosine) const;
 
     float blend(double cosine, double eta) const;
@@ -112,7 +110,8 @@ private:
 
     ShadingFrame frame_;
     const EnergyTables* tables_;
-    EnergyTables::Row row_{};  // of rough interfaces
+    const InterfaceTables* interface_;  // of rough glass alone
+    AlbedoRow row_;                     // of rough surfaces that have tables
     Ggx ggx_;
     double ior_;
     bool smooth_, matched_;

@@ -6,6 +6,13 @@
 
 namespace brisance {
 
+// Below this alpha (roughness 0.01) an interface is smooth: its lobes are deltas.
+constexpr double kSmoothAlpha = 1e-4;
+
+// Below this index of refraction the interface is matched: nothing is reflected (less than 3e-7 would be), and light
+// continues straight on.
+constexpr double kMatchedIor = 1.001;
+
 struct SurfaceMaterial {
     Rgb base_colour{1.0f};      // [1] 0..1: of the diffuse base, of metal at normal incidence, of what is transmitted
     float metallic = 0.0f;      // [1] 0..1: share of the surface that is metal
@@ -20,6 +27,12 @@ struct SurfaceMaterial {
 // A plain Lambert surface needs no energy tables.
 inline bool needs_energy_tables(const SurfaceMaterial& m) {
     return m.metallic > 0.0f || m.specular > 0.0f || m.transmission > 0.0f;
+}
+
+// Nor does any but rough glass need those of interfaces.
+inline bool needs_interface_tables(const SurfaceMaterial& m) {
+    return m.transmission > 0.0f && m.metallic < 1.0f && !m.thin && m.ior >= kMatchedIor &&
+           double(m.roughness) * m.roughness >= kSmoothAlpha;
 }
 
 }  // namespace brisance

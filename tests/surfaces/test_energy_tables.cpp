@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "surfaces/energy_tables.h"
+#include "surfaces/material.h"
 
 namespace brisance {
 namespace {
@@ -15,12 +16,15 @@ TEST(EnergyTables, StandForTheirIntegrals) {
     for (const float ior : {1.5f, 2.4f})
         for (const double roughness : {0.0103, 0.02, 0.08, 0.21, 0.47, 0.8, 1.0})
             for (const double cosine : {0.0, 0.001, 0.01, 0.07, 0.3, 0.74, 0.93, 1.0}) {
-                const EnergyTables& tables = energy_tables(ior);
                 const double alpha = roughness * roughness, f0 = std::pow((ior - 1.0) / (ior + 1.0), 2);
-                const Albedos table = tables.at(alpha, cosine), truth = integrate_albedos(ior, alpha, cosine, 10000);
+                const AlbedoRow row(alpha);
+                const Albedos table = energy_tables(ior).at(row, cosine),
+                              truth = integrate_albedos(ior, alpha, cosine, 10000);
+                const InterfaceAlbedos both = interface_tables(ior).at(row, cosine),
+                                       exact = integrate_interface_albedos(ior, alpha, cosine, 10000);
                 const double off[4] = {table.reflect - truth.reflect, table.reflect_blend - truth.reflect_blend,
-                                       table.all(0, f0, 1.0 - f0) - truth.all(0, f0, 1.0 - f0),
-                                       table.all(1, f0, 1.0 - f0) - truth.all(1, f0, 1.0 - f0)};
+                                       both.all(0, f0, 1.0 - f0) - exact.all(0, f0, 1.0 - f0),
+                                       both.all(1, f0, 1.0 - f0) - exact.all(1, f0, 1.0 - f0)};
                 for (int i = 0; i < 4; ++i)
                     worst[i] = std::max(worst[i], std::abs(off[i]));
             }
@@ -32,16 +36,18 @@ TEST(EnergyTables, StandForTheirIntegrals) {
 
 TEST(EnergyTables, SmoothSurfacesLoseNothing) {
     for (const double cosine : {0.05, 0.5, 1.0}) {
-        const Albedos a = energy_tables(1.5f).at(kSmoothAlpha, cosine);
-        EXPECT_NEAR(a.reflect, 1.0, 1e-4);
-        EXPECT_NEAR(a.all(0, 0.04, 0.96), 1.0, 1e-4);
-        EXPECT_NEAR(a.all(1, 0.04, 0.96), 1.0, 1e-4);
+        const AlbedoRow smooth(kSmoothAlpha);
+        const InterfaceAlbedos both = interface_tables(1.5f).at(smooth, cosine);
+        EXPECT_NEAR(energy_tables(1.5f).at(smooth, cosine).reflect, 1.0, 1e-4);
+        EXPECT_NEAR(both.all(0, 0.04, 0.96), 1.0, 1e-4);
+        EXPECT_NEAR(both.all(1, 0.04, 0.96), 1.0, 1e-4);
     }
 }
 
 TEST(EnergyTables, AreMadeOnce) {
     EXPECT_EQ(&energy_tables(1.5f), &energy_tables(1.5f));
     EXPECT_NE(&energy_tables(1.5f), &energy_tables(2.4f));
+    EXPECT_EQ(&interface_tables(1.5f), &interface_tables(1.5f));
 }
 
 TEST(EnergyTables, RefuseIndicesOutOfRange) {
