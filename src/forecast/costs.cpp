@@ -28,6 +28,9 @@ constexpr double kFrame = 0.25;
 constexpr double kSegment = 1.2e-6;  // of a path: 0.7 to 1.9
 constexpr double kCameraRay = 2.4e-6;
 constexpr double kTrackingOfVoxel = 0.25e-6;  // set-up of the path tracer
+// With a set, fitted to eight, which are within a factor of two to three: lights for surfaces and what those send into
+// smoke, over the lighting of smoke alone; virtual lights; what lights the surface that a camera ray meets.
+constexpr double kSmokeOfSet = 2.2, kVirtualLights = 6.0, kSurfaceRay = 4e-6;
 
 constexpr int kPilotSamples = 8;
 
@@ -36,6 +39,18 @@ double camera_rays(const Shot& shot, const Medium& medium, const CameraSettings&
     if (side <= 0)
         side = automatic_samples(Camera(settings, medium), medium, voxel_lattice(medium)).few;
     return double(shot.camera.width) * shot.camera.height * side * side;
+}
+
+bool has_set(const Plan& plan) {
+    return plan.surfaces || plan.emitters;
+}
+
+double surface_seconds(const Shot& shot, const Plan& plan, const CameraSettings& camera) {
+    if (!plan.surfaces)
+        return 0.0;
+    const bool lights = shot.virtual_lights.count > 0 && (plan.needs(Cell::SS) || plan.needs(Cell::MS));
+    const int side = camera.samples_per_axis > 0 ? camera.samples_per_axis : kSurfaceSamples;
+    return (lights ? kVirtualLights : 0.0) + kSurfaceRay * side * side * double(camera.width) * camera.height;
 }
 
 // The samples of one pixel: variance of one, and the square of their mean without its own noise, over all colours.
@@ -102,12 +117,18 @@ double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& 
         std::pow(double(shadow_resolution(shot.lighting)), 2.0) * shadow_distances(shot.lighting) / kKnownMap;
     const double values =
         0.5 * map * (kMapValuesOfNode * (nodes + of_smoke) + (plan.multiple ? 2.0 : 1.0) * kMapValuesAtTop);
-    return kFrame + kEvaluation * (plan.directional ? kDirectional : 1.0) * evaluations + kMapValue * values +
-           kCoarseNode * coarse + kCameraRay * camera_rays(shot, counted.medium, camera);
+    const double of_smoke_alone =
+        kEvaluation * (plan.directional ? kDirectional : 1.0) * evaluations + kMapValue * values + kCoarseNode * coarse;
+    return kFrame + (has_set(plan) ? kSmokeOfSet : 1.0) * of_smoke_alone +
+           kCameraRay * camera_rays(shot, counted.medium, camera) + surface_seconds(shot, plan, camera);
 }
 
 bool grid_is_forecast(const Plan& plan) {
-    return !plan.surfaces && !plan.emitters && !plan.scattering_method && !plan.fire_sampling && !plan.unified_sampling;
+    return grid_is_estimated(plan) && !has_set(plan);
+}
+
+bool grid_is_estimated(const Plan& plan) {
+    return !plan.scattering_method && !plan.fire_sampling && !plan.unified_sampling;
 }
 
 double tracer_seconds(const Medium& medium) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base_lighting/panes.h"
+#include "camera_rays/picture.h"
 #include "core/stopwatch.h"
 #include "medium/similar_medium.h"
 

@@ -15,9 +15,6 @@
 
 namespace brisance {
 
-// Anti-aliasing samples along a pixel's side where there are surfaces, unless the shot says: their edges are sharp.
-inline constexpr int kSurfaceSamples = 4;
-
 // Whether the lighting counts light as not scattered that scattered into the peak of the phase function.
 bool takes_peaks_for_straight(const DrawInput& input);
 

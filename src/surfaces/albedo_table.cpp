@@ -17,9 +17,15 @@ double roughness_coordinate(double alpha) {
 
 // A third of the coordinate goes to cosines around alpha, where masking sets in whatever alpha is, a third to those of
 // grazing angles, and a third evenly to all, for the critical angle may be anywhere.
+constexpr double kGrazing = 0.1;
+
 double angle_coordinate(double alpha, double cosine) {
-    constexpr double grazing = 0.1;
-    return cosine * ((1.0 + alpha) / (cosine + alpha) + (1.0 + grazing) / (cosine + grazing) + 1.0) / 3.0;
+    return cosine * ((1.0 + alpha) / (cosine + alpha) + (1.0 + kGrazing) / (cosine + kGrazing) + 1.0) / 3.0;
+}
+
+double angle_slope(double alpha, double cosine) {
+    const auto slope = [cosine](double a) { return (1.0 + a) * a / ((cosine + a) * (cosine + a)); };
+    return (slope(alpha) + slope(kGrazing) + 1.0) / 3.0;
 }
 
 AlbedoLattice::Place place_of(double fraction, int count) {
@@ -45,12 +51,17 @@ double AlbedoLattice::alpha_of(int i, int count) {
 }
 
 double AlbedoLattice::cosine_of(double alpha, double fraction) {
-    double low = 0.0, high = 1.0;
+    if (fraction >= 1.0)
+        return 1.0;
+    // The coordinate is concave: Newton's steps from 0 never pass the root, and end there.
+    double cosine = 0.0;
     for (int i = 0; i < 60; ++i) {
-        const double middle = 0.5 * (low + high);
-        (angle_coordinate(alpha, middle) < fraction ? low : high) = middle;
+        const double step = (fraction - angle_coordinate(alpha, cosine)) / angle_slope(alpha, cosine);
+        if (!(step > 1e-15 * cosine))
+            break;
+        cosine += step;
     }
-    return fraction >= 1.0 ? 1.0 : low;
+    return std::min(cosine, 1.0);
 }
 
 }  // namespace brisance
