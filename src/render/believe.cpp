@@ -126,7 +126,8 @@ Belief believe(const RenderedFrame& frame, const DrawInput& input, const Shot& s
         "believed error", watch.seconds(), 0, {{"samples", out.samples}, {"cpu_seconds", process_cpu_seconds() - cpu}}};
     progress.notice("believed error: " + out.line());
     const auto [asked, key] = error_asked(shot);
-    if (asked > 0.0 && out.errors[0].error > asked)
+    // As numbers of the shot: 0.02 is no more than 0.02f.
+    if (asked > 0.0 && static_cast<float>(out.errors[0].error) > static_cast<float>(asked))
         progress.warning("error", fmt::format("{}={:.3g} is not reached: the picture is believed to have an error of "
                                               "{:.2g} %",
                                               key, asked, 100.0 * out.errors[0].error));

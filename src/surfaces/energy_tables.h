@@ -64,7 +64,7 @@ private:
 Albedos integrate_albedos(double ior, double alpha, double cosine, int points);
 InterfaceAlbedos integrate_interface_albedos(double ior, double alpha, double cosine, int points);
 
-// Tables of one index of refraction, made by the first call (0.2 and 1.5 s of one core) and kept until the program
+// Tables of one index of refraction, made by the first call (0.25 and 2 s of one core) and kept until the program
 // ends. Thread-safe. Throw Error for an index outside 1..10.
 const EnergyTables& energy_tables(float ior);
 const InterfaceTables& interface_tables(float ior);

@@ -323,7 +323,7 @@ TEST(LightPictures, WhatHasNoneSaysWhy) {
         change(shot);
         Listener listener;
         EXPECT_FALSE(render(shot, listener).light_pictures);
-        EXPECT_EQ(listener.warnings.size(), 1u);
+        EXPECT_EQ(listener.warnings.size(), 1u) << (listener.warnings.empty() ? "" : listener.warnings.back());
         return listener.warnings.empty() ? "" : listener.warnings.front();
     };
     const auto path = warning_of([](Shot& shot) {
