@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 
 #include "core/parallel.h"
@@ -131,10 +132,30 @@ void subtract(Level& level, const Level& coarser) {
     }
 }
 
-void add_band(Plane<Rgb>& sum, const Level& band, double gain) {
+// The error of the picture in a band, relative to its light there, if pixels err alike.
+double relative_error(const Level& band, const ResidualBand& energy, double pixels) {
+    std::vector<double> rows(std::size_t(band.square.height), 0.0);
+    for_rows(band.square.height, [&](int y) {
+        for (int x = 0; x < band.square.width; ++x)
+            rows[std::size_t(y)] += double(band.square.row(y)[x]) * band.square.row(y)[x];
+    });
+    const double light = pixels * std::accumulate(rows.begin(), rows.end(), 0.0);
+    return light > 0.0 ? std::sqrt(std::max(energy.residual, 0.0) / light) : 0.0;
+}
+
+// Samples have heavy tails: one bright path would leave a grain where the picture is dark. A pixel of a band is
+// therefore taken to err by no more than a few times what all do, the less so the better the band is known.
+void add_band(Plane<Rgb>& sum, const Level& band, const ResidualBand& energy, double pixels) {
+    constexpr double kMost = 4.0;
+    const double gain = energy.gain(), most = kMost * relative_error(band, energy, pixels) / (1.0 - gain);
     for_rows(sum.height, [&](int y) {
-        for (int x = 0; x < sum.width; ++x)
-            sum.row(y)[x] += 0.5f * float(gain) * (band.estimates[0].row(y)[x] + band.estimates[1].row(y)[x]);
+        for (int x = 0; x < sum.width; ++x) {
+            const float weight = band.weight.row(y)[x];
+            const Rgb known = 0.5f * float(gain) * (band.estimates[0].row(y)[x] + band.estimates[1].row(y)[x]);
+            const float limit = weight > 0.0f ? float(most) * band.square.row(y)[x] / weight : 0.0f;
+            const float length = glm::length(known);
+            sum.row(y)[x] += length > limit ? known * (limit / length) : known;
+        }
     });
 }
 
@@ -179,7 +200,8 @@ SmoothResidual smooth_residual(NoisyResidual residual) {
         const Plane<float>& weight = levels[k].weight;
         if (k + 1 < levels.size())
             sum = expanded(sum, weight.width, weight.height);
-        add_band(sum, levels[k], out.bands[k].gain());
+        pixels /= 4.0;
+        add_band(sum, levels[k], out.bands[k], pixels);
     }
     out.values = std::move(sum.values);
     for (std::size_t p = 0; p < out.values.size(); ++p)

@@ -24,13 +24,11 @@ ScatteringSettings orders_of(const Shot& shot);
 LatticeChoice forecast_lattice(const Shot& shot, const Medium& medium, int smoke_level);
 
 // A picture by the lighting grid: evaluations of lights at nodes, shadow maps, orders of scattering, and the camera's
-// rays.
+// rays. With surfaces and lamps it is a guess, within a factor of two to three.
 double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan, const CameraSettings& camera);
 
 // Whether that is known for pictures of the plan: not with surfaces, lamps and methods other than the hierarchy's.
 bool grid_is_forecast(const Plan& plan);
-// Whether it is known within a factor of two to three: with surfaces and lamps, too.
-bool grid_is_estimated(const Plan& plan);
 
 // Set-up of the path tracer.
 double tracer_seconds(const Medium& medium);

@@ -112,5 +112,23 @@ TEST(ResidualPyramid, TakesPicturesOfAnySize) {
     }
 }
 
+// One bright path beside a picture that is far brighter: what it adds stays in proportion to the light around it.
+TEST(ResidualPyramid, LeavesNoGrainsInTheDark) {
+    constexpr float kDark = 0.01f;
+    NoisyResidual grain = residual(1.0f, 2.0f);
+    for (std::size_t p = 0; p < kPixels; ++p) {
+        const bool dark = p % kWidth >= kWidth / 2;
+        grain.weight[p] = dark ? kDark : 1.0f;
+        // Both estimates know of detail as fine as pixels.
+        for (std::vector<Rgb>& estimate : grain.estimates)
+            estimate[p] = (dark ? kDark * kDark : 1.0f) * (estimate[p] + Rgb(float(noise(2, p))));
+    }
+    const std::size_t at = (kHeight / 2) * kWidth + 3 * kWidth / 4;
+    grain.estimates[0][at] = Rgb(1.0f);
+    const SmoothResidual smooth = smooth_residual(grain);
+    EXPECT_GT(smooth.bands[0].gain(), 0.2);
+    EXPECT_LT(glm::length(smooth.values[at]), 0.03f);  // it would be 0.2
+}
+
 }  // namespace
 }  // namespace brisance::test_residual_pyramid
