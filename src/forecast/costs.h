@@ -24,7 +24,8 @@ ScatteringSettings orders_of(const Shot& shot);
 LatticeChoice forecast_lattice(const Shot& shot, const Medium& medium, int smoke_level);
 
 // A picture by the lighting grid: evaluations of lights at nodes, shadow maps, orders of scattering, and the camera's
-// rays. With surfaces and lamps it is a guess, within a factor of two to three.
+// rays. With surfaces and lamps it is a guess, within a factor of three; of lamps in haze it is up to seven times too
+// low.
 double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan, const CameraSettings& camera);
 
 // Whether that is known for pictures of the plan: not with surfaces, lamps and methods other than the hierarchy's.
