@@ -28,8 +28,8 @@ constexpr double kFrame = 0.25;
 constexpr double kSegment = 1.2e-6;  // of a path: 0.7 to 1.9
 constexpr double kCameraRay = 2.4e-6;
 constexpr double kTrackingOfVoxel = 0.25e-6;  // set-up of the path tracer
-// With a set, a guess from seven (costs.h): lights for surfaces and what those send into
-// smoke, over the lighting of smoke alone; virtual lights; what lights the surface that a camera ray meets.
+// With a set, a guess from seven (costs.h): lights for surfaces and what those send into smoke, over the lighting of
+// smoke alone; virtual lights; what lights the surface that a camera ray meets.
 constexpr double kSmokeOfSet = 2.2, kVirtualLights = 6.0, kSurfaceRay = 4e-6;
 
 constexpr int kPilotSamples = 8;
