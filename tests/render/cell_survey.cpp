@@ -8,7 +8,6 @@
 
 #include "camera/camera.h"
 #include "camera/pixel_filter.h"
-#include "certificate/pixel_survey.h"
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "reference/path_tracer.h"
@@ -17,9 +16,11 @@ namespace brisance::testing {
 
 namespace {
 
-// Of the pixels drawn: evenly, by a target's radiance, and by its square. All targets have the same part.
+// A pixel's paths come in sets of one for each quarter of it, as edges cross few quarters. Sets are independent.
+constexpr int kQuarters = 4;
+constexpr int kLeastSets = 2;  // of a pixel, in each survey
+// Of the other paths: evenly, by a target's radiance, and by its square. All targets have the same part.
 constexpr double kEvenly = 0.3, kByRadiance = 0.2, kBySquare = 0.5;
-constexpr int kSamplesPerDraw = 32;
 
 using Colours = std::vector<dvec3>;  // of all pixels
 
@@ -54,6 +55,14 @@ std::vector<double> sizes_of(const std::vector<Colours>& targets) {
     return size;
 }
 
+// Sets of each pixel. Their number owes nothing to the paths, which leaves all sums without bias.
+std::vector<int> allocated(const std::vector<Colours>& targets, int sets) {
+    std::vector<int> of_pixels;
+    for (const double size : sizes_of(targets))
+        of_pixels.push_back(std::max(kLeastSets, int(std::lround(size * sets))));
+    return of_pixels;
+}
+
 // Unbiased paths of a pixel, all random numbers independent of each other and of the picture's.
 class PixelPaths {
 public:
@@ -61,9 +70,22 @@ public:
         : tracer_(input.medium, shot.tracing, shot.scattering.bounces, input.surroundings.get()),
           camera_(input.camera, input.medium) {}
 
-    CellSum trace(std::size_t pixel, Rng& rng) const {
+    // The mean of a set.
+    CellSum trace_set(std::size_t pixel, Rng& rng) const {
+        CellSum mean{};
+        for (int quarter = 0; quarter < kQuarters; ++quarter) {
+            const CellSum path = trace(pixel, quarter, rng);
+            for (int c = 0; c < kCells; ++c)
+                mean[c] += path[c] / float(kQuarters);
+        }
+        return mean;
+    }
+
+private:
+    CellSum trace(std::size_t pixel, int quarter, Rng& rng) const {
         const CameraSettings& s = camera_.settings();
-        const double x = rng.next_double() - 0.5, y = rng.next_double() - 0.5, stratum = rng.next_double();
+        const double x = 0.5 * (quarter % 2 + rng.next_double()) - 0.5,
+                     y = 0.5 * (quarter / 2 + rng.next_double()) - 0.5, stratum = rng.next_double();
         const double column = double(pixel % s.width) + 0.5 + x * s.filter_width_pixels;
         const double row = double(pixel / s.width) + 0.5 + y * s.filter_width_pixels;
         PathSum path{};
@@ -74,7 +96,6 @@ public:
         return path.cells;
     }
 
-private:
     PathTracer tracer_;
     Camera camera_;
 };
@@ -88,17 +109,28 @@ dvec3 radiance_of(const CellSum& path, const std::string& name) {
     return sum;
 }
 
-// What one draw adds to a target's sums, less those of the picture, which are known.
-CellSums drawn(const dvec3& image, const dvec3& sum, const dvec3& squares, double weight) {
-    constexpr double n = kSamplesPerDraw;
-    const dvec3 mean = sum / n, square = (sum * sum - squares) / (n * (n - 1.0));
-    CellSums s;
-    s.difference = weight * sum_of(mean);
-    s.squared_difference = weight * sum_of(square);
-    s.truth = -s.difference;
-    s.squared_truth = -weight * sum_of(2.0 * image * mean - square);
-    return s;
-}
+// What the differences I - x of a pixel's sets add to a target's sums.
+class PixelSums {
+public:
+    void add(const dvec3& difference) {
+        sum_ += difference;
+        squares_ += difference * difference;
+    }
+    CellSums of(const dvec3& image, int sets) const {
+        const double n = sets;
+        // Over all pairs of sets.
+        const dvec3 mean = sum_ / n, square = (sum_ * sum_ - squares_) / (n * (n - 1.0));
+        CellSums s;
+        s.difference = sum_of(mean);
+        s.truth = sum_of(image - mean);
+        s.squared_difference = sum_of(square);
+        s.squared_truth = sum_of(image * (image - 2.0 * mean) + square);
+        return s;
+    }
+
+private:
+    dvec3 sum_{0.0}, squares_{0.0};
+};
 
 std::vector<double> column(const std::vector<CellSums>& sums, double CellSums::*value) {
     std::vector<double> out;
@@ -138,34 +170,20 @@ CellSurvey::CellSurvey(const FrameInput& input, const Shot& shot, const Image& p
         images.push_back(colours_of(picture, target));
     sums_.assign(targets_.size(), std::vector<CellSums>(kSurveys));
     const PixelPaths paths(input, shot);
-    const std::vector<double> sizes = sizes_of(images);
+    const std::vector<int> sets = allocated(images, samples / kQuarters);
     for (int number = 0; number < kSurveys; ++number) {
-        const PixelSurvey survey(sizes, picture.width, samples / kSamplesPerDraw, std::uint64_t(number) + 1);
-        const std::vector<PixelSurvey::Draw>& draws = survey.draws();
-        std::vector<std::vector<CellSums>> found(draws.size());
-        parallel_for(draws.size(), [&](std::size_t d) {
-            std::vector<dvec3> sum(targets_.size(), dvec3(0.0)), squares = sum;
-            for (int k = 0; k < kSamplesPerDraw; ++k) {
-                Rng rng(Stream::Certificate, std::uint64_t(number + 1) << 32 | d, std::uint64_t(k) + 1);
-                const CellSum path = paths.trace(draws[d].pixel, rng);
-                for (std::size_t t = 0; t < targets_.size(); ++t) {
-                    const dvec3 difference = images[t][draws[d].pixel] - radiance_of(path, targets_[t]);
-                    sum[t] += difference;
-                    squares[t] += difference * difference;
-                }
+        std::vector<std::vector<PixelSums>> pixels(sets.size(), std::vector<PixelSums>(targets_.size()));
+        parallel_for(pixels.size(), [&](std::size_t p) {
+            for (int k = 0; k < sets[p]; ++k) {
+                Rng rng(Stream::Certificate, std::uint64_t(number + 1) << 32 | p, std::uint64_t(k) + 1);
+                const CellSum set = paths.trace_set(p, rng);
+                for (std::size_t t = 0; t < targets_.size(); ++t)
+                    pixels[p][t].add(images[t][p] - radiance_of(set, targets_[t]));
             }
-            for (std::size_t t = 0; t < targets_.size(); ++t)
-                found[d].push_back(drawn(images[t][draws[d].pixel], sum[t], squares[t], draws[d].weight));
         });
-        for (std::size_t t = 0; t < targets_.size(); ++t) {
-            CellSums& sums = sums_[t][number];
-            for (const dvec3& c : images[t]) {
-                sums.truth += sum_of(c);
-                sums.squared_truth += glm::dot(c, c);
-            }
-            for (const std::vector<CellSums>& draw : found)
-                sums += draw[t];
-        }
+        for (std::size_t p = 0; p < pixels.size(); ++p)
+            for (std::size_t t = 0; t < targets_.size(); ++t)
+                sums_[t][number] += pixels[p][t].of(images[t][p], sets[p]);
     }
 }
 

@@ -38,8 +38,9 @@ class CellSurvey {
 public:
     static constexpr int kSurveys = 8;
 
-    // `picture` has the beauty and a layer for each of `cells`. `samples`: the paths of one survey, spread over the
-    // pixels by what `picture` shows there. The same numbers for any number of threads.
+    // `picture` has the beauty and a layer for each of `cells`. `samples`: about as many paths as one survey
+    // traces, spread over the pixels by what `picture` shows there; a black pixel has a few. The same numbers for any
+    // number of threads.
     CellSurvey(const FrameInput& input, const Shot& shot, const Image& picture, std::vector<std::string> cells,
                int samples);
 
