@@ -300,9 +300,9 @@ TEST_P(MediaScenesByRayLights, AreWhatPathsSee) {
 const std::vector<std::string> kInside = {"camera.eye=[-1.5, -1.45, 1.3]", "camera.target=[0.3, 0.3, 0.9]",
                                           "camera.vertical_fov_degrees=60"};
 const MediaScene kByRayLights[] = {
-    {"cornell_fog", 0.0, "6"},          {"cornell_smoke", 0.0, "100"}, {"spot_over_floor", 0.0, "16"},
-    {"mirror_corridor", 0.0, "256"},    {"candle", 0.0, "1000"},       {"door_ajar", 0.0, "6"},
-    {"glass_room", 0.0, "100", kInside}};
+    {"cornell_fog", 0.0, "6"},         {"cornell_smoke", 0.0, "50"}, {"spot_over_floor", 0.0, "16"},
+    {"mirror_corridor", 0.0, "96"},    {"candle", 0.0, "400"},       {"door_ajar", 0.0, "6"},
+    {"glass_room", 0.0, "32", kInside}};
 
 const auto name = [](const auto& scene) { return std::string(scene.param.name); };
 INSTANTIATE_TEST_SUITE_P(Shots, MediaScenes, ::testing::ValuesIn(testing::media_scenes()), name);
