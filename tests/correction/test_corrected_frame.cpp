@@ -51,6 +51,7 @@ double certified(const RenderedFrame& frame) {
 TEST(CorrectedFrames, ErrLessWhenLessIsAskedFor) {
     Shot usual = shot_of(0.02f), fine = shot_of(0.01f);
     usual.certify.enabled = fine.certify.enabled = true;
+    usual.certify.samples = fine.certify.samples = 1 << 17;
     fine.certify.belief = 0.03;
     const RenderedFrame plain = render(usual), corrected = render(fine);
     EXPECT_EQ(samples_of(plain), 0.0);
