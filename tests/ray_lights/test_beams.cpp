@@ -115,7 +115,7 @@ TEST(Beams, ComeToWhatPathsFindAsTheyShrink) {
     const Stage stage(coloured_ball(8, kDepth, 0.3f), floor_below(0.7f));
     RayLightSettings settings;
     settings.paths = 600;
-    const Estimate paths = mean_by_paths(stage, 400);
+    const Estimate paths = mean_by_paths(stage, 150);
     double last = -1.0;
     for (const double radius : {0.2, 0.1, 0.05}) {
         settings.radius = radius;

@@ -32,7 +32,7 @@ Estimate mean_by_particles(const Stage& stage) {
         1);
 }
 
-void expect_as_paths(const Stage& stage, const char* what, std::uint64_t path_samples = 200) {
+void expect_as_paths(const Stage& stage, const char* what, std::uint64_t path_samples = kPathsOverFloor) {
     expect_same_means(mean_by_particles(stage), mean_by_paths(stage, path_samples), what, 0.05, kBlur);
 }
 

@@ -72,7 +72,7 @@ TEST(PointsAgainstPaths, AMirrorAbove) {
 TEST(PointsAgainstPaths, BouncesEndWhereTheyAreAskedTo) {
     for (const int bounces : {2, 3})
         expect_as_paths(Stage(coloured_ball(8, 2.0f, 0.0f), floor_below(0.7f), {lamp_beside()}, bounces),
-                        bounces == 2 ? "two bounces" : "three bounces", 200);
+                        bounces == 2 ? "two bounces" : "three bounces");
     const Stage once(coloured_ball(8, 2.0f, 0.0f), floor_below(0.7f), {lamp_beside()}, 1);
     const VolumetricVpls none(once.scene(), points(0.5, kExact), once.bounces(), {});
     EXPECT_TRUE(none.lights().empty());
