@@ -22,7 +22,7 @@ struct SingleScattering {
         return estimate_to(relative, 3, [&](const dvec3& u, Rng& rng, double* out) {
             PathSum sum{};
             PathStatistics statistics;
-            tracer.trace(stage.ray(rng), u.z, rng, sum, statistics);
+            tracer.trace(stage.ray(u.x, u.y), u.z, rng, sum, statistics);
             for (int c = 0; c < 3; ++c)
                 out[c] = sum.cells.at(Cell::MV)[c];
         });
@@ -30,8 +30,8 @@ struct SingleScattering {
 
     Estimate by_lights(const std::string& sampling, const FireLightSettings& settings, double relative) const {
         const SampledFire fire(stage.scene(), *find_fire_light_sampling(sampling), settings);
-        return estimate_to(relative, 3, [&](const dvec3&, Rng& rng, double* out) {
-            const Rgb light = along(fire, stage.ray(rng), rng);
+        return estimate_to(relative, 3, [&](const dvec3& u, Rng& rng, double* out) {
+            const Rgb light = along(fire, stage.ray(u.x, u.y), rng);
             for (int c = 0; c < 3; ++c)
                 out[c] = light[c];
         });
@@ -281,12 +281,13 @@ TEST(FireCuts, HaveTheRightMeanOverSeeds) {
                 s.lightcuts_most = 1;
                 s.seed = static_cast<std::uint32_t>(rng.next_double() * 0x1p31);
                 const SampledFire fire(scene.stage.scene(), *find_fire_light_sampling(sampling), s);
-                constexpr int kRays = 16;
+                constexpr int kAcross = 4;
                 std::fill(out, out + 3, 0.0);
-                for (int i = 0; i < kRays; ++i) {
-                    const Rgb light = scene.along(fire, scene.stage.ray(rng), rng);
+                for (int i = 0; i < kAcross * kAcross; ++i) {
+                    const double x = i % kAcross + rng.next_double(), y = i / kAcross + rng.next_double();
+                    const Rgb light = scene.along(fire, scene.stage.ray(x / kAcross, y / kAcross), rng);
                     for (int c = 0; c < 3; ++c)
-                        out[c] += light[c] / double(kRays);
+                        out[c] += light[c] / double(kAcross * kAcross);
                 }
             },
             20000);

@@ -32,7 +32,7 @@ Estimate apart_in_smoke(const LitSet& set, double relative) {
     of_fire.points = 1;
     const SampledFire fire(scene, *find_fire_light_sampling("stochastic_lightcuts"), of_fire);
     return estimate_to(relative, 3, [&](const dvec3& u, Rng& rng, double* out) {
-        const SeenSmoke smoke(scene, set.stage.ray(rng));
+        const SeenSmoke smoke(scene, set.stage.ray(u.y, u.z));
         std::vector<GatherPoint> points;
         if (!smoke.seen.empty())
             add_flight_ends(scene, smoke.seen, smoke.ray, 1, u.x, points);
@@ -45,8 +45,8 @@ Estimate apart_in_smoke(const LitSet& set, double relative) {
 }
 
 Estimate together_in_smoke(const LitSet& set, const UnifiedLights& unified, double relative) {
-    return estimate_to(relative, 3, [&](const dvec3&, Rng& rng, double* out) {
-        const SeenSmoke smoke(set.stage.scene(), set.stage.ray(rng));
+    return estimate_to(relative, 3, [&](const dvec3& u, Rng& rng, double* out) {
+        const SeenSmoke smoke(set.stage.scene(), set.stage.ray(u.y, u.z));
         const LightBySender light = unified.along(smoke.seen, smoke.ray, rng);
         out[0] = luminance(light.surfaces);
         out[1] = luminance(light.fire);
@@ -123,8 +123,8 @@ TEST(UnifiedSmoke, HasTheMeanOfOneKindAlone) {
     for (int kind = 0; kind < 3; ++kind) {
         const CellSet alone = {kind == 0 ? Cell::MS : kind == 1 ? Cell::MV : Cell::MA};
         const UnifiedLights unified = set.unified("stochastic_lightcuts", {}, alone);
-        const Estimate found = estimate_to(0.02, 1, [&](const dvec3&, Rng& rng, double* out) {
-            const SeenSmoke smoke(set.stage.scene(), set.stage.ray(rng));
+        const Estimate found = estimate_to(0.02, 1, [&](const dvec3& u, Rng& rng, double* out) {
+            const SeenSmoke smoke(set.stage.scene(), set.stage.ray(u.y, u.z));
             const LightBySender light = unified.along(smoke.seen, smoke.ray, rng);
             const Rgb of[] = {light.surfaces, light.fire, light.emitters};
             for (int other = 0; other < 3; ++other)
