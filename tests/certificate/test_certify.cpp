@@ -138,7 +138,7 @@ protected:
     }
 
     Truth traced_truth() const {
-        constexpr std::uint64_t samples = 1024;  // per pixel, in each half
+        constexpr std::uint64_t samples = 512;  // per pixel, in each half
         return {path_picture(tracer_, camera_, 0, 2 * samples, 2), path_picture(tracer_, camera_, 1, 2 * samples, 2)};
     }
 
