@@ -45,7 +45,7 @@ Medium mixed_medium() {
 Estimate look_by_orders(const TracingSettings& settings) {
     const Traced traced(mixed_medium(), settings);
     // The plain tracker's paths are fast and poor.
-    const std::uint64_t per_batch = settings.emission == EmissionEstimator::Collision ? 2000 : 250;
+    const std::uint64_t per_batch = settings.emission == EmissionEstimator::Collision ? 1000 : 125;
     return estimate(kPathOrders + 3, per_batch, [&](const dvec3& u, Rng& rng, double* out) {
         PathSum sum{};
         PathStatistics statistics;
