@@ -11,12 +11,13 @@ namespace {
 
 using namespace testing;
 
-constexpr int kPointsToASet = 64;
+constexpr int kPointsAcross = 6;  // to a set, one in each cell of a grid
 constexpr int kPoints = 4;
 
-SurfacePoint on_metal(Rng& rng, float roughness, const dvec3& normal = {0.0, 0.0, 1.0}) {
+// `x` and `y` in [0, 1): where.
+SurfacePoint on_metal(double x, double y, float roughness, const dvec3& normal = {0.0, 0.0, 1.0}) {
     SurfacePoint p;
-    p.position = {rng.next_double() - 0.5, rng.next_double() - 2.0, -1.3};
+    p.position = {x - 0.5, y - 2.0, -1.3};
     p.geometric_normal = {0.0, 0.0, 1.0};
     p.frame = frame_around(normal);
     p.material.metallic = 1.0f;
@@ -55,10 +56,13 @@ Shared expect_same(const Stage& stage, RayLightSettings settings, float roughnes
         settings.seed = static_cast<std::uint32_t>(rng.next_double() * 0x1p32);
         const RayLights lights = stage.lights(settings, 16, settings.seed);
         std::fill(out, out + 3, 0.0);
-        for (int i = 0; i < kPointsToASet; ++i)
-            for (int k = 0; k < 3; ++k)
+        for (int i = 0; i < kPointsAcross * kPointsAcross; ++i)
+            for (int k = 0; k < 3; ++k) {
+                const double x = i % kPointsAcross + rng.next_double(), y = i / kPointsAcross + rng.next_double();
+                const SurfacePoint point = on_metal(x / kPointsAcross, y / kPointsAcross, roughness, normal);
                 out[k] +=
-                    reflected(stage.scene(), lights, on_metal(rng, roughness, normal), kSplits[k], rng) / kPointsToASet;
+                    reflected(stage.scene(), lights, point, kSplits[k], rng) / double(kPointsAcross * kPointsAcross);
+            }
     });
     std::printf("roughness %g: by rays %.4g +- %.2g %%, by points %.4g +- %.2g %%, by both %.4g +- %.2g %%\n",
                 roughness, e.mean[0], 100.0 * e.error[0] / e.mean[0], e.mean[1], 100.0 * e.error[1] / e.mean[1],
@@ -89,7 +93,8 @@ TEST(GlossSplit, HoldsForBentNormalsAndLongLights) {
 TEST(GlossSplit, PartsOfADirectionAddUp) {
     Rng rng(Stream::Points, 9);
     for (const float roughness : {0.1f, 0.5f, 1.0f}) {
-        const SurfacePoint point = on_metal(rng, roughness);
+        const double x = rng.next_double(), y = rng.next_double();
+        const SurfacePoint point = on_metal(x, y, roughness);
         const Bsdf gloss(point.material, point.frame, Lobes::Specular);
         const dvec3 viewer = glm::normalize(dvec3(0.4, -1.0, 0.8));
         const GlossSplit split(point, gloss, viewer, kPoints);
