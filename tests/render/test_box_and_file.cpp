@@ -71,7 +71,6 @@ TEST(BoxAndFile, AroundAFireAreTheSame) {
 // The lamp stands beside the haze: within it, its light is finer than voxels.
 Shot lamp_beside_haze(float mean_cosine) {
     Shot shot = fire_in_haze().shot;
-    shot.camera.samples_per_axis = 9;  // MA of boxes is sampled along them, with noise of 2 % at 3
     shot.medium.fire.model = FireModel::None;
     shot.medium.smoke.mean_cosine = mean_cosine;
     LightSettings lamp;
