@@ -21,6 +21,9 @@ const Medium& thin_smoke() {
     return thin;
 }
 
+// Paths of a pixel: the mean of all is known well by few of them, its pixels are not.
+constexpr int kPathsForMean = 64, kPathsForPixels = 200;
+
 // A floor and a wall that hides a part of the sky from it. `sun`: besides, from the side; its disc is 2 degrees wide.
 Surroundings yard(bool sky, bool sun) {
     Scene scene;
@@ -42,7 +45,7 @@ Surroundings yard(bool sky, bool sun) {
 }
 
 Image picture(const Surroundings& set, double radius, RenderMethod method = RenderMethod::LightingGrid,
-              std::uint32_t seed = 0) {
+              std::uint32_t seed = 0, int paths = kPathsForPixels) {
     Shot shot;
     shot.method = method;
     shot.virtual_lights.seed = seed;
@@ -53,7 +56,7 @@ Image picture(const Surroundings& set, double radius, RenderMethod method = Rend
     shot.camera.width = 48;
     shot.camera.height = 36;
     shot.camera.samples_per_axis = 4;
-    shot.tracing.samples = 400;
+    shot.tracing.samples = paths;
     shot.certify.belief = 0.0;  // nobody looks at it
     shot.virtual_lights.count = 500;
     shot.virtual_lights.photons = 50000;
@@ -79,7 +82,7 @@ Compared compare(const Image& ours, const Image& truth) {
 
 TEST(SharedSky, HasTheEnergyOfPathsAndLessNoiseThanPixelsAlone) {
     const Surroundings set = yard(true, false);
-    const Image truth = picture(set, 0.0, RenderMethod::Path);
+    const Image truth = picture(set, 0.0, RenderMethod::Path, 0, kPathsForMean);
     double noise[2];
     for (const double radius : {0.0, 0.2}) {
         const Image one = picture(set, radius), other = picture(set, radius, RenderMethod::LightingGrid, 1);
