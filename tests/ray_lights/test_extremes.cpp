@@ -238,7 +238,7 @@ Recipe no_fire(Recipe recipe) {
 
 TEST(Extremes, ALampOutsideTheSmoke) {
     const Stage stage(no_fire(lumpy_ball(8, 3.0f, 0.0f)), floor_below(0.7f), {lamp({3.0, 2.0, 4.0}, 300.0f)});
-    expect_same_light(stage, of_paths(2000), "lamp outside", mean_by_paths(stage, 150));
+    expect_same_light(stage, of_paths(2000), "lamp outside", mean_by_paths(stage, kPathsOverFloor));
 }
 
 // Haze in which camera, lamp and walls stand.
