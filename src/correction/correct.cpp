@@ -36,12 +36,13 @@ double square_of(const EstimatedLayer& layer, std::size_t pixels) {
     return sum;
 }
 
-// The root of a layer's luminance; 0 where there is none, or none that is known.
+// Between even and the layer's luminance: errors are neither the same in the dark as in the light, nor in proportion to
+// it. 0 where there is no light, or none that is known.
 std::vector<float> weights_of(const EstimatedLayer& layer, std::size_t pixels) {
     std::vector<float> out(pixels, 0.0f);
     for (std::size_t p = 0; p < pixels; ++p)
         if (const float shown = luminance(Rgb(layer.pixel(p))); std::isfinite(shown) && shown > 0.0f)
-            out[p] = std::sqrt(shown);
+            out[p] = std::pow(shown, 0.75f);
     return out;
 }
 
@@ -108,8 +109,8 @@ CertifiedError CorrectedLayer::before() const {
     out.cell = name;
     double residual = 0.0, variance = 0.0;
     for (const ResidualBand& band : bands) {
-        residual += band.residual;
-        variance += band.variance;
+        residual += band.residual();
+        variance += band.variance();
     }
     if (!(square > 0.0))
         return out;
@@ -123,10 +124,10 @@ CertifiedError CorrectedLayer::before() const {
 double CorrectedLayer::left(double samples) const {
     double all = 0.0, left = 0.0;
     for (const ResidualBand& band : bands) {
-        all += std::max(band.residual, 0.0);
+        all += band.believed();
         left += band.left(samples);
     }
-    return all > 0.0 ? std::sqrt(left / all) : 1.0;
+    return all > 0.0 ? std::sqrt(std::min(left / all, 1.0)) : 1.0;
 }
 
 const CorrectedLayer* Correction::of(const std::string& cell) const {

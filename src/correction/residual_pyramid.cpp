@@ -15,6 +15,12 @@ namespace {
 // The coarsest level has fewer rows or columns than this: nothing is left to blur.
 constexpr int kCoarsest = 4;
 
+// Octaves of the weight's square that are told apart, below the largest.
+constexpr std::size_t kOctaves = 16;
+
+// A residual is known as far as it exceeds so many standard deviations.
+constexpr double kDeviations = 2.0;
+
 template <class T>
 struct Plane {
     int width = 0, height = 0;
@@ -96,27 +102,48 @@ void divide_by_weight(Level& level) {
         });
 }
 
-// A pixel of a level stands for so many of the finest. Summed in a fixed order.
+// Between which octaves of its band's weight a pixel stands.
+class Octaves {
+public:
+    explicit Octaves(const Level& band) : largest_(*std::ranges::max_element(band.square.values)) {}
+    // The first of two, and the share of the second.
+    std::pair<std::size_t, float> of(float square) const {
+        const float octave = square > 0.0f ? std::log2(largest_ / square) : float(kOctaves);
+        const float at = std::min(octave, float(kOctaves) - 1.001f);
+        const auto first = static_cast<std::size_t>(at);
+        return {first, at - float(first)};
+    }
+
+private:
+    float largest_;
+};
+
+// Of one of the band's pixels, which stands for `pixels` of the finest level.
+ResidualEnergy energy_at(const Level& band, int x, int y, double pixels) {
+    const Rgb &a = band.estimates[0].row(y)[x], &b = band.estimates[1].row(y)[x];
+    const Rgb half = 0.5f * (a - b);
+    const double square = band.square.row(y)[x], noise = pixels * square * glm::dot(half, half);
+    // Of noise with a variance s of each estimate, a b has the variance s^2, and (a - b)^4 / 16 the mean 3 s^2 / 4.
+    return {pixels * square * glm::dot(a, b), noise, 4.0 / 3.0 * noise * noise, pixels * square};
+}
+
+// Summed in a fixed order.
 ResidualBand energy_of(const Level& band, double pixels) {
-    std::vector<ResidualBand> rows(std::size_t(band.square.height));
+    const std::vector<ResidualEnergy> none(kOctaves);
+    std::vector<std::vector<ResidualEnergy>> rows(std::size_t(band.square.height), none);
+    const Octaves octaves(band);
     for_rows(band.square.height, [&](int y) {
         for (int x = 0; x < band.square.width; ++x) {
-            const Rgb &a = band.estimates[0].row(y)[x], &b = band.estimates[1].row(y)[x];
-            const Rgb noise = 0.5f * (a - b);
-            const double own = double(band.square.row(y)[x]) * glm::dot(noise, noise);
-            rows[std::size_t(y)].residual += double(band.square.row(y)[x]) * glm::dot(a, b);
-            rows[std::size_t(y)].noise += own;
-            // Of noise with a variance s of each estimate, a b has the variance s^2, and (a - b)^4 / 16 the mean
-            // 3 s^2 / 4.
-            rows[std::size_t(y)].variance += 4.0 / 3.0 * own * own;
+            const ResidualEnergy energy = energy_at(band, x, y, pixels);
+            const auto [first, second] = octaves.of(band.square.row(y)[x]);
+            rows[std::size_t(y)][first].add(energy, 1.0 - second);
+            rows[std::size_t(y)][first + 1].add(energy, second);
         }
     });
-    ResidualBand sum;
-    for (const ResidualBand& row : rows) {
-        sum.residual += pixels * row.residual;
-        sum.noise += pixels * row.noise;
-        sum.variance += pixels * pixels * row.variance;
-    }
+    ResidualBand sum{none};
+    for (const std::vector<ResidualEnergy>& row : rows)
+        for (std::size_t k = 0; k < row.size(); ++k)
+            sum.octaves[k].add(row[k], 1.0);
     return sum;
 }
 
@@ -132,27 +159,22 @@ void subtract(Level& level, const Level& coarser) {
     }
 }
 
-// The error of the picture in a band, relative to its light there, if pixels err alike.
-double relative_error(const Level& band, const ResidualBand& energy, double pixels) {
-    std::vector<double> rows(std::size_t(band.square.height), 0.0);
-    for_rows(band.square.height, [&](int y) {
-        for (int x = 0; x < band.square.width; ++x)
-            rows[std::size_t(y)] += double(band.square.row(y)[x]) * band.square.row(y)[x];
-    });
-    const double light = pixels * std::accumulate(rows.begin(), rows.end(), 0.0);
-    return light > 0.0 ? std::sqrt(std::max(energy.residual, 0.0) / light) : 0.0;
-}
-
-// Samples have heavy tails: one bright path would leave a grain where the picture is dark. A pixel of a band is
-// therefore taken to err by no more than a few times what all do, the less so the better the band is known.
-void add_band(Plane<Rgb>& sum, const Level& band, const ResidualBand& energy, double pixels) {
+void add_band(Plane<Rgb>& sum, const Level& band, const ResidualBand& energy) {
     constexpr double kMost = 4.0;
-    const double gain = energy.gain(), most = kMost * relative_error(band, energy, pixels) / (1.0 - gain);
+    std::vector<float> gains, limits;
+    for (const ResidualEnergy& octave : energy.octaves) {
+        gains.push_back(float(octave.gain()));
+        limits.push_back(float(kMost * octave.relative() / (1.0 - octave.gain())));
+    }
+    const Octaves octaves(band);
     for_rows(sum.height, [&](int y) {
         for (int x = 0; x < sum.width; ++x) {
-            const float weight = band.weight.row(y)[x];
-            const Rgb known = 0.5f * float(gain) * (band.estimates[0].row(y)[x] + band.estimates[1].row(y)[x]);
-            const float limit = weight > 0.0f ? float(most) * band.square.row(y)[x] / weight : 0.0f;
+            const auto [first, second] = octaves.of(band.square.row(y)[x]);
+            const auto between = [&](const std::vector<float>& values) {
+                return (1.0f - second) * values[first] + second * values[first + 1];
+            };
+            const Rgb known = 0.5f * between(gains) * (band.estimates[0].row(y)[x] + band.estimates[1].row(y)[x]);
+            const float limit = between(limits);
             const float length = glm::length(known);
             sum.row(y)[x] += length > limit ? known * (limit / length) : known;
         }
@@ -176,14 +198,65 @@ std::vector<Level> pyramid(NoisyResidual residual) {
     return levels;
 }
 
+// What is left of a sum if so many of its standard deviations may be chance.
+double shrunk(double sum, double variance, double deviations) {
+    return sum > 0.0 ? std::max(sum - deviations * deviations * variance / sum, 0.0) : 0.0;
+}
+
 }  // namespace
 
-double ResidualBand::gain() const {
-    return residual > 0.0 ? residual / (residual + noise) : 0.0;
+void ResidualEnergy::add(const ResidualEnergy& other, double share) {
+    residual += share * other.residual;
+    noise += share * other.noise;
+    variance += share * other.variance;
+    weight += share * other.weight;
+}
+
+double ResidualEnergy::known(double samples) const {
+    return shrunk(residual, variance / (samples * samples), kDeviations);
+}
+
+double ResidualEnergy::gain(double samples) const {
+    const double sure = known(samples);
+    return sure > 0.0 ? samples * sure / (samples * sure + noise) : 0.0;
+}
+
+double ResidualEnergy::relative() const {
+    return weight > 0.0 ? std::sqrt(known() / weight) : 0.0;
+}
+
+double ResidualBand::residual() const {
+    double sum = 0.0;
+    for (const ResidualEnergy& octave : octaves)
+        sum += octave.residual;
+    return sum;
+}
+
+double ResidualBand::variance() const {
+    double sum = 0.0;
+    for (const ResidualEnergy& octave : octaves)
+        sum += octave.variance;
+    return sum;
 }
 
 double ResidualBand::left(double samples) const {
-    return residual > 0.0 ? residual * noise / (samples * residual + noise) : 0.0;
+    double left = 0.0, variance = 0.0, noise = 0.0;
+    for (const ResidualEnergy& octave : octaves) {
+        const double gain = octave.gain(samples), square = (1.0 - gain) * (1.0 - gain);
+        left += square * octave.residual;
+        variance += square * square * octave.variance;
+        noise += gain * gain * octave.noise / samples;
+    }
+    return shrunk(left, variance, 1.0) + noise;
+}
+
+double ResidualBand::believed() const {
+    return shrunk(residual(), variance(), 1.0);
+}
+
+double ResidualBand::gain() const {
+    const double all = believed();
+    return all > 0.0 ? std::clamp(1.0 - left() / all, 0.0, 1.0) : 0.0;
 }
 
 SmoothResidual smooth_residual(NoisyResidual residual) {
@@ -197,11 +270,9 @@ SmoothResidual smooth_residual(NoisyResidual residual) {
     }
     Plane<Rgb> sum(levels.back().weight.width, levels.back().weight.height);
     for (std::size_t k = levels.size(); k-- > 0;) {
-        const Plane<float>& weight = levels[k].weight;
         if (k + 1 < levels.size())
-            sum = expanded(sum, weight.width, weight.height);
-        pixels /= 4.0;
-        add_band(sum, levels[k], out.bands[k], pixels);
+            sum = expanded(sum, levels[k].weight.width, levels[k].weight.height);
+        add_band(sum, levels[k], out.bands[k]);
     }
     out.values = std::move(sum.values);
     for (std::size_t p = 0; p < out.values.size(); ++p)

@@ -4,11 +4,16 @@
 // from single pixels to the whole (P. Burt, E. Adelson, The Laplacian Pyramid as a Compact Image Code, 1983). In each
 // band the product of both estimates has the mean of the residual's own square, since independent noise cancels, and
 // the square of their mean has that of residual and noise together. Their quotient is the gain that leaves the least
-// square error, Wiener's: bands that are noise vanish, and bands that are known stay. There is one gain for a band, so
-// that few numbers are learned from many pixels, and gains change continuously with the samples.
+// square error, Wiener's: bands that are noise vanish, and bands that are known stay. Gains are learned apart for each
+// octave of light, below the brightest: what samples tell of a bright fire says nothing of a dim floor beside it, where
+// they are rare and each is many times as bright as the light. There is no other difference between pixels, so that few
+// numbers are learned from many of them, and gains change continuously with the samples.
 //
-// Samples of paths have heavy tails. Where a band is noisy, no pixel of it moves by more than four times the error that
-// all have relative to their light, which leaves no grains.
+// By chance the residual of pure noise seems to be more than nothing half of the time, and where noise is many times
+// the light, even a small gain shows as blotches. What lies below two standard deviations therefore counts as noise,
+// and what lies above counts less (as W. James and C. Stein shrink means, 1961). Samples of paths have heavy tails
+// besides: no pixel moves by more than four times the root mean square of the residual of those like it, which leaves
+// no grains.
 //
 // Blurs are weighted, so that light does not spread to where the weight is 0, such as the black around smoke.
 #pragma once
@@ -26,14 +31,31 @@ struct NoisyResidual {
     std::vector<float> weight;      // not negative; the residual is assumed to be alike relative to it
 };
 
-// Sums over all pixels of the squares of the residual and of its noise, in the mean of both estimates.
+// Sums over pixels of a band.
+struct ResidualEnergy {
+    double residual = 0.0;  // the residual's square; may fall below 0 by chance
+    double noise = 0.0;     // that of the noise in the mean of both estimates
+    double variance = 0.0;  // of `residual`
+    double weight = 0.0;    // the weight's square
+
+    void add(const ResidualEnergy& other, double share);
+    // As if there were so many times the samples: the part of the residual's square that is hardly chance, and the gain
+    // of least square error, from 0 to 1.
+    double known(double samples = 1.0) const;
+    double gain(double samples = 1.0) const;
+    // The root of the former, over that of the weight's square.
+    double relative() const;
+};
+
 struct ResidualBand {
-    double residual = 0.0, noise = 0.0;  // the former may fall below 0 by chance
-    double variance = 0.0;               // of the former
-    // Of least square error, from 0 to 1.
+    std::vector<ResidualEnergy> octaves;  // of the weight's square, the largest first
+    double residual() const;
+    double variance() const;
+    // The residual's square, as it is likely to be, and what gains would leave of it with so many times the samples.
+    double believed() const;
+    double left(double samples = 1.0) const;
+    // The part that they take away.
     double gain() const;
-    // What it leaves of the residual's square, if there were so many times the samples.
-    double left(double samples) const;
 };
 
 struct SmoothResidual {

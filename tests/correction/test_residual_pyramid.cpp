@@ -93,12 +93,21 @@ TEST(ResidualPyramid, ScalesWithTheWeight) {
 }
 
 TEST(ResidualPyramid, MoreSamplesLeaveLess) {
-    const ResidualBand band{2.0, 3.0};
+    const ResidualBand band{{{2.0, 3.0}}};
     EXPECT_NEAR(band.gain(), 0.4, 1e-12);
-    EXPECT_NEAR(band.left(1.0), 2.0 * 0.6, 1e-12);  // Wiener: residual (1 - gain)
+    EXPECT_NEAR(band.left(), 2.0 * 0.6, 1e-12);  // Wiener: residual (1 - gain)
     EXPECT_NEAR(band.left(3.0), 2.0 * 1.0 / 3.0, 1e-12);
-    EXPECT_EQ((ResidualBand{-1.0, 3.0}).gain(), 0.0);
-    EXPECT_EQ((ResidualBand{-1.0, 3.0}).left(1.0), 0.0);
+    EXPECT_EQ((ResidualBand{{{-1.0, 3.0}}}).gain(), 0.0);
+    EXPECT_EQ((ResidualBand{{{-1.0, 3.0}}}).left(), 0.0);
+}
+
+// What may be chance does not move the picture, and more samples may tell.
+TEST(ResidualPyramid, TakesNoChanceForAResidual) {
+    const ResidualEnergy chance{2.0, 3.0, 1.1}, known{2.0, 3.0, 0.2};
+    EXPECT_EQ(chance.gain(), 0.0);  // less than two standard deviations
+    EXPECT_GT(chance.gain(2.0), 0.0);
+    EXPECT_NEAR(known.known(), 2.0 - 4.0 * 0.2 / 2.0, 1e-12);
+    EXPECT_NEAR(known.gain(), 1.6 / 4.6, 1e-12);
 }
 
 // Small pictures have few levels or one.
@@ -128,6 +137,32 @@ TEST(ResidualPyramid, LeavesNoGrainsInTheDark) {
     const SmoothResidual smooth = smooth_residual(grain);
     EXPECT_GT(smooth.bands[0].gain(), 0.2);
     EXPECT_LT(glm::length(smooth.values[at]), 0.03f);  // it would be 0.2
+}
+
+// A dim floor beside a fire: samples tell every pixel of the fire and nothing of the floor, and leave it as it is.
+TEST(ResidualPyramid, LeavesADimFloorBesideAFire) {
+    constexpr float kDim = 0.01f;
+    NoisyResidual picture{kWidth, kHeight, {}, std::vector<float>(kPixels, 1.0f)};
+    const auto dim = [](std::size_t p) { return p / kWidth >= kHeight / 2; };
+    for (std::size_t p = 0; p < kPixels; ++p) {
+        if (dim(p))
+            picture.weight[p] = kDim;
+        for (int k = 0; k < 2; ++k) {
+            // Of the floor's light, a twentieth of the samples have all.
+            const double of_fire = 0.1 * noise(2, p) + 0.05 * noise(k, p),
+                         of_floor = kDim * (noise(k, p) > 0.9 * std::sqrt(3.0) ? 19.0 : -1.0);
+            picture.estimates[k].push_back(Rgb(float(dim(p) ? of_floor : of_fire)));
+        }
+    }
+    const SmoothResidual smooth = smooth_residual(picture);
+    double fire = 0.0, floor = 0.0;
+    for (std::size_t p = 0; p < kPixels; ++p)
+        if (dim(p))
+            floor += std::pow(smooth.values[p].x / kDim, 2) / (kPixels / 2);
+        else
+            fire += std::pow(smooth.values[p].x - 0.1 * noise(2, p), 2) / (kPixels / 2);
+    EXPECT_LT(std::sqrt(fire), 0.05);   // half of its error
+    EXPECT_LT(std::sqrt(floor), 0.05);  // one gain for all leaves 1.1
 }
 
 }  // namespace
