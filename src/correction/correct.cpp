@@ -124,7 +124,7 @@ CertifiedError CorrectedLayer::before() const {
 double CorrectedLayer::left(double samples) const {
     double all = 0.0, left = 0.0;
     for (const ResidualBand& band : bands) {
-        all += band.believed();
+        all += std::max(band.residual(), 0.0);
         left += band.left(samples);
     }
     return all > 0.0 ? std::sqrt(std::min(left / all, 1.0)) : 1.0;

@@ -198,11 +198,6 @@ std::vector<Level> pyramid(NoisyResidual residual) {
     return levels;
 }
 
-// What is left of a sum if so many of its standard deviations may be chance.
-double shrunk(double sum, double variance, double deviations) {
-    return sum > 0.0 ? std::max(sum - deviations * deviations * variance / sum, 0.0) : 0.0;
-}
-
 }  // namespace
 
 void ResidualEnergy::add(const ResidualEnergy& other, double share) {
@@ -213,7 +208,8 @@ void ResidualEnergy::add(const ResidualEnergy& other, double share) {
 }
 
 double ResidualEnergy::known(double samples) const {
-    return shrunk(residual, variance / (samples * samples), kDeviations);
+    const double chance = kDeviations * kDeviations * variance / (samples * samples);
+    return residual > 0.0 ? std::max(residual - chance / residual, 0.0) : 0.0;
 }
 
 double ResidualEnergy::gain(double samples) const {
@@ -240,22 +236,17 @@ double ResidualBand::variance() const {
 }
 
 double ResidualBand::left(double samples) const {
-    double left = 0.0, variance = 0.0, noise = 0.0;
+    double left = 0.0, noise = 0.0;
     for (const ResidualEnergy& octave : octaves) {
-        const double gain = octave.gain(samples), square = (1.0 - gain) * (1.0 - gain);
-        left += square * octave.residual;
-        variance += square * square * octave.variance;
+        const double gain = octave.gain(samples);
+        left += (1.0 - gain) * (1.0 - gain) * octave.residual;
         noise += gain * gain * octave.noise / samples;
     }
-    return shrunk(left, variance, 1.0) + noise;
-}
-
-double ResidualBand::believed() const {
-    return shrunk(residual(), variance(), 1.0);
+    return std::max(left, 0.0) + noise;
 }
 
 double ResidualBand::gain() const {
-    const double all = believed();
+    const double all = residual();
     return all > 0.0 ? std::clamp(1.0 - left() / all, 0.0, 1.0) : 0.0;
 }
 

@@ -51,8 +51,7 @@ struct ResidualBand {
     std::vector<ResidualEnergy> octaves;  // of the weight's square, the largest first
     double residual() const;
     double variance() const;
-    // The residual's square, as it is likely to be, and what gains would leave of it with so many times the samples.
-    double believed() const;
+    // What gains would leave of the former with so many times the samples, noise included.
     double left(double samples = 1.0) const;
     // The part that they take away.
     double gain() const;

@@ -17,7 +17,8 @@ constexpr std::size_t kPilot = 512;
 constexpr double kFewest = 4096.0, kMost = double(1 << 28);
 
 bool is_automatic(const Shot& shot, const Plan& plan) {
-    return shot.correction.samples == kAutomaticCorrection && grid_is_forecast(plan) && plan.single;
+    const bool scatters = plan.needs(Cell::MV) || plan.needs(Cell::MA) || plan.needs(Cell::SV) || plan.needs(Cell::SS);
+    return shot.correction.samples == kAutomaticCorrection && grid_is_estimated(plan) && scatters;
 }
 
 double part_of_share(const Shot& shot, const Plan& plan) {
@@ -52,10 +53,10 @@ double corrected_seconds(const Shot& shot, const CountedMedium& counted, const P
 }
 
 std::size_t samples_of_share(double share, const Shot& shot, const CountedMedium& counted, const Plan& plan,
-                             const Camera& camera) {
+                             const Camera& camera, const Surroundings* surroundings) {
     if (!(share > 0.0))
         return 0;
-    const PathTracer tracer(counted.medium, shot.tracing, shot.scattering.bounces, nullptr);
+    const PathTracer tracer(counted.medium, shot.tracing, shot.scattering.bounces, surroundings);
     const PathPilot pilot = trace_pilot(tracer, camera, kPilot);
     const double seconds = share * grid_seconds(shot, counted, plan, camera.settings()) -
                            tracer_seconds(counted.medium) - pilot_seconds(pilot, kPilot);

@@ -4,8 +4,8 @@
 // of it stays. Samples of what the picture misses are cheaper there. With correction.samples=auto the lights are
 // therefore built for an error of 0.02, or for twice that which is asked where that is less, and samples follow until
 // the picture is expected to err as little as is asked. They may take up to three times as long as the picture; between
-// 0.02 and 0.015 that share falls to nothing. Only frames that are forecast (grid_is_forecast()) are corrected so: of
-// others it is not known whether samples would tell anything.
+// 0.02 and 0.015 that share falls to nothing. Only frames whose time is known within a factor of three
+// (grid_is_estimated()) are corrected so: of others it is not known whether samples would tell anything.
 #pragma once
 
 #include <cstddef>
@@ -30,6 +30,6 @@ double corrected_seconds(const Shot& shot, const CountedMedium& counted, const P
 
 // Samples that take so many times the forecast seconds of the picture. `shot`: that of the lights.
 std::size_t samples_of_share(double share, const Shot& shot, const CountedMedium& counted, const Plan& plan,
-                             const Camera& camera);
+                             const Camera& camera, const Surroundings* surroundings);
 
 }  // namespace brisance

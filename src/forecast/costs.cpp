@@ -124,7 +124,11 @@ double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& 
 }
 
 bool grid_is_forecast(const Plan& plan) {
-    return !has_set(plan) && !plan.scattering_method && !plan.fire_sampling && !plan.unified_sampling;
+    return grid_is_estimated(plan) && !has_set(plan);
+}
+
+bool grid_is_estimated(const Plan& plan) {
+    return !plan.scattering_method && !plan.fire_sampling && !plan.unified_sampling;
 }
 
 double tracer_seconds(const Medium& medium) {

@@ -30,6 +30,8 @@ double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& 
 
 // Whether that is known for pictures of the plan: not with surfaces, lamps and methods other than the hierarchy's.
 bool grid_is_forecast(const Plan& plan);
+// Whether it is known within a factor of two to three: with surfaces and lamps, too.
+bool grid_is_estimated(const Plan& plan);
 
 // Set-up of the path tracer.
 double tracer_seconds(const Medium& medium);

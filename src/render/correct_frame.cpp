@@ -60,8 +60,9 @@ void sample(Corrector& corrector, const RenderedFrame& frame, const DrawInput& i
         return;
     }
     const Shot solved = as_solved(input.shot, frame.statistics);
-    const std::size_t most = samples_of_share(most_of_correction(asked, input.plan), solved,
-                                              CountedMedium(input.medium), input.plan, input.camera);
+    const std::size_t most =
+        samples_of_share(most_of_correction(asked, input.plan), solved, CountedMedium(input.medium), input.plan,
+                         input.camera, input.surroundings);
     const auto first = static_cast<std::size_t>(kFirst * double(most));
     if (first == 0)
         return;

@@ -1,4 +1,4 @@
-// Frames that are asked for less than the lighting grid reaches are corrected, and no others.
+// Frames that are asked for less than the lighting grid reaches are corrected, with a set or without, and no others.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,6 +29,7 @@ Shot shot_of(float error) {
     shot.camera.width = shot.camera.height = 64;
     shot.lighting.error = error;
     shot.certify.belief = 0.0;
+    shot.certify.samples = 1 << 17;
     return shot;
 }
 
@@ -51,7 +52,6 @@ double certified(const RenderedFrame& frame) {
 TEST(CorrectedFrames, ErrLessWhenLessIsAskedFor) {
     Shot usual = shot_of(0.02f), fine = shot_of(0.01f);
     usual.certify.enabled = fine.certify.enabled = true;
-    usual.certify.samples = fine.certify.samples = 1 << 17;
     fine.certify.belief = 0.03;
     const RenderedFrame plain = render(usual), corrected = render(fine);
     EXPECT_EQ(samples_of(plain), 0.0);
@@ -112,15 +112,25 @@ TEST(CorrectedFrames, KeepTheSumsOfBounces) {
     }
 }
 
-// Of sets it is not known beforehand whether samples tell anything: they are asked for, or there are none.
-TEST(CorrectedFrames, OfSetsAreCorrectedOnRequest) {
+// A floor under the ball.
+Surroundings floor_under() {
     Scene scene;
     add_quad(scene, {-4, -4, -1.1f}, {8, 0, 0}, {0, 8, 0}, lambert(0.7f));
-    const Surroundings set(std::move(scene), {});
-    Shot shot = shot_of(0.015f);
+    return Surroundings(std::move(scene), {});
+}
+
+Shot shot_over_floor(float error) {
+    Shot shot = shot_of(error);
     shot.camera.width = shot.camera.height = 32;
     shot.virtual_lights.count = 200;
     shot.virtual_lights.photons = 20000;
+    return shot;
+}
+
+// Of sets, too: every cell by its own light.
+TEST(CorrectedFrames, OfSetsStillAddUp) {
+    const Surroundings set = floor_under();
+    Shot shot = shot_over_floor(0.02f);
     EXPECT_EQ(samples_of(render(shot, &set)), 0.0);
     shot.correction.samples = 5000;
     const RenderedFrame frame = render(shot, &set);
@@ -131,6 +141,17 @@ TEST(CorrectedFrames, OfSetsAreCorrectedOnRequest) {
             sum += frame.image.layer(cell).pixels[3 * p];
         EXPECT_NEAR(frame.image.layer("").pixels[4 * p], sum, 1e-4 * (1.0 + sum));
     }
+}
+
+TEST(CorrectedFrames, OfSetsErrLessWhenLessIsAskedFor) {
+    const Surroundings set = floor_under();
+    Shot usual = shot_over_floor(0.02f), fine = shot_over_floor(0.018f);
+    usual.certify.enabled = fine.certify.enabled = true;
+    const RenderedFrame plain = render(usual, &set), corrected = render(fine, &set);
+    EXPECT_EQ(samples_of(plain), 0.0);
+    EXPECT_GT(samples_of(corrected), 4096.0);
+    std::printf("certified: %.4f, corrected %.4f\n", certified(plain), certified(corrected));
+    EXPECT_LT(certified(corrected), 0.7 * certified(plain));
 }
 
 }  // namespace

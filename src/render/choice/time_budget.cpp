@@ -73,7 +73,7 @@ Option grid_option(const Timing& t, const Plan& plan) {
     out.shot.method = RenderMethod::LightingGrid;
     if (t.shot.correction.samples == kAutomaticCorrection)
         out.shot.correction.samples =
-            static_cast<int>(samples_of_share(share, out.shot, counted, plan, Camera(t.camera, t.medium)));
+            static_cast<int>(samples_of_share(share, out.shot, counted, plan, Camera(t.camera, t.medium), nullptr));
     out.error = expected_error({out.shot, t.medium, plan}).error * std::pow(1.0 + share, -kCorrected);
     out.text = fmt::format(
         "the lighting grid with lighting.error={:.3g}, lighting.alpha={:.2g} and {}correction", out.shot.lighting.error,
