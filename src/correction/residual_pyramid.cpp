@@ -159,6 +159,8 @@ void subtract(Level& level, const Level& coarser) {
     }
 }
 
+// Samples have heavy tails: one bright path would leave a grain. A pixel is therefore taken to err by no more than a
+// few times what those of its octave do, the less so the better they are known.
 void add_band(Plane<Rgb>& sum, const Level& band, const ResidualBand& energy) {
     constexpr double kMost = 4.0;
     std::vector<float> gains, limits;

@@ -5,9 +5,9 @@
 // band the product of both estimates has the mean of the residual's own square, since independent noise cancels, and
 // the square of their mean has that of residual and noise together. Their quotient is the gain that leaves the least
 // square error, Wiener's: bands that are noise vanish, and bands that are known stay. Gains are learned apart for each
-// octave of light, below the brightest: what samples tell of a bright fire says nothing of a dim floor beside it, where
-// they are rare and each is many times as bright as the light. There is no other difference between pixels, so that few
-// numbers are learned from many of them, and gains change continuously with the samples.
+// octave of the weight, which follows the light: what samples tell of a bright fire says nothing of a dim floor beside
+// it, where they are rare and each is many times as bright as the light. There is no other difference between pixels,
+// so that few numbers are learned from many of them, and gains change continuously with the samples.
 //
 // By chance the residual of pure noise seems to be more than nothing half of the time, and where noise is many times
 // the light, even a small gain shows as blotches. What lies below two standard deviations therefore counts as noise,
