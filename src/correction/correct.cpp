@@ -109,8 +109,9 @@ CertifiedError CorrectedLayer::before() const {
     out.cell = name;
     double residual = 0.0, variance = 0.0;
     for (const ResidualBand& band : bands) {
-        residual += band.residual();
-        variance += band.variance();
+        const ResidualEnergy sum = band.sum();
+        residual += sum.residual;
+        variance += sum.variance;
     }
     if (!(square > 0.0))
         return out;
@@ -124,7 +125,7 @@ CertifiedError CorrectedLayer::before() const {
 double CorrectedLayer::left(double samples) const {
     double all = 0.0, left = 0.0;
     for (const ResidualBand& band : bands) {
-        all += std::max(band.residual(), 0.0);
+        all += std::max(band.sum().residual, 0.0);
         left += band.left(samples);
     }
     return all > 0.0 ? std::sqrt(std::min(left / all, 1.0)) : 1.0;

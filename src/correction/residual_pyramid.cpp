@@ -223,18 +223,11 @@ double ResidualEnergy::relative() const {
     return weight > 0.0 ? std::sqrt(known() / weight) : 0.0;
 }
 
-double ResidualBand::residual() const {
-    double sum = 0.0;
+ResidualEnergy ResidualBand::sum() const {
+    ResidualEnergy out;
     for (const ResidualEnergy& octave : octaves)
-        sum += octave.residual;
-    return sum;
-}
-
-double ResidualBand::variance() const {
-    double sum = 0.0;
-    for (const ResidualEnergy& octave : octaves)
-        sum += octave.variance;
-    return sum;
+        out.add(octave, 1.0);
+    return out;
 }
 
 double ResidualBand::left(double samples) const {
@@ -248,7 +241,7 @@ double ResidualBand::left(double samples) const {
 }
 
 double ResidualBand::gain() const {
-    const double all = residual();
+    const double all = sum().residual;
     return all > 0.0 ? std::clamp(1.0 - left() / all, 0.0, 1.0) : 0.0;
 }
 

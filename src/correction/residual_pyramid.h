@@ -38,6 +38,7 @@ struct ResidualEnergy {
     double variance = 0.0;  // of `residual`
     double weight = 0.0;    // the weight's square
 
+    // Of a pixel between two octaves each takes its share, of the variance, too: that is a little more than it has.
     void add(const ResidualEnergy& other, double share);
     // As if there were so many times the samples: the part of the residual's square that is hardly chance, and the gain
     // of least square error, from 0 to 1.
@@ -49,9 +50,8 @@ struct ResidualEnergy {
 
 struct ResidualBand {
     std::vector<ResidualEnergy> octaves;  // of the weight's square, the largest first
-    double residual() const;
-    double variance() const;
-    // What gains would leave of the former with so many times the samples, noise included.
+    ResidualEnergy sum() const;
+    // What gains would leave of the residual's square with so many times the samples, noise included.
     double left(double samples = 1.0) const;
     // The part that they take away.
     double gain() const;

@@ -284,8 +284,8 @@ TEST(FireCuts, HaveTheRightMeanOverSeeds) {
                 constexpr int kAcross = 4;
                 std::fill(out, out + 3, 0.0);
                 for (int i = 0; i < kAcross * kAcross; ++i) {
-                    const double x = i % kAcross + rng.next_double(), y = i / kAcross + rng.next_double();
-                    const Rgb light = scene.along(fire, scene.stage.ray(x / kAcross, y / kAcross), rng);
+                    const glm::dvec2 at = point_in_cell(i, kAcross, rng);
+                    const Rgb light = scene.along(fire, scene.stage.ray(at.x, at.y), rng);
                     for (int c = 0; c < 3; ++c)
                         out[c] += light[c] / double(kAcross * kAcross);
                 }

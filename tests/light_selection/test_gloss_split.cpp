@@ -58,8 +58,8 @@ Shared expect_same(const Stage& stage, RayLightSettings settings, float roughnes
         std::fill(out, out + 3, 0.0);
         for (int i = 0; i < kPointsAcross * kPointsAcross; ++i)
             for (int k = 0; k < 3; ++k) {
-                const double x = i % kPointsAcross + rng.next_double(), y = i / kPointsAcross + rng.next_double();
-                const SurfacePoint point = on_metal(x / kPointsAcross, y / kPointsAcross, roughness, normal);
+                const glm::dvec2 at = point_in_cell(i, kPointsAcross, rng);
+                const SurfacePoint point = on_metal(at.x, at.y, roughness, normal);
                 out[k] +=
                     reflected(stage.scene(), lights, point, kSplits[k], rng) / double(kPointsAcross * kPointsAcross);
             }

@@ -10,6 +10,7 @@
 #include "camera/pixel_filter.h"
 #include "core/parallel.h"
 #include "core/rng.h"
+#include "fixtures/estimate.h"
 #include "reference/path_tracer.h"
 
 namespace brisance::testing {
@@ -84,8 +85,8 @@ public:
 private:
     CellSum trace(std::size_t pixel, int quarter, Rng& rng) const {
         const CameraSettings& s = camera_.settings();
-        const double x = 0.5 * (quarter % 2 + rng.next_double()) - 0.5,
-                     y = 0.5 * (quarter / 2 + rng.next_double()) - 0.5, stratum = rng.next_double();
+        const glm::dvec2 at = point_in_cell(quarter, 2, rng) - 0.5;
+        const double x = at.x, y = at.y, stratum = rng.next_double();
         const double column = double(pixel % s.width) + 0.5 + x * s.filter_width_pixels;
         const double row = double(pixel / s.width) + 0.5 + y * s.filter_width_pixels;
         PathSum path{};

@@ -54,7 +54,7 @@ struct Timing {
     double left() const { return (1.0 - kWriting) * budget.seconds - budget.spent; }
 };
 
-Option grid_option(const Timing& t, const Plan& plan) {
+Option grid_option(const Timing& t, const Plan& plan, const Surroundings* surroundings) {
     Option out;
     const CountedMedium counted(t.medium);
     double share = 0.0;
@@ -72,8 +72,8 @@ Option grid_option(const Timing& t, const Plan& plan) {
     }
     out.shot.method = RenderMethod::LightingGrid;
     if (t.shot.correction.samples == kAutomaticCorrection)
-        out.shot.correction.samples =
-            static_cast<int>(samples_of_share(share, out.shot, counted, plan, Camera(t.camera, t.medium), nullptr));
+        out.shot.correction.samples = static_cast<int>(
+            samples_of_share(share, out.shot, counted, plan, Camera(t.camera, t.medium), surroundings));
     out.error = expected_error({out.shot, t.medium, plan}).error * std::pow(1.0 + share, -kCorrected);
     out.text = fmt::format(
         "the lighting grid with lighting.error={:.3g}, lighting.alpha={:.2g} and {}correction", out.shot.lighting.error,
@@ -105,7 +105,7 @@ std::optional<Option> best_option(const Timing& t, const Surroundings* surroundi
     const Plan plan = plan_cells(grid, t.medium, surroundings);
     std::optional<Option> best;
     if (t.shot.method != RenderMethod::Path && grid_is_forecast(plan))
-        best = grid_option(t, plan);
+        best = grid_option(t, plan, surroundings);
     if (t.shot.method == RenderMethod::Path || (t.shot.method == RenderMethod::Automatic && best)) {
         const Option paths = path_option(t, surroundings);
         const bool grid_fits = best && best->seconds <= t.left();
