@@ -172,7 +172,7 @@ void add_band(Plane<Rgb>& sum, const Level& band, const ResidualBand& energy) {
     for_rows(sum.height, [&](int y) {
         for (int x = 0; x < sum.width; ++x) {
             const auto [first, second] = octaves.of(band.square.row(y)[x]);
-            const auto between = [&](const std::vector<float>& values) {
+            const auto between = [first = first, second = second](const std::vector<float>& values) {
                 return (1.0f - second) * values[first] + second * values[first + 1];
             };
             const Rgb known = 0.5f * between(gains) * (band.estimates[0].row(y)[x] + band.estimates[1].row(y)[x]);
