@@ -17,7 +17,8 @@ constexpr std::uint32_t kNone = ~0u;
 
 }  // namespace
 
-SurfaceRounds::SurfaceRounds(std::span<const SurfaceSample> samples, int width, std::size_t rays, float tolerance)
+SurfaceRounds::SurfaceRounds(std::span<const SurfaceSample> samples, int width, std::size_t rays, float tolerance,
+                             const MaySplit& may_split)
     : samples_(samples),
       width_(static_cast<std::size_t>(width)),
       per_axis_(static_cast<std::size_t>(std::lround(std::sqrt(double(rays))))),
@@ -37,7 +38,8 @@ SurfaceRounds::SurfaceRounds(std::span<const SurfaceSample> samples, int width, 
             all += samples[i].share;
             few += among_few(i) ? samples[i].share : 0.0f;
         }
-        p.few = splits && p.end - p.begin == rays && few > 0.0f;
+        p.few = splits && p.end - p.begin == rays && few > 0.0f &&
+                (!may_split || may_split(samples.subspan(p.begin, rays)));
         p.scale = p.few ? all / few : 1.0f;
         for (std::size_t i = p.begin; i < p.end; ++i)
             if (!p.few || among_few(i))

@@ -1,14 +1,18 @@
 // Which samples of a call are shaded, in two rounds.
 //
-// Rays find the edges and colours of surfaces and cost little; the Lambert base is lit for all of them, by receivers
-// that they share. What is sampled at each (reflections, emitters, light between surfaces) is most of the work. Where
-// all rays of a pixel meet surfaces, only a quarter of them is shaded at first, spread evenly over the pixel. The
-// others follow in a second round where the first tells that they are needed: where the standard error of the mean of
-// its samples is above what is tolerated, relative to the luminance of the pixel and those beside. That error is
-// estimated from the few samples themselves. One pixel's are too few to tell grains from their absence, so that its
-// variance is at least the mean of those beside.
+// Rays find the edges of surfaces and cost little; what they see there is most of the work. Where all rays of a pixel
+// meet surfaces, only a quarter of them is shaded at first, spread evenly over the pixel. The others follow in a second
+// round where the first tells that they are needed: where the standard error of the mean of its samples is above what
+// is tolerated, relative to the luminance of the pixel and those beside. That error is estimated from the few samples
+// themselves. One pixel's are too few to tell grains from their absence, so that its variance is at least the mean of
+// those beside.
+//
+// Light of fire and smoke on bases, and what is sampled at each (reflections, emitters, light between surfaces), have
+// rounds of their own: a penumbra says nothing of reflections. An edge in a pixel would have a quarter of its shades,
+// so that bases are lit by few rays only where all of them meet one surface without textures (plain_pixel.h).
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -19,8 +23,11 @@ namespace brisance {
 class SurfaceRounds {
 public:
     // Keeps a reference. `width`: of the picture, in pixels. `rays`: of a pixel. `tolerance`: standard error of a
-    // pixel over its luminance; 0: all samples are shaded in the first round.
-    SurfaceRounds(std::span<const SurfaceSample> samples, int width, std::size_t rays, float tolerance);
+    // pixel over its luminance; 0: all samples are shaded in the first round. `may_split`: pixels that may do with few,
+    // asked with all their samples; empty: all.
+    using MaySplit = std::function<bool(std::span<const SurfaceSample>)>;
+    SurfaceRounds(std::span<const SurfaceSample> samples, int width, std::size_t rays, float tolerance,
+                  const MaySplit& may_split = {});
 
     const std::vector<std::size_t>& first() const { return first_; }
     // What shading found at samples of the first round, as luminance [W/(m^2 sr)].

@@ -8,6 +8,7 @@
 #include "core/cpu_clock.h"
 #include "core/parallel.h"
 #include "pixel_sharing/shown_area.h"
+#include "surface_lighting/plain_pixel.h"
 #include "surface_lighting/shaded_point.h"
 
 namespace brisance {
@@ -51,12 +52,13 @@ SurfaceShader::SurfaceShader(const SurfaceLightingInput& input)
       reflects_(reflects_narrowly(input)),
       walks_(share_of_walks(input)) {}
 
-std::vector<SurfaceShader::ShadedPoint> SurfaceShader::shaded_points(const std::vector<SurfaceSample>& samples,
-                                                                     std::vector<CellSum>& light) const {
-    std::vector<ShadedPoint> points(samples.size(), ShadedPoint{{}, Rng(Stream::RayLightSurface, 0), 0});
+// Makes the points of some samples where they are missing, and adds what mirrors on the way show.
+void SurfaceShader::prepare(const Samples& samples, const Some& some, Points& points, Light& light) const {
+    const Some missing = points.add(some);
     parallel_for(
-        samples.size(),
-        [&](std::size_t i) {
+        missing.size(),
+        [&](std::size_t k) {
+            const std::size_t i = missing[k];
             const SurfaceSample& s = samples[i];
             ShadedPoint& shaded = points[i];
             shaded.ray_rng = input_.in_scattering
@@ -67,18 +69,17 @@ std::vector<SurfaceShader::ShadedPoint> SurfaceShader::shaded_points(const std::
             shaded.vertices = shaded.seen.mirrors;
         },
         kSamplesAtOnce);
-    return points;
 }
 
-// What the bases of all points reflect of the medium's light.
-std::vector<BaseLight> SurfaceShader::light_bases(const std::vector<SurfaceSample>& samples,
-                                                  const std::vector<ShadedPoint>& points, bool reflected) {
-    if (!input_.medium_lighting || !input_.medium_lighting->lights_surfaces())
-        return std::vector<BaseLight>(samples.size());
+// What the bases of some points reflect of the medium's light, in their order.
+std::vector<BaseLight> SurfaceShader::light_bases(const Samples& samples, const Some& some, const Points& points,
+                                                  bool reflected) {
+    if (some.empty() || !input_.medium_lighting || !input_.medium_lighting->lights_surfaces())
+        return std::vector<BaseLight>(some.size());
     const Medium& medium = input_.paths.direct().field().medium();
     SharedReceivers receivers(medium);
     std::vector<BasePoint> bases;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
+    for (const std::size_t i : some) {
         const BehindMirrors& seen = points[i].seen;
         receivers.add(samples[i].pixel, vec3(seen.point.position), vec3(seen.point.frame.normal));
         const bool lit = !seen.lost && has_base(seen.point.material);
@@ -91,18 +92,41 @@ std::vector<BaseLight> SurfaceShader::light_bases(const std::vector<SurfaceSampl
     return reflected ? lighting.light_by_few_rays(bases, receivers) : lighting.light(bases, receivers);
 }
 
-void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light) {
-    std::vector<ShadedPoint> points = shaded_points(samples, light);
-    const std::vector<BaseLight> bases = light_bases(samples, points, false);
+// Lights bases by the medium: of all samples, or of a few that stand for the others of their pixel.
+SurfaceRounds SurfaceShader::bases_in_rounds(const Samples& samples, Points& points, Light& light) {
+    SurfaceRounds rounds(samples, input_.width, std::size_t(input_.samples), input_.tolerance,
+                         [&](auto pixel) { return shows_plain_surface(surroundings_.scene(), pixel); });
+    const std::vector<float> none(samples.size());
+    SurfaceRounds::Found known{none, none};
+    const auto light_some = [&](const Some& some) {
+        prepare(samples, some, points, light);
+        const std::vector<BaseLight> bases = light_bases(samples, some, points, false);
+        for (std::size_t k = 0; k < some.size(); ++k) {
+            const std::size_t i = some[k];
+            if (!points[i].seen.lost)
+                add_base(bases[k], points[i], light[i]);
+            known.noisy[i] = luminance(light[i]);
+        }
+    };
+    light_some(rounds.first());
+    light_some(rounds.second(none, known));
+    return rounds;
+}
+
+void SurfaceShader::shade(const Samples& samples, Light& light) {
+    Points points(samples.size());
+    const SurfaceRounds bases = bases_in_rounds(samples, points, light);
     std::vector<float> even(samples.size());
-    SurfaceRounds::Found known{std::vector<float>(samples.size()), std::vector<float>(samples.size())};
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        if (!points[i].seen.lost)
-            add_base(bases[i], points[i], light[i]);
+        if (const float scale = bases.stands_for(i); scale != 1.0f)
+            for (Rgb& cell : light[i])
+                cell *= scale;
         even[i] = luminance(light[i]);
     }
-    std::vector<CellSum> found(samples.size());
-    const auto shade = [&](const std::vector<std::size_t>& some) {
+    SurfaceRounds::Found known{std::vector<float>(samples.size()), std::vector<float>(samples.size())};
+    Light found(samples.size());
+    const auto shade = [&](const Some& some) {
+        prepare(samples, some, points, light);
         shade_some(samples, some, points, found);
         tell(samples, some, points, found, known);
     };
@@ -110,19 +134,20 @@ void SurfaceShader::shade(const std::vector<SurfaceSample>& samples, std::vector
     shade(rounds.first());
     shade(rounds.second(even, known));
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        points[i].stands_for = rounds.stands_for(i);
-        light[i].add(found[i], Rgb(points[i].stands_for));
-    }
-    for (std::size_t i = 0; input_.lengths && i < samples.size(); ++i)
-        if (points[i].stands_for > 0.0f)
+        const float scale = rounds.stands_for(i);
+        if (!(scale > 0.0f))
+            continue;
+        points[i].stands_for = scale;
+        light[i].add(found[i], Rgb(scale));
+        if (input_.lengths)
             input_.lengths->add(samples[i].pixel, points[i].vertices);
+    }
     hand_over(samples, points, light);
 }
 
 // What shading found at some samples, of which all pixels share a part. What that leaves of its noise is told of the
 // light that rough lobes reflect.
-void SurfaceShader::tell(const std::vector<SurfaceSample>& samples, const std::vector<std::size_t>& some,
-                         const std::vector<ShadedPoint>& points, const std::vector<CellSum>& found,
+void SurfaceShader::tell(const Samples& samples, const Some& some, const Points& points, const Light& found,
                          SurfaceRounds::Found& known) const {
     for (std::size_t begin = 0, end = 0; begin < some.size(); begin = end) {
         float closeness = 0.0f, met = 0.0f;
@@ -144,8 +169,7 @@ void SurfaceShader::tell(const std::vector<SurfaceSample>& samples, const std::v
     }
 }
 
-void SurfaceShader::shade_some(const std::vector<SurfaceSample>& samples, const std::vector<std::size_t>& some,
-                               std::vector<ShadedPoint>& points, std::vector<CellSum>& found) {
+void SurfaceShader::shade_some(const Samples& samples, const Some& some, Points& points, Light& found) {
     parallel_for(
         some.size(),
         [&](std::size_t k) {
@@ -163,15 +187,14 @@ bool SurfaceShader::shows_others(const ShadedPoint& at) const {
 }
 
 // The surfaces that narrow lobes show are lit together, as those are that camera rays hit.
-void SurfaceShader::shade_reflected(const std::vector<SurfaceSample>& samples, const std::vector<std::size_t>& some,
-                                    std::vector<ShadedPoint>& points, std::vector<CellSum>& found) {
-    std::vector<std::size_t> by;  // samples that show others
+void SurfaceShader::shade_reflected(const Samples& samples, const Some& some, Points& points, Light& found) {
+    Some by;  // samples that show others
     for (const std::size_t i : some)
         if (shows_others(points[i]))
             by.push_back(i);
     if (by.empty())
         return;
-    std::vector<ShadedPoint> all(by.size(), ShadedPoint{{}, Rng(Stream::RayLightSurface, 0), 0});
+    std::vector<ShadedPoint> all(by.size());
     parallel_for(
         by.size(),
         [&](std::size_t k) {
@@ -180,18 +203,19 @@ void SurfaceShader::shade_reflected(const std::vector<SurfaceSample>& samples, c
             all[k].ray_rng = from.ray_rng;
         },
         kSamplesAtOnce);
-    std::vector<SurfaceSample> seen_by;
-    std::vector<ShadedPoint> there;
-    std::vector<std::size_t> meets;  // those of `by` that do
+    Samples seen_by;
+    std::vector<ShadedPoint> met;
+    Some meets;  // those of `by` that do
     for (std::size_t k = 0; k < by.size(); ++k)
         if (!all[k].seen.lost) {
             seen_by.push_back(samples[by[k]]);
-            there.push_back(std::move(all[k]));
+            met.push_back(std::move(all[k]));
             meets.push_back(by[k]);
         }
-    if (there.empty())
+    if (meets.empty())
         return;
-    std::vector<CellSum> light(there.size());
+    Points there(std::move(met));
+    Light light(meets.size());
     light_reflected(seen_by, there, light);
     for (std::size_t k = 0; k < meets.size(); ++k) {
         found[meets[k]].add(light[k], Rgb(1.0f));
@@ -200,11 +224,10 @@ void SurfaceShader::shade_reflected(const std::vector<SurfaceSample>& samples, c
 }
 
 // And what these show in turn.
-void SurfaceShader::light_reflected(const std::vector<SurfaceSample>& by, std::vector<ShadedPoint>& there,
-                                    std::vector<CellSum>& found) {
-    const std::vector<BaseLight> bases = light_bases(by, there, true);
-    std::vector<std::size_t> all(by.size());
+void SurfaceShader::light_reflected(const Samples& by, Points& there, Light& found) {
+    Some all(by.size());
     std::iota(all.begin(), all.end(), std::size_t(0));
+    const std::vector<BaseLight> bases = light_bases(by, all, there, true);
     for (const std::size_t k : all)
         add_base(bases[k], there[k], found[k]);
     shade_some(by, all, there, found);
@@ -244,10 +267,11 @@ ScreenSpaceCompensation::Sample SurfaceShader::compensated_sample(const SurfaceS
 }
 
 // To all pixels, and to samples around first.
-void SurfaceShader::hand_over(const std::vector<SurfaceSample>& samples, std::vector<ShadedPoint>& points,
-                              std::vector<CellSum>& light) const {
+void SurfaceShader::hand_over(const Samples& samples, Points& points, Light& light) const {
     std::vector<LightReuse::Sample> chosen;
     for (std::size_t i = 0; i < samples.size(); ++i) {
+        if (!points.has(i))
+            continue;
         ShadedPoint& at = points[i];
         const float share = samples[i].share * at.stands_for;
         if (!(share > 0.0f))

@@ -80,20 +80,19 @@ public:
 
 private:
     struct ShadedPoint;
-    std::vector<ShadedPoint> shaded_points(const std::vector<SurfaceSample>& samples,
-                                           std::vector<CellSum>& light) const;
-    std::vector<BaseLight> light_bases(const std::vector<SurfaceSample>& samples,
-                                       const std::vector<ShadedPoint>& points, bool reflected);
+    class Points;
+    using Samples = std::vector<SurfaceSample>;
+    using Some = std::vector<std::size_t>;  // samples, by their index
+    using Light = std::vector<CellSum>;     // of each sample
+    void prepare(const Samples& samples, const Some& some, Points& points, Light& light) const;
+    std::vector<BaseLight> light_bases(const Samples& samples, const Some& some, const Points& points, bool reflected);
+    SurfaceRounds bases_in_rounds(const Samples& samples, Points& points, Light& light);
     void add_base(const BaseLight& base, const ShadedPoint& at, CellSum& light) const;
-    void tell(const std::vector<SurfaceSample>& samples, const std::vector<std::size_t>& some,
-              const std::vector<ShadedPoint>& points, const std::vector<CellSum>& found,
+    void tell(const Samples& samples, const Some& some, const Points& points, const Light& found,
               SurfaceRounds::Found& known) const;
-    void shade_some(const std::vector<SurfaceSample>& samples, const std::vector<std::size_t>& some,
-                    std::vector<ShadedPoint>& points, std::vector<CellSum>& found);
-    void shade_reflected(const std::vector<SurfaceSample>& samples, const std::vector<std::size_t>& some,
-                         std::vector<ShadedPoint>& points, std::vector<CellSum>& found);
-    void light_reflected(const std::vector<SurfaceSample>& by, std::vector<ShadedPoint>& there,
-                         std::vector<CellSum>& found);
+    void shade_some(const Samples& samples, const Some& some, Points& points, Light& found);
+    void shade_reflected(const Samples& samples, const Some& some, Points& points, Light& found);
+    void light_reflected(const Samples& by, Points& there, Light& found);
     bool shows_others(const ShadedPoint& at) const;
     void shade_sample(const SurfaceSample& sample, ShadedPoint& at, CellSum& light) const;
     void shade_point(const SurfaceSample& sample, ShadedPoint& at, CellSum& light) const;
@@ -108,8 +107,7 @@ private:
     VirtualLights::Shading shading(ShadedPoint& at) const;
     Rgb shade_vertex(const SurfaceSample& sample, const PathVertex& vertex, Lobes which, VirtualLights::Shading how,
                      Rng& rng, ShadedPoint& at) const;
-    void hand_over(const std::vector<SurfaceSample>& samples, std::vector<ShadedPoint>& points,
-                   std::vector<CellSum>& light) const;
+    void hand_over(const Samples& samples, Points& points, Light& light) const;
     ScreenSpaceCompensation::Sample compensated_sample(const SurfaceSample& sample, const ShadedPoint& at,
                                                        const CellSum& light) const;
     void reflect_scattered(const SurfaceSample& sample, ShadedPoint& at, Rng& rng, CellSum& light) const;

@@ -24,6 +24,11 @@ struct SurfaceMaterial {
     bool thin = false;          // light is transmitted as through a sheet, without refraction
 };
 
+// The diffuse one.
+inline bool has_base(const SurfaceMaterial& m) {
+    return m.metallic < 1.0f && m.transmission < 1.0f && m.base_colour != Rgb(0.0f);
+}
+
 // A plain Lambert surface needs no energy tables.
 inline bool needs_energy_tables(const SurfaceMaterial& m) {
     return m.metallic > 0.0f || m.specular > 0.0f || m.transmission > 0.0f;
