@@ -28,8 +28,18 @@ std::string why_no_emission(const Shot& shot, const Medium& medium) {
     return "no voxel emits: the mapped grids are empty, zero, or below fire.threshold";
 }
 
+bool any_transmits(const Scene& scene) {
+    return std::ranges::any_of(scene.materials, [](const SceneMaterial& m) { return m.surface.transmission > 0.0f; });
+}
+
+// Whether surfaces can send light to others, or show what lies behind them.
+bool light_goes_between_surfaces(const Surroundings* surroundings) {
+    return surroundings && surroundings->has_surfaces() &&
+           (!surroundings->scene().is_flat() || any_transmits(surroundings->scene()));
+}
+
 // Which cells can be other than zero.
-void decide(Plan& plan, bool scatters, bool visible, int bounces) {
+void decide(Plan& plan, bool scatters, bool visible, bool between_surfaces, int bounces) {
     const bool once = bounces != 0, twice = bounces < 0 || bounces > 1, lit = plan.emission || plan.emitters;
     const auto set = [&](Cell cell, bool needed) { plan.needed.set(cell, needed); };
     set(Cell::V, plan.emission);
@@ -40,7 +50,7 @@ void decide(Plan& plan, bool scatters, bool visible, int bounces) {
     set(Cell::MA, plan.emitters && scatters && once);
     set(Cell::SV, plan.emission && plan.surfaces && once);
     set(Cell::SM, lit && scatters && plan.surfaces && twice);
-    set(Cell::SS, lit && plan.surfaces && twice);
+    set(Cell::SS, lit && between_surfaces && twice);
     set(Cell::SA, plan.emitters && plan.surfaces && once);
     plan.single = plan.needs(Cell::MV);
     plan.multiple = plan.needs(Cell::MM);
@@ -90,12 +100,10 @@ void skip_without_emission(const Plan& plan, const Shot& shot, const Medium& med
 // Whether the fire's light at nodes or on surfaces comes from hierarchies: those begin MM, mirrors show their smoke,
 // and through panes the light of the fire is theirs.
 bool needs_hierarchies(const Plan& plan, const Surroundings* surroundings) {
-    const auto transmits = [](const SceneMaterial& m) { return m.surface.transmission > 0.0f; };
     const bool at_nodes = plan.on_rays.contains(Cell::MV) ? plan.multiple || plan.needs(Cell::SM) : plan.single;
     if (!plan.fire_lights_on_surfaces())
         return at_nodes || plan.needs(Cell::SV);
-    return at_nodes ||
-           (plan.needs(Cell::SS) && surroundings && std::ranges::any_of(surroundings->scene().materials, transmits));
+    return at_nodes || (plan.needs(Cell::SS) && surroundings && any_transmits(surroundings->scene()));
 }
 
 std::string why_no_hierarchies(const Plan& plan) {
@@ -163,11 +171,14 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
     plan.surfaces = surroundings && surroundings->has_surfaces();
     plan.emitters = surroundings && !surroundings->emitters().empty();
     plan.emission = medium.emits();
-    decide(plan, medium.scatters(), plan.emitters && surroundings->emitters().visible(), shot.scattering.bounces);
+    decide(plan, medium.scatters(), plan.emitters && surroundings->emitters().visible(),
+           light_goes_between_surfaces(surroundings), shot.scattering.bounces);
     const std::string owner = choose_owners(plan, shot, medium, skip);
     choose_samplings(plan, shot);
     if (!plan.surfaces)
         skip("row S, column S", "no surfaces in the shot");
+    else if (!light_goes_between_surfaces(surroundings))
+        skip("SS", "all surfaces lie in one plane");
     if (!plan.emitters)
         skip("column A", "no analytic lights in the shot");
     if (medium.lattice.empty() && shot.volume.file.empty() && shot.volumes.empty()) {

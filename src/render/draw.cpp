@@ -186,7 +186,7 @@ std::optional<std::string> why_no_virtual_lights(const Shot& shot, const Plan& p
     if (!plan.emission && !plan.emitters)
         return "nothing shines";
     if (!plan.needs(Cell::SS))
-        return "with this scattering.bounces no light goes from surface to surface";
+        return "no light goes from surface to surface";
     return std::nullopt;
 }
 

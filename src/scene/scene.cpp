@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "core/error.h"
 #include "scene/memory_budget.h"
@@ -26,6 +28,23 @@ std::size_t Scene::triangle_count() const {
 
 bool Scene::is_glossy() const {
     return std::ranges::any_of(materials, [](const SceneMaterial& m) { return needs_energy_tables(m.surface); });
+}
+
+bool Scene::is_flat() const {
+    constexpr float kRounding = 1e-6f;  // of positions, over their distance from a corner
+    std::optional<vec3> corner, normal;
+    for (const SceneMesh& mesh : meshes)
+        for (const glm::uvec3& t : mesh.triangles) {
+            const vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
+            if (const vec3 n = glm::cross(b - a, c - a); !normal && glm::dot(n, n) > 0.0f) {
+                corner = a;
+                normal = glm::normalize(n);
+            }
+            for (const vec3& p : {a, b, c})
+                if (normal && std::abs(glm::dot(*normal, p - *corner)) > kRounding * glm::length(p - *corner))
+                    return false;
+        }
+    return true;
 }
 
 std::uint64_t Scene::bytes() const {

@@ -83,6 +83,8 @@ struct Scene {
     std::size_t triangle_count() const;
     // Whether any surface has lobes other than Lambert's.
     bool is_glossy() const;
+    // Whether all triangles lie in one plane, as those of a floor do: none of them sends light to another.
+    bool is_flat() const;
     std::uint64_t bytes() const;  // shared textures included
 };
 

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "core/parallel.h"
+#include "medium/lattice/local_bounds.h"
 #include "medium/phase.h"
 #include "shadows/octahedral_directions.h"
 #include "shadows/shadow_kernels.h"
@@ -70,40 +72,108 @@ struct Steps {
     }
 };
 
-// Rays in the order in which they are marched. They form square tiles, so that rays of one vector run through the same
-// smoke and become opaque in it, or leave it, at about the same distance.
+// The texels of a map, in square tiles, so that rays of one vector run through the same smoke and become opaque in it,
+// or leave it, at about the same distance.
 struct TexelTable {
-    static constexpr int kTile = 4;  // texels along a side: 16 rays
-    int resolution;
-    std::size_t rays;                 // of all tiles, whole or not
-    std::vector<float> direction[3];  // nodes per metre
+    static constexpr int kTile = 4;  // texels along a side
+    static constexpr std::size_t kRays = std::size_t(kTile) * kTile;
+    int resolution, tiles_aside;
+    std::vector<vec3> direction;  // unit, of the rays of each tile in turn
 
-    TexelTable(const Medium& medium, int texels) : resolution(texels) {
-        const int tiles = (texels + kTile - 1) / kTile;
-        rays = std::size_t(tiles) * tiles * kTile * kTile;
-        for (auto& d : direction)
-            d.resize(rays);
-        for (int u = 0; u < tiles * kTile; ++u)
-            for (int v = 0; v < tiles * kTile; ++v) {
+    explicit TexelTable(int texels) : resolution(texels), tiles_aside((texels + kTile - 1) / kTile) {
+        for (std::size_t tile = 0; tile < tiles(); ++tile)
+            for (std::size_t ray = 0; ray < kRays; ++ray) {
                 // Past the edge, the last texel is repeated.
-                const float x = (2.0f * std::min(u, texels - 1) + 1.0f) / texels - 1.0f;
-                const float y = (2.0f * std::min(v, texels - 1) + 1.0f) / texels - 1.0f;
-                const vec3 nodes = medium.index_from_local * octahedral_direction(x, y);
-                for (int a = 0; a < 3; ++a)
-                    direction[a][ray_of(u, v)] = nodes[a];
+                const glm::ivec2 at = glm::min(texel_of(tile, ray), glm::ivec2(texels - 1));
+                direction.push_back(octahedral_direction((2.0f * float(at.x) + 1.0f) / float(texels) - 1.0f,
+                                                         (2.0f * float(at.y) + 1.0f) / float(texels) - 1.0f));
             }
     }
-    std::size_t ray_of(int u, int v) const {
-        const int tiles = (resolution + kTile - 1) / kTile;
-        const std::size_t tile = std::size_t(u / kTile) * tiles + v / kTile;
-        return (tile * kTile + u % kTile) * kTile + v % kTile;
+    std::size_t tiles() const { return std::size_t(tiles_aside) * tiles_aside; }
+    glm::ivec2 texel_of(std::size_t tile, std::size_t ray) const {
+        return kTile * glm::ivec2(int(tile) / tiles_aside, int(tile) % tiles_aside) +
+               glm::ivec2(int(ray) / kTile, int(ray) % kTile);
     }
-    // Copies values from the order of rays to rows of texels, `distances` values each.
-    void put_in_rows(const std::vector<std::uint16_t>& marched, int distances, std::uint16_t* rows) const {
-        for (int u = 0; u < resolution; ++u)
-            for (int v = 0; v < resolution; ++v, rows += distances)
-                std::copy_n(marched.begin() + ray_of(u, v) * distances, distances, rows);
+};
+
+// How far apart in direction texels that are interpolated lie at most, times the resolution [rad].
+constexpr float kTexelAngle = 9.0f;
+
+// The part of a map that receivers in the medium read: around the directions from its light to them. What lies aside
+// is not made. For a light within reach of all directions, and for receivers anywhere, it is the whole map.
+class SeenTexels {
+public:
+    // Keeps references.
+    SeenTexels(const TexelTable& texels, const Medium& medium, const ShadowMapLayout& layout)
+        : texels_(texels),
+          index_from_local_(medium.index_from_local),
+          bounds_(local_bounds(medium)),
+          distances_(layout.distances),
+          whole_(layout.for_outside),
+          seen_(std::size_t(texels.resolution) * texels.resolution) {}
+
+    void look_from(const vec3& light) {
+        const vec3 to = bounds_.middle() - light;
+        const float distance = glm::length(to), radius = 0.5f * bounds_.diagonal();
+        const float angle =
+            whole_ || radius >= distance ? kPi : std::asin(radius / distance) + kTexelAngle / float(texels_.resolution);
+        const float least = angle < kPi ? distance * std::cos(angle) : -std::numeric_limits<float>::infinity();
+        tiles_.clear();
+        for (auto& d : direction_)
+            d.clear();
+        for (std::size_t tile = 0; tile < texels_.tiles(); ++tile) {
+            const std::span rays = std::span(texels_.direction).subspan(tile * TexelTable::kRays, TexelTable::kRays);
+            const bool seen = std::ranges::any_of(rays, [&](const vec3& d) { return glm::dot(d, to) >= least; });
+            mark(tile, seen);
+            for (std::size_t ray = 0; seen && ray < rays.size(); ++ray)
+                for (int a = 0; a < 3; ++a)
+                    direction_[a].push_back((index_from_local_ * rays[ray])[a]);
+        }
+        marched_.resize(rays() * distances_);
     }
+
+    // Those to march, and where what they find belongs: rays() times the map's distances.
+    std::size_t rays() const { return tiles_.size() * TexelTable::kRays; }
+    const float* direction(int axis) const { return direction_[axis].data(); }  // nodes per metre
+    std::uint16_t* marched() { return marched_.data(); }
+
+    bool has(std::size_t texel) const { return seen_[texel] != 0; }
+    // Copies what was marched to rows of texels. Those that are not seen begin with 0.
+    void put_in_rows(std::uint16_t* rows) const {
+        for (std::size_t texel = 0; texel < seen_.size(); ++texel)
+            if (!has(texel))
+                rows[texel * distances_] = 0;
+        for (std::size_t k = 0; k < tiles_.size(); ++k)
+            for_texels(tiles_[k], [&](std::size_t texel, std::size_t ray) {
+                std::copy_n(marched_.begin() + std::ptrdiff_t((k * TexelTable::kRays + ray) * distances_), distances_,
+                            rows + texel * distances_);
+            });
+    }
+
+private:
+    template <class Visit>
+    void for_texels(std::size_t tile, const Visit& visit) const {
+        for (std::size_t ray = 0; ray < TexelTable::kRays; ++ray) {
+            const glm::ivec2 at = texels_.texel_of(tile, ray);
+            if (at.x < texels_.resolution && at.y < texels_.resolution)
+                visit(std::size_t(at.x) * texels_.resolution + at.y, ray);
+        }
+    }
+    void mark(std::size_t tile, bool seen) {
+        if (seen)
+            tiles_.push_back(tile);
+        for_texels(tile, [&](std::size_t texel, std::size_t) { seen_[texel] = seen; });
+    }
+
+    const TexelTable& texels_;
+    mat3 index_from_local_;
+    LocalBounds bounds_;
+    std::size_t distances_;
+    bool whole_;
+    std::vector<std::size_t> tiles_;
+    std::vector<float> direction_[3];
+    std::vector<std::uint16_t> marched_;
+    std::vector<std::uint8_t> seen_;  // each texel
 };
 
 // Where rays of a light start: offsets from its centre [nodes] to kStarts of the voxels it represents, in a scattered
@@ -154,9 +224,10 @@ void pick_starts(FootprintPicker& picker, const Medium& medium, const GridLevel&
     starts.repeat_first();
 }
 
-// Copies the interior of a map and wraps its border: a step across an edge of the square continues on the same edge,
-// mirrored about its middle.
-void copy_with_border(const std::uint16_t* interior, const ShadowMapLayout& layout, std::uint16_t* map) {
+// Copies the interior of a map, where it is seen, and wraps its border: a step across an edge of the square continues
+// on the same edge, mirrored about its middle.
+void copy_with_border(const std::uint16_t* interior, const SeenTexels& seen, const ShadowMapLayout& layout,
+                      std::uint16_t* map) {
     const int r = layout.resolution;
     for (int i = -1; i <= r; ++i)
         for (int j = -1; j <= r; ++j) {
@@ -169,8 +240,10 @@ void copy_with_border(const std::uint16_t* interior, const ShadowMapLayout& layo
                 v = std::clamp(v, 0, r - 1);
                 u = r - 1 - u;
             }
-            std::copy_n(interior + (std::size_t(u) * r + v) * layout.distances, layout.distances,
-                        map + (std::size_t(i + 1) * layout.side() + (j + 1)) * layout.distances);
+            const std::size_t texel = std::size_t(u) * r + v;
+            if (seen.has(texel))
+                std::copy_n(interior + texel * layout.distances, layout.distances,
+                            map + (std::size_t(i + 1) * layout.side() + (j + 1)) * layout.distances);
         }
 }
 
@@ -207,7 +280,7 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
                        std::uint16_t* maps, const Occluders* occluders) {
     const Medium& medium = pyramid.medium();
     const Steps from_centres(pyramid, level, layout, 0.0f);
-    const TexelTable texels(medium, layout.resolution);
+    const TexelTable texels(layout.resolution);
     std::vector<PackedExtinction> mips;
     mips.reserve(std::size_t(pyramid.level_count()));
     for (int l = 0; l < pyramid.level_count(); ++l)
@@ -219,17 +292,18 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
     const bool by_bricks = !layout.for_outside && level.level >= FootprintPicker::kLevelOfWholeBricks;
     const BrickWeights bricks = by_bricks ? sum_over_bricks(medium, weights) : BrickWeights{};
     parallel_blocks(list.size(), 8, [&](std::size_t begin, std::size_t end) {
-        std::vector<std::uint16_t> marched(texels.rays * layout.distances);
+        SeenTexels seen(texels, medium, layout);
         std::vector<std::uint16_t> interior(std::size_t(layout.resolution) * layout.resolution * layout.distances);
         Starts starts;
         FootprintPicker picker(medium, weights, level.level, by_bricks ? &bricks : nullptr);
         for (std::size_t k = begin; k < end; ++k) {
             const std::size_t light = list[k];
             pick_starts(picker, medium, level, light, layout.for_outside ? escape : nullptr, starts);
-            const ShadowRays rays{{texels.direction[0].data(), texels.direction[1].data(), texels.direction[2].data()},
+            seen.look_from(level.position[light]);
+            const ShadowRays rays{{seen.direction(0), seen.direction(1), seen.direction(2)},
                                   {starts.offset[0].data(), starts.offset[1].data(), starts.offset[2].data()},
                                   starts.weight.data(),
-                                  texels.rays,
+                                  seen.rays(),
                                   parallel.of(light)};
             const vec3 centre = medium.index_from_local * level.position[light];
             const float surface = level.ball.empty() ? 0.0f : level.ball[light].radius;
@@ -237,17 +311,17 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
             const Steps& steps = surface > 0.0f ? own : from_centres;
             if (layout.for_outside)
                 march_parallel_rays(mips.data(), steps.near, steps.far, centre, rays, layout.distances,
-                                    65535.0f / layout.range, marched.data(), even ? &strides : nullptr);
+                                    65535.0f / layout.range, seen.marched(), even ? &strides : nullptr);
             else
-                march_shadow_rays(mips.data(), steps.near, steps.far, centre, rays, layout.distances, marched.data());
-            texels.put_in_rows(marched, layout.distances, interior.data());
+                march_shadow_rays(mips.data(), steps.near, steps.far, centre, rays, layout.distances, seen.marched());
+            seen.put_in_rows(interior.data());
             if (occluders) {
                 const vec3& position = level.position[light];
                 const std::vector<vec3> voxels = starts.positions(medium, position);
                 cut_at_surfaces(*occluders, {position, voxels.empty() ? level.parts_of(light) : voxels, surface},
                                 layout, interior);
             }
-            copy_with_border(interior.data(), layout, maps + k * layout.stride());
+            copy_with_border(interior.data(), seen, layout, maps + k * layout.stride());
         }
     });
 }

@@ -49,8 +49,10 @@ void cut_at_surfaces(const Occluders& occluders, const MappedLight& light, const
         const float share = visible_share(occluders, light, i, near);
         const float beyond = layout.far_distance - layout.near_distance;
         const float hit = share > 0.0f ? occluders.first_hit(near, direction, beyond) : 0.0f;
+        if (share == 1.0f && hit >= beyond)
+            continue;
         for (int k = 0; k < layout.distances; ++k)
-            samples[k] = hit >= beyond || float(k) * step <= hit ? std::uint16_t(std::lround(share * samples[k])) : 0;
+            samples[k] = hit >= beyond || float(k) * step <= hit ? std::uint16_t(share * float(samples[k]) + 0.5f) : 0;
     }
 }
 

@@ -17,7 +17,7 @@ namespace brisance {
 namespace {
 
 constexpr std::size_t kParticlesAtOnce = 1024;
-// Of the light that arrives where virtual lights were made.
+// Of the light that arrives at surfaces, what may be left out.
 constexpr double kUnsharedLeft = 0.01;
 // Of the power that arrived, what a track carries that has survived roulette.
 constexpr float kPowerOfTrack = 1.0f / 1024.0f;
@@ -57,6 +57,13 @@ BoundingBall ball_around_smoke(const TrackingField& field) {
         high = glm::max(high, middle);
     }
     return {0.5 * (low + high), kAround * 0.5 * glm::length(high - low)};
+}
+
+// About how much of the light that surfaces send on is particles'. Of so many fewer, the noise is the same part of all.
+double part_by_particles(const DirectLight& scene, const VirtualLights* lights, float share) {
+    if (!lights || share > 0.0f || scene.surroundings()->scene().is_glossy())
+        return 1.0;
+    return lights->report().photons.unshared_fraction();
 }
 
 }  // namespace
@@ -125,10 +132,10 @@ SpecularPhotons::SpecularPhotons(const DirectLight& scene, const VirtualLights* 
     : scene_(scene), lights_(lights), seed_(settings.seed), share_(share) {
     if (!scene.lights_surfaces())
         return;
-    if (!lights || share > 0.0f || scene.surroundings()->scene().is_glossy() ||
-        lights->report().photons.unshared_fraction() > kUnsharedLeft)
-        particles_ =
-            static_cast<std::size_t>(settings.photons == kAutomaticPhotons ? kMostAutomaticPhotons : settings.photons);
+    const double part = part_by_particles(scene, lights, share);
+    if (part > kUnsharedLeft)
+        particles_ = static_cast<std::size_t>(
+            std::ceil(part * double(settings.photons == kAutomaticPhotons ? kMostAutomaticPhotons : settings.photons)));
     if (empty())
         return;
     smoke_ = points_of_smoke(scene.field());
