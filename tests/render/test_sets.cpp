@@ -1,12 +1,14 @@
 // Whole frames with surfaces: the many-light methods against the path tracer, cell by cell, on a set of our own.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
 #include "core/parallel.h"
 #include "fixtures/media.h"
 #include "fixtures/sets.h"
+#include "forecast/plan.h"
 #include "render/render_frame.h"
 
 namespace brisance::test_sets {
@@ -153,6 +155,67 @@ TEST(Sets, WhatIsNotThereIsNotPlanned) {
 }
 
 // What the many-light methods cannot do is refused, not left out.
+// Surfaces in one plane send each other no light: nothing looks for it, and all else is as it was.
+TEST(Sets, APlaneHasNoLightBetweenSurfaces) {
+    Recipe recipe = glowing_ball(10, 3.0f);
+    recipe.settings.smoke.albedo = Rgb(0.8f);
+    const Medium medium = make_medium(recipe);
+    Scene floor, walled;
+    add_quad(floor, {-4, -4, -1.3f}, {8, 0, 0}, {0, 8, 0}, lambert(0.6f));
+    add_quad(floor, {5, -4, -1.3f}, {2, 0, 0}, {0, 8, 0}, lambert(0.2f));
+    EXPECT_TRUE(floor.is_flat());
+    walled = floor;
+    add_quad(walled, {-4, 60, -1.3f}, {8, 0, 0}, {0, 0, 5}, lambert(0.4f));
+    EXPECT_FALSE(walled.is_flat());
+    const Shot shot = shot_of(RenderMethod::LightingGrid);
+    const Surroundings alone(floor, lamps()), beside_wall(walled, lamps());
+    const Plan plan = plan_cells(shot, medium, &alone);
+    EXPECT_FALSE(plan.needs(Cell::SS));
+    EXPECT_TRUE(plan.needs(Cell::MS) && plan.needs(Cell::SV) && plan.needs(Cell::SM) && plan.needs(Cell::SA));
+    EXPECT_TRUE(std::ranges::any_of(plan.skipped, [](const SkippedPart& s) { return s.name == "SS"; }));
+    EXPECT_TRUE(plan_cells(shot, medium, &beside_wall).needs(Cell::SS));
+    floor.materials[0].surface.transmission = 0.5f;
+    const Surroundings pane(floor, lamps());
+    EXPECT_TRUE(plan_cells(shot, medium, &pane).needs(Cell::SS)) << "a pane shows what is behind it";
+    Shot paths = shot_of(RenderMethod::Path);
+    paths.tracing.samples = 8;
+    Progress silent;
+    EXPECT_EQ(render_medium(paths, medium, silent, &beside_wall).statistics.cells.size(), 9u);
+    const RenderedFrame traced = render_medium(paths, medium, silent, &alone);
+    EXPECT_EQ(std::ranges::count(traced.statistics.cells, "SS"), 0);
+}
+
+// Few rays stand for the others of a pixel where it shows one plain surface. By all rays the picture is the same within
+// lighting.error, which is what a pixel may err by, at edges and in penumbrae, too; its mean is the same.
+TEST(Sets, FewRaysLightPlainSurfacesAsAllDo) {
+    const Medium medium = make_medium(glowing_ball(10, 3.0f));
+    Scene scene = stage(medium);
+    add_ball(scene, {-1.6f, -0.8f, -0.9f}, 0.4f, 60, lambert(0.5f));
+    const Surroundings set(std::move(scene), {});
+    Shot few = shot_of(RenderMethod::LightingGrid), all = few;
+    few.camera.samples_per_axis = 0;
+    few.scattering.bounces = all.scattering.bounces = 1;
+    Progress silent;
+    const std::vector<float> seen = render_medium(few, medium, silent, &set).image.layer("SV").pixels,
+                             truth = render_medium(all, medium, silent, &set).image.layer("SV").pixels;
+    double square = 0.0, of_truth = 0.0, worst = 0.0, sum = 0.0, of_sum = 0.0;
+    for (std::size_t i = 0; i < seen.size(); i += 3) {
+        const double difference = seen[i] - truth[i];
+        square += difference * difference;
+        of_truth += double(truth[i]) * truth[i];
+        sum += difference;
+        of_sum += truth[i];
+        worst = std::max(worst, std::abs(difference));
+    }
+    const double rms = std::sqrt(of_truth / (double(kWidth) * kHeight));
+    std::printf("rRMSE %.4f, mean %+.5f, worst pixel %.3f of the RMS\n", std::sqrt(square / of_truth), sum / of_sum,
+                worst / rms);
+    EXPECT_GT(square, 0.0) << "few rays were meant to light it";
+    EXPECT_LT(std::sqrt(square / of_truth), few.lighting.error);
+    EXPECT_LT(std::abs(sum), 0.1 * few.lighting.error * of_sum);
+    EXPECT_LT(worst, 5.0 * few.lighting.error * rms);
+}
+
 TEST(Sets, RefuseWhatTheyCannotDo) {
     const Medium nothing;
     const Surroundings surroundings(stage(nothing), lamps());

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "core/rng.h"
 #include "fixtures/media.h"
+#include "medium/lattice/local_bounds.h"
 #include "shadows/octahedral_directions.h"
 #include "shadows/shadow_maps.h"
 
@@ -120,6 +122,53 @@ TEST(ShadowMaps, AWallDarkensOnlyWhatLiesBehindIt) {
                 ASSERT_LT(last, 1e-4f);
             }
         }
+}
+
+// The texels between which a receiver at `p` is interpolated.
+template <class Visit>
+void for_texels_read(const ShadowMapLayout& layout, const vec3& light, const vec3& p, const Visit& visit) {
+    const vec3 w = p - light;
+    const float sum = std::abs(w.x) + std::abs(w.y) + std::abs(w.z);
+    const vec2 front = vec2(w.x, w.y) / sum;
+    const vec2 at =
+        w.z >= 0.0f ? front
+                    : vec2(std::copysign(1.0f - std::abs(front.y), w.x), std::copysign(1.0f - std::abs(front.x), w.y));
+    const vec2 texel = glm::floor(0.5f * float(layout.resolution) * (at + 1.0f) - 0.5f);
+    for (int k = 0; k < 4; ++k)
+        visit(int(texel.x) + (k & 1), int(texel.y) + (k >> 1));
+}
+
+// Beside the medium a light's map is made where receivers in the medium read it, at all its distances, and nowhere
+// else.
+TEST(ShadowMaps, OfALightOutsideAreMadeWhereTheMediumIs) {
+    const auto lit = testing::single_light(make_medium(block(1e-3f)), ivec3(0));
+    const LocalBounds bounds = local_bounds(lit->medium);
+    const float radius = 0.5f * bounds.diagonal();
+    Rng rng(Stream::Surface, 7);
+    for (const float distance : {1.05f, 1.5f, 4.0f, 20.0f})
+        for (const int resolution : {8, 16, 60})
+            for (int k = 0; k < 20; ++k) {
+                GridLevel level = lit->grid.levels[0];
+                const vec3 aside = glm::normalize(vec3(rng.next(), rng.next(), rng.next()) - 0.5f);
+                level.position = {bounds.middle() + distance * radius * aside};
+                ShadowMapLayout layout = layout_of(level);
+                layout.resolution = resolution;
+                layout.far_distance = (distance + 1.0f) * radius;
+                const std::vector<std::uint16_t> maps = maps_of(*lit, level, layout);
+                for (int i = 0; i < 500; ++i) {
+                    vec3 p = glm::mix(bounds.low, bounds.high, vec3(rng.next(), rng.next(), rng.next()));
+                    if (i < 8)
+                        p = glm::mix(bounds.low, bounds.high, vec3(i & 1, i >> 1 & 1, i >> 2));
+                    for_texels_read(layout, level.position[0], p, [&](int u, int v) {
+                        for (int n = 0; n < layout.distances; ++n)
+                            ASSERT_GT(stored(maps, layout, 0, u, v, n), 0.9f) << distance << " " << resolution;
+                    });
+                }
+                if (distance == 20.0f && resolution == 60)
+                    for_texels_read(layout, level.position[0], level.position[0] + aside, [&](int u, int v) {
+                        ASSERT_EQ(stored(maps, layout, 0, u, v, 0), 0.0f) << "nobody reads it";
+                    });
+            }
 }
 
 TEST(ShadowMaps, LightFadesMonotonicallyWithDistance) {

@@ -120,6 +120,17 @@ TEST(SurfaceRounds, EdgesAndNoToleranceHaveAllRaysAtOnce) {
         }
 }
 
+// Whoever knows of an edge in a pixel keeps all its rays.
+TEST(SurfaceRounds, PixelsThatMayNotSplitHaveAllRaysAtOnce) {
+    const Band band([](int, int, int) { return 1.0f; });
+    const auto may_split = [](std::span<const SurfaceSample> pixel) {
+        EXPECT_EQ(pixel.size(), kRaysOfPixel);
+        return pixel.front().pixel % kAcross != 3;
+    };
+    const SurfaceRounds rounds(band.samples, kAcross, kRaysOfPixel, kTolerance, may_split);
+    EXPECT_EQ(rounds.first().size(), std::size_t(kDown) * ((kAcross - 1) * kRaysOfPixel / 4 + kRaysOfPixel));
+}
+
 TEST(SurfaceRounds, AreNoneWithoutSamples) {
     SurfaceRounds rounds({}, kAcross, kRaysOfPixel, kTolerance);
     EXPECT_TRUE(rounds.first().empty());
