@@ -16,7 +16,7 @@ using testing::CellSurvey;
 using testing::Measurement;
 
 constexpr double kStandardErrors = 4.0;
-const std::vector<std::string> kCells = {"V", "MV", "MM", "MS", "SV", "SM", "SS"};
+const std::vector<std::string> kCells = {"V", "MV", "MM", "MS", "SV", "SM"};
 
 // A ball of burning smoke on a floor.
 FrameInput burning_on_a_floor() {

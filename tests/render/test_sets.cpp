@@ -9,6 +9,7 @@
 #include "fixtures/media.h"
 #include "fixtures/sets.h"
 #include "forecast/plan.h"
+#include "render/draw.h"
 #include "render/render_frame.h"
 
 namespace brisance::test_sets {
@@ -173,6 +174,7 @@ TEST(Sets, APlaneHasNoLightBetweenSurfaces) {
     EXPECT_FALSE(plan.needs(Cell::SS));
     EXPECT_TRUE(plan.needs(Cell::MS) && plan.needs(Cell::SV) && plan.needs(Cell::SM) && plan.needs(Cell::SA));
     EXPECT_TRUE(std::ranges::any_of(plan.skipped, [](const SkippedPart& s) { return s.name == "SS"; }));
+    EXPECT_NE(why_no_virtual_lights(shot, plan)->find("one plane"), std::string::npos);
     EXPECT_TRUE(plan_cells(shot, medium, &beside_wall).needs(Cell::SS));
     floor.materials[0].surface.transmission = 0.5f;
     const Surroundings pane(floor, lamps());
