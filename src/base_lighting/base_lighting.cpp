@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base_lighting/batch_mean.h"
 #include "core/parallel.h"
 
 namespace brisance {
@@ -20,34 +21,9 @@ constexpr std::uint32_t kPixelsAside = 4;
 
 constexpr std::size_t kNeighbourhoodsAtOnce = 4;
 
-// Batches of draws in a penumbra after which their spread tells the error of their mean.
-constexpr std::size_t kLeastBatches = 4;
 // Of all light that would arrive without surfaces between: what is darker may err as if it were that bright.
 constexpr float kDarkest = 0.05f;
 constexpr float kTiny = 1e-30f;
-
-// Mean of what batches of draws found, and whether it is known well enough.
-class BatchMean {
-public:
-    void add(float value) {
-        sum_ += value;
-        squares_ += value * value;
-        ++count_;
-    }
-    // `darkest`: a smaller mean may err like it.
-    bool within(float tolerance, float darkest) const {
-        if (count_ < kLeastBatches)
-            return false;
-        const float n = float(count_), mean = sum_ / n,
-                    variance = std::max(0.0f, squares_ / n - mean * mean) / (n - 1.0f),
-                    tolerated = tolerance * std::max(mean, darkest);
-        return variance <= tolerated * tolerated;
-    }
-
-private:
-    float sum_ = 0.0f, squares_ = 0.0f;
-    std::size_t count_ = 0;
-};
 
 Rgb arriving(const SurfaceReceiver& receiver, int light) {
     return light < 2 ? receiver.fire[light] : receiver.smoke[light - 2];
@@ -385,14 +361,16 @@ std::vector<BaseLight> BaseLighting::light(std::span<const BasePoint> points, co
     return out;
 }
 
-std::vector<BaseLight> BaseLighting::light_by_few_rays(std::span<const BasePoint> points,
-                                                       const SharedReceivers& receivers) const {
+std::vector<BaseLight> BaseLighting::light_alone(std::span<const BasePoint> points, const SharedReceivers& receivers,
+                                                 std::size_t most_batches) const {
     std::vector<BaseLight> out(points.size());
     const SamplesOfReceivers samples(receivers);
     const Neighbourhoods neighbourhoods(medium_, receivers, samples.pixels(points), width_);
     parallel_for(
         neighbourhoods.count(),
-        [&](std::size_t n) { light_alone(neighbourhoods.receivers_of(n), 1, receivers, samples, points, out); },
+        [&](std::size_t n) {
+            light_alone(neighbourhoods.receivers_of(n), most_batches, receivers, samples, points, out);
+        },
         kNeighbourhoodsAtOnce);
     return out;
 }

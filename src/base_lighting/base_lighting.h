@@ -49,9 +49,16 @@ public:
     // One for each point, in the order in which they were added to the receivers, which are lit. Independent of other
     // rows of the picture.
     std::vector<BaseLight> light(std::span<const BasePoint> points, const SharedReceivers& receivers) const;
+    // The same where penumbrae are known to be: no samples test together.
+    std::vector<BaseLight> light_penumbrae(std::span<const BasePoint> points, const SharedReceivers& receivers) const {
+        return light_alone(points, receivers, points.size());
+    }
     // The same by one batch of rays for each receiver and light: enough where a pixel shows many points by chance, as
     // reflected ones are. Whether a part is hidden or not costs the same then, and is not asked before.
-    std::vector<BaseLight> light_by_few_rays(std::span<const BasePoint> points, const SharedReceivers& receivers) const;
+    std::vector<BaseLight> light_by_few_rays(std::span<const BasePoint> points,
+                                             const SharedReceivers& receivers) const {
+        return light_alone(points, receivers, 1);
+    }
 
 private:
     // Fire and smoke, of dense smoke and of thin media.
@@ -72,7 +79,9 @@ private:
     bool settled(std::span<const Together> all, std::size_t receiver) const;
     Seen see_together(int light, const SurfaceReceiver& receiver, const WeightedTargets& targets, const Bases& bases,
                       Rng& rng, std::span<BaseLight> out) const;
-    // Receivers of one neighbourhood, each by at most so many batches of rays.
+    // Receivers that look by themselves, each by at most so many batches of rays; then those of one neighbourhood.
+    std::vector<BaseLight> light_alone(std::span<const BasePoint> points, const SharedReceivers& receivers,
+                                       std::size_t most_batches) const;
     void light_alone(std::span<const std::uint32_t> which, std::size_t most_batches, const SharedReceivers& receivers,
                      const SamplesOfReceivers& samples, std::span<const BasePoint> points,
                      std::span<BaseLight> out) const;

@@ -32,10 +32,14 @@ bool any_transmits(const Scene& scene) {
     return std::ranges::any_of(scene.materials, [](const SceneMaterial& m) { return m.surface.transmission > 0.0f; });
 }
 
-// Whether surfaces can send light to others, or show what lies behind them.
+// Whether surfaces can send light to others, or show what lies behind them. Rough lobes share what they reflect of fire
+// and smoke as they do light between surfaces, so that glossy floors keep that; and what moves may rise from its plane
+// while the shutter is open.
 bool light_goes_between_surfaces(const Surroundings* surroundings) {
-    return surroundings && surroundings->has_surfaces() &&
-           (!surroundings->scene().is_flat() || any_transmits(surroundings->scene()));
+    if (!surroundings || !surroundings->has_surfaces())
+        return false;
+    const Scene& scene = surroundings->scene();
+    return !scene.is_flat() || scene.is_glossy() || scene.animated || any_transmits(scene);
 }
 
 // Which cells can be other than zero.
@@ -178,7 +182,7 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
     if (!plan.surfaces)
         skip("row S, column S", "no surfaces in the shot");
     else if (!light_goes_between_surfaces(surroundings))
-        skip("SS", "all surfaces lie in one plane");
+        skip("SS", "all surfaces are matt and lie in one plane");
     if (!plan.emitters)
         skip("column A", "no analytic lights in the shot");
     if (medium.lattice.empty() && shot.volume.file.empty() && shot.volumes.empty()) {

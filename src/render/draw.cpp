@@ -188,7 +188,7 @@ std::optional<std::string> why_no_virtual_lights(const Shot& shot, const Plan& p
     if (!plan.needs(Cell::SS))
         return shot.scattering.bounces == 0 || shot.scattering.bounces == 1
                    ? "with this scattering.bounces no light goes from surface to surface"
-                   : "all surfaces lie in one plane, so that no light goes from one to another";
+                   : "all surfaces are matt and lie in one plane, so that no light goes from one to another";
     return std::nullopt;
 }
 

@@ -31,16 +31,16 @@ bool Scene::is_glossy() const {
 }
 
 bool Scene::is_flat() const {
-    constexpr float kRounding = 1e-6f;  // of positions, over their distance from a corner
-    std::optional<vec3> corner, normal;
+    constexpr double kRounding = 1e-6;  // of positions, over their distance from a corner
+    std::optional<dvec3> corner, normal;
     for (const SceneMesh& mesh : meshes)
         for (const glm::uvec3& t : mesh.triangles) {
-            const vec3 a = mesh.positions[t.x], b = mesh.positions[t.y], c = mesh.positions[t.z];
-            if (const vec3 n = glm::cross(b - a, c - a); !normal && glm::dot(n, n) > 0.0f) {
+            const dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
+            if (const dvec3 n = glm::cross(b - a, c - a); !normal && glm::dot(n, n) > 0.0) {
                 corner = a;
                 normal = glm::normalize(n);
             }
-            for (const vec3& p : {a, b, c})
+            for (const dvec3& p : {a, b, c})
                 if (normal && std::abs(glm::dot(*normal, p - *corner)) > kRounding * glm::length(p - *corner))
                     return false;
         }

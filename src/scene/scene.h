@@ -83,7 +83,8 @@ struct Scene {
     std::size_t triangle_count() const;
     // Whether any surface has lobes other than Lambert's.
     bool is_glossy() const;
-    // Whether all triangles lie in one plane, as those of a floor do: none of them sends light to another.
+    // Whether all triangles lie in one plane, as those of a floor do: none of them sends light to another. A slanted
+    // plane whose first triangle is small may be missed, for that does not know its normal well.
     bool is_flat() const;
     std::uint64_t bytes() const;  // shared textures included
 };

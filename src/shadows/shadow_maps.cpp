@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "core/parallel.h"
-#include "medium/lattice/local_bounds.h"
 #include "medium/phase.h"
-#include "shadows/octahedral_directions.h"
+#include "shadows/seen_texels.h"
 #include "shadows/shadow_kernels.h"
 #include "shadows/surface_shadows.h"
 
@@ -70,110 +68,6 @@ struct Steps {
             add_steps(pyramid, level, layout, at(k - 1), at(k), k, far);
         }
     }
-};
-
-// The texels of a map, in square tiles, so that rays of one vector run through the same smoke and become opaque in it,
-// or leave it, at about the same distance.
-struct TexelTable {
-    static constexpr int kTile = 4;  // texels along a side
-    static constexpr std::size_t kRays = std::size_t(kTile) * kTile;
-    int resolution, tiles_aside;
-    std::vector<vec3> direction;  // unit, of the rays of each tile in turn
-
-    explicit TexelTable(int texels) : resolution(texels), tiles_aside((texels + kTile - 1) / kTile) {
-        for (std::size_t tile = 0; tile < tiles(); ++tile)
-            for (std::size_t ray = 0; ray < kRays; ++ray) {
-                // Past the edge, the last texel is repeated.
-                const glm::ivec2 at = glm::min(texel_of(tile, ray), glm::ivec2(texels - 1));
-                direction.push_back(octahedral_direction((2.0f * float(at.x) + 1.0f) / float(texels) - 1.0f,
-                                                         (2.0f * float(at.y) + 1.0f) / float(texels) - 1.0f));
-            }
-    }
-    std::size_t tiles() const { return std::size_t(tiles_aside) * tiles_aside; }
-    glm::ivec2 texel_of(std::size_t tile, std::size_t ray) const {
-        return kTile * glm::ivec2(int(tile) / tiles_aside, int(tile) % tiles_aside) +
-               glm::ivec2(int(ray) / kTile, int(ray) % kTile);
-    }
-};
-
-// How far apart in direction texels that are interpolated lie at most, times the resolution [rad].
-constexpr float kTexelAngle = 9.0f;
-
-// The part of a map that receivers in the medium read: around the directions from its light to them. What lies aside
-// is not made. For a light within reach of all directions, and for receivers anywhere, it is the whole map.
-class SeenTexels {
-public:
-    // Keeps references.
-    SeenTexels(const TexelTable& texels, const Medium& medium, const ShadowMapLayout& layout)
-        : texels_(texels),
-          index_from_local_(medium.index_from_local),
-          bounds_(local_bounds(medium)),
-          distances_(layout.distances),
-          whole_(layout.for_outside),
-          seen_(std::size_t(texels.resolution) * texels.resolution) {}
-
-    void look_from(const vec3& light) {
-        const vec3 to = bounds_.middle() - light;
-        const float distance = glm::length(to), radius = 0.5f * bounds_.diagonal();
-        const float angle =
-            whole_ || radius >= distance ? kPi : std::asin(radius / distance) + kTexelAngle / float(texels_.resolution);
-        const float least = angle < kPi ? distance * std::cos(angle) : -std::numeric_limits<float>::infinity();
-        tiles_.clear();
-        for (auto& d : direction_)
-            d.clear();
-        for (std::size_t tile = 0; tile < texels_.tiles(); ++tile) {
-            const std::span rays = std::span(texels_.direction).subspan(tile * TexelTable::kRays, TexelTable::kRays);
-            const bool seen = std::ranges::any_of(rays, [&](const vec3& d) { return glm::dot(d, to) >= least; });
-            mark(tile, seen);
-            for (std::size_t ray = 0; seen && ray < rays.size(); ++ray)
-                for (int a = 0; a < 3; ++a)
-                    direction_[a].push_back((index_from_local_ * rays[ray])[a]);
-        }
-        marched_.resize(rays() * distances_);
-    }
-
-    // Those to march, and where what they find belongs: rays() times the map's distances.
-    std::size_t rays() const { return tiles_.size() * TexelTable::kRays; }
-    const float* direction(int axis) const { return direction_[axis].data(); }  // nodes per metre
-    std::uint16_t* marched() { return marched_.data(); }
-
-    bool has(std::size_t texel) const { return seen_[texel] != 0; }
-    // Copies what was marched to rows of texels. Those that are not seen begin with 0.
-    void put_in_rows(std::uint16_t* rows) const {
-        for (std::size_t texel = 0; texel < seen_.size(); ++texel)
-            if (!has(texel))
-                rows[texel * distances_] = 0;
-        for (std::size_t k = 0; k < tiles_.size(); ++k)
-            for_texels(tiles_[k], [&](std::size_t texel, std::size_t ray) {
-                std::copy_n(marched_.begin() + std::ptrdiff_t((k * TexelTable::kRays + ray) * distances_), distances_,
-                            rows + texel * distances_);
-            });
-    }
-
-private:
-    template <class Visit>
-    void for_texels(std::size_t tile, const Visit& visit) const {
-        for (std::size_t ray = 0; ray < TexelTable::kRays; ++ray) {
-            const glm::ivec2 at = texels_.texel_of(tile, ray);
-            if (at.x < texels_.resolution && at.y < texels_.resolution)
-                visit(std::size_t(at.x) * texels_.resolution + at.y, ray);
-        }
-    }
-    void mark(std::size_t tile, bool seen) {
-        if (seen)
-            tiles_.push_back(tile);
-        for_texels(tile, [&](std::size_t texel, std::size_t) { seen_[texel] = seen; });
-    }
-
-    const TexelTable& texels_;
-    mat3 index_from_local_;
-    LocalBounds bounds_;
-    std::size_t distances_;
-    bool whole_;
-    std::vector<std::size_t> tiles_;
-    std::vector<float> direction_[3];
-    std::vector<std::uint16_t> marched_;
-    std::vector<std::uint8_t> seen_;  // each texel
 };
 
 // Where rays of a light start: offsets from its centre [nodes] to kStarts of the voxels it represents, in a scattered
@@ -271,7 +165,7 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
                        std::vector<std::uint16_t>& maps, const Occluders* occluders) {
     std::vector<std::uint32_t> list(count);
     std::iota(list.begin(), list.end(), static_cast<std::uint32_t>(first));
-    maps.resize(count * layout.stride());
+    maps.assign(count * layout.stride(), 0);
     build_shadow_maps(pyramid, level, weights, escape, layout, list, maps.data(), occluders);
 }
 
@@ -292,7 +186,7 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
     const bool by_bricks = !layout.for_outside && level.level >= FootprintPicker::kLevelOfWholeBricks;
     const BrickWeights bricks = by_bricks ? sum_over_bricks(medium, weights) : BrickWeights{};
     parallel_blocks(list.size(), 8, [&](std::size_t begin, std::size_t end) {
-        SeenTexels seen(texels, medium, layout);
+        SeenTexels seen(texels, medium, layout.distances, layout.for_outside);
         std::vector<std::uint16_t> interior(std::size_t(layout.resolution) * layout.resolution * layout.distances);
         Starts starts;
         FootprintPicker picker(medium, weights, level.level, by_bricks ? &bricks : nullptr);

@@ -21,6 +21,7 @@
 //    through a room full of thin smoke are long.
 //  - Rays see density averaged over a sixteenth of the light's spacing near the light, shrinking to single voxels at
 //    the far end.
+//  - A light outside of the sphere around the medium has the part of a map that receivers in the medium read.
 #pragma once
 
 #include <cstdint>
@@ -71,7 +72,7 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
                        const NodeWeights* escape, const ShadowMapLayout& layout, std::size_t first, std::size_t count,
                        std::vector<std::uint16_t>& maps, const Occluders* occluders = nullptr);
 
-// Builds the maps of the lights in `list`, one after another in `maps`.
+// Builds the maps of the lights in `list`, one after another in `maps`, which begin as zeros.
 void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const NodeWeights& weights,
                        const NodeWeights* escape, const ShadowMapLayout& layout, std::span<const std::uint32_t> list,
                        std::uint16_t* maps, const Occluders* occluders = nullptr);

@@ -9,9 +9,11 @@ namespace brisance {
 
 namespace {
 
-// Least cosine between the triangles' normals, and how far from the first one's plane rays may meet others, over the
-// distance to the first one's ray.
-constexpr double kFacesAlike = 0.999, kOffPlane = 1.0 / 16;
+// Least cosine between the triangles' normals.
+constexpr double kFacesAlike = 0.999;
+// How far rays may meet others off the plane of the first, over the distance to its ray: what their angle explains, and
+// rounding.
+constexpr double kRounding = 1e-4;
 
 bool is_plain(const SceneMaterial& m) {
     const TextureUse* const uses[] = {&m.base_colour, &m.metal_rough,     &m.transmission,
@@ -36,7 +38,9 @@ bool shows_plain_surface(const Scene& scene, std::span<const SurfaceSample> pixe
             return true;
         const dvec3 n = glm::normalize(triangle_of(scene, s.hit.mesh, s.hit.triangle).normal()),
                     aside = position(s) - position(pixel.front());
-        return glm::dot(n, normal) > kFacesAlike && std::abs(glm::dot(aside, normal)) <= kOffPlane * glm::length(aside);
+        const double sine = glm::length(glm::cross(n, normal));
+        return glm::dot(n, normal) > kFacesAlike &&
+               std::abs(glm::dot(aside, normal)) <= (sine + kRounding) * glm::length(aside);
     });
 }
 

@@ -17,8 +17,8 @@ namespace brisance {
 
 struct SurfaceShader::ShadedPoint {
     BehindMirrors seen;
-    Rng ray_rng;  // for rays through the medium
-    int vertices;
+    Rng ray_rng{Stream::RayLightSurface, 0};  // for rays through the medium
+    int vertices = 0;
     float stands_for = 0.0f;                                                        // that of SurfaceRounds
     std::optional<SharedBounce::Sample> base = std::nullopt, gloss = std::nullopt,  // left to all pixels
         sky = std::nullopt;
@@ -26,11 +26,9 @@ struct SurfaceShader::ShadedPoint {
     std::optional<double> closeness = std::nullopt;  // ... by what its ray met [1/m]
     std::vector<LightReuse::Sample> chosen = {};     // left to samples around
     BoundTally bound = {};                           // of what is not left to all pixels
-
-    ShadedPoint() : ray_rng(Stream::RayLightSurface, 0), vertices(0) {}
 };
 
-// The points of those samples of a call that are needed, made as they are. They are large, so that others have none.
+// The points of those samples of a call that are shaded. They are large, so that other samples have none.
 class SurfaceShader::Points {
 public:
     explicit Points(std::size_t samples) : place_(samples, kNone) {}

@@ -73,7 +73,7 @@ void SurfaceShader::prepare(const Samples& samples, const Some& some, Points& po
 
 // What the bases of some points reflect of the medium's light, in their order.
 std::vector<BaseLight> SurfaceShader::light_bases(const Samples& samples, const Some& some, const Points& points,
-                                                  bool reflected) {
+                                                  LightBases how) {
     if (some.empty() || !input_.medium_lighting || !input_.medium_lighting->lights_surfaces())
         return std::vector<BaseLight>(some.size());
     const Medium& medium = input_.paths.direct().field().medium();
@@ -89,7 +89,7 @@ std::vector<BaseLight> SurfaceShader::light_bases(const Samples& samples, const 
                   [&](std::vector<SurfaceReceiver>& at) { input_.medium_lighting->at_surfaces(at); });
     const BaseLighting lighting(medium, *input_.medium_lighting, panes_, samples_through_panes(), input_.width,
                                 input_.base_tolerance, input_.seed);
-    return reflected ? lighting.light_by_few_rays(bases, receivers) : lighting.light(bases, receivers);
+    return (lighting.*how)(bases, receivers);
 }
 
 // Lights bases by the medium: of all samples, or of a few that stand for the others of their pixel.
@@ -98,9 +98,9 @@ SurfaceRounds SurfaceShader::bases_in_rounds(const Samples& samples, Points& poi
                          [&](auto pixel) { return shows_plain_surface(surroundings_.scene(), pixel); });
     const std::vector<float> none(samples.size());
     SurfaceRounds::Found known{none, none};
-    const auto light_some = [&](const Some& some) {
+    const auto light_some = [&](const Some& some, LightBases how) {
         prepare(samples, some, points, light);
-        const std::vector<BaseLight> bases = light_bases(samples, some, points, false);
+        const std::vector<BaseLight> bases = light_bases(samples, some, points, how);
         for (std::size_t k = 0; k < some.size(); ++k) {
             const std::size_t i = some[k];
             if (!points[i].seen.lost)
@@ -108,8 +108,8 @@ SurfaceRounds SurfaceShader::bases_in_rounds(const Samples& samples, Points& poi
             known.noisy[i] = luminance(light[i]);
         }
     };
-    light_some(rounds.first());
-    light_some(rounds.second(none, known));
+    light_some(rounds.first(), &BaseLighting::light);
+    light_some(rounds.second(none, known), &BaseLighting::light_penumbrae);
     return rounds;
 }
 
@@ -227,7 +227,7 @@ void SurfaceShader::shade_reflected(const Samples& samples, const Some& some, Po
 void SurfaceShader::light_reflected(const Samples& by, Points& there, Light& found) {
     Some all(by.size());
     std::iota(all.begin(), all.end(), std::size_t(0));
-    const std::vector<BaseLight> bases = light_bases(by, all, there, true);
+    const std::vector<BaseLight> bases = light_bases(by, all, there, &BaseLighting::light_by_few_rays);
     for (const std::size_t k : all)
         add_base(bases[k], there[k], found[k]);
     shade_some(by, all, there, found);

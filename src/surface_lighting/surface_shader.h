@@ -85,7 +85,9 @@ private:
     using Some = std::vector<std::size_t>;  // samples, by their index
     using Light = std::vector<CellSum>;     // of each sample
     void prepare(const Samples& samples, const Some& some, Points& points, Light& light) const;
-    std::vector<BaseLight> light_bases(const Samples& samples, const Some& some, const Points& points, bool reflected);
+    using LightBases = std::vector<BaseLight> (BaseLighting::*)(std::span<const BasePoint>,
+                                                                const SharedReceivers&) const;
+    std::vector<BaseLight> light_bases(const Samples& samples, const Some& some, const Points& points, LightBases how);
     SurfaceRounds bases_in_rounds(const Samples& samples, Points& points, Light& light);
     void add_base(const BaseLight& base, const ShadedPoint& at, CellSum& light) const;
     void tell(const Samples& samples, const Some& some, const Points& points, const Light& found,

@@ -24,7 +24,7 @@ struct SurfaceMaterial {
     bool thin = false;          // light is transmitted as through a sheet, without refraction
 };
 
-// The diffuse one.
+// Whether some light scatters diffusely.
 inline bool has_base(const SurfaceMaterial& m) {
     return m.metallic < 1.0f && m.transmission < 1.0f && m.base_colour != Rgb(0.0f);
 }

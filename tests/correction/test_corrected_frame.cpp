@@ -112,10 +112,12 @@ TEST(CorrectedFrames, KeepTheSumsOfBounces) {
     }
 }
 
-// A floor under the ball.
-Surroundings floor_under() {
+// A floor under the ball, and a wall behind it.
+Surroundings floor_under(bool wall = false) {
     Scene scene;
     add_quad(scene, {-4, -4, -1.1f}, {8, 0, 0}, {0, 8, 0}, lambert(0.7f));
+    if (wall)
+        add_quad(scene, {-4, 3, -1.1f}, {8, 0, 0}, {0, 0, 4}, lambert(0.7f));
     return Surroundings(std::move(scene), {});
 }
 
@@ -129,7 +131,7 @@ Shot shot_over_floor(float error) {
 
 // Of sets, too: every cell by its own light.
 TEST(CorrectedFrames, OfSetsStillAddUp) {
-    const Surroundings set = floor_under();
+    const Surroundings set = floor_under(true);
     Shot shot = shot_over_floor(0.02f);
     EXPECT_EQ(samples_of(render(shot, &set)), 0.0);
     shot.correction.samples = 5000;

@@ -155,7 +155,6 @@ TEST(Sets, WhatIsNotThereIsNotPlanned) {
     EXPECT_GT(whole(frame.image.layer("")).sum, 0.0);
 }
 
-// What the many-light methods cannot do is refused, not left out.
 // Surfaces in one plane send each other no light: nothing looks for it, and all else is as it was.
 TEST(Sets, APlaneHasNoLightBetweenSurfaces) {
     Recipe recipe = glowing_ball(10, 3.0f);
@@ -179,6 +178,10 @@ TEST(Sets, APlaneHasNoLightBetweenSurfaces) {
     floor.materials[0].surface.transmission = 0.5f;
     const Surroundings pane(floor, lamps());
     EXPECT_TRUE(plan_cells(shot, medium, &pane).needs(Cell::SS)) << "a pane shows what is behind it";
+    floor.materials[0].surface.transmission = 0.0f;
+    floor.materials[0].surface.specular = 1.0f;
+    const Surroundings polished(floor, lamps());
+    EXPECT_TRUE(plan_cells(shot, medium, &polished).needs(Cell::SS)) << "pixels share what rough lobes reflect";
     Shot paths = shot_of(RenderMethod::Path);
     paths.tracing.samples = 8;
     Progress silent;
@@ -218,6 +221,7 @@ TEST(Sets, FewRaysLightPlainSurfacesAsAllDo) {
     EXPECT_LT(worst, 5.0 * few.lighting.error * rms);
 }
 
+// What the many-light methods cannot do is refused, not left out.
 TEST(Sets, RefuseWhatTheyCannotDo) {
     const Medium nothing;
     const Surroundings surroundings(stage(nothing), lamps());

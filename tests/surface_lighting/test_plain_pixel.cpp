@@ -11,14 +11,15 @@ namespace {
 using namespace testing;
 
 // What 4 x 4 rays from above see of the square of that side about a point.
-std::vector<SurfaceSample> pixel_at(const Scene& scene, const dvec3& at, double side = 0.1) {
+std::vector<SurfaceSample> pixel_at(const Scene& scene, const dvec3& at, double side = 0.1,
+                                    const dvec3& from = {0.0, 0.0, 10.0}) {
     const Intersector surfaces(scene);
     std::vector<SurfaceSample> samples;
     for (int k = 0; k < 16; ++k) {
         SurfaceSample s{};
         s.number = std::uint64_t(k);
         const dvec3 below = at + side * dvec3((k % 4 - 1.5) / 4.0, (k / 4 - 1.5) / 4.0, 0.0);
-        s.ray = {below + dvec3(0.0, 0.0, 10.0), dvec3(0.0, 0.0, -1.0)};
+        s.ray = {below + from, -glm::normalize(from)};
         const auto hit = surfaces.first_hit(s.ray);
         if (!hit)
             return {};
@@ -64,6 +65,9 @@ TEST(PlainPixel, IsNoStepAndNoRidgeOfOneMesh) {
     for (const glm::uvec3& t : other.meshes[0].triangles)
         mesh.triangles.push_back(t + std::uint32_t(corners));
     EXPECT_FALSE(plain(scene, {0.0, 0.3, 0.0})) << "a step";
+    const std::vector<SurfaceSample> grazing = pixel_at(scene, {0.0, 0.3, 0.005}, 1.0, {10.0, 0.0, 0.3});
+    ASSERT_EQ(grazing.size(), 16u);
+    EXPECT_FALSE(shows_plain_surface(scene, grazing)) << "a step seen from far";
     EXPECT_TRUE(plain(scene, {0.5, 0.3, 0.0}));
     Scene ridge;
     SceneMesh roof;

@@ -19,6 +19,8 @@ namespace {
 constexpr std::size_t kParticlesAtOnce = 1024;
 // Of the light that arrives at surfaces, what may be left out.
 constexpr double kUnsharedLeft = 0.01;
+// Of the particles of light that is theirs alone, at least: a place of the smoke may be lit by them alone.
+constexpr double kLeastParticles = 0.25;
 // Of the power that arrived, what a track carries that has survived roulette.
 constexpr float kPowerOfTrack = 1.0f / 1024.0f;
 // Particles from infinity start toward a ball around the smoke whose radius is so many times the smoke's.
@@ -59,7 +61,7 @@ BoundingBall ball_around_smoke(const TrackingField& field) {
     return {0.5 * (low + high), kAround * 0.5 * glm::length(high - low)};
 }
 
-// About how much of the light that surfaces send on is particles'. Of so many fewer, the noise is the same part of all.
+// About how much of the light that surfaces send on is particles'.
 double part_by_particles(const DirectLight& scene, const VirtualLights* lights, float share) {
     if (!lights || share > 0.0f || scene.surroundings()->scene().is_glossy())
         return 1.0;
@@ -132,10 +134,11 @@ SpecularPhotons::SpecularPhotons(const DirectLight& scene, const VirtualLights* 
     : scene_(scene), lights_(lights), seed_(settings.seed), share_(share) {
     if (!scene.lights_surfaces())
         return;
-    const double part = part_by_particles(scene, lights, share);
-    if (part > kUnsharedLeft)
-        particles_ = static_cast<std::size_t>(
-            std::ceil(part * double(settings.photons == kAutomaticPhotons ? kMostAutomaticPhotons : settings.photons)));
+    // Of so many fewer, the noise is the same part of all light.
+    if (const double part = part_by_particles(scene, lights, share); part > kUnsharedLeft)
+        particles_ = settings.photons == kAutomaticPhotons
+                         ? std::size_t(std::ceil(std::max(part, kLeastParticles) * kMostAutomaticPhotons))
+                         : std::size_t(settings.photons);
     if (empty())
         return;
     smoke_ = points_of_smoke(scene.field());
