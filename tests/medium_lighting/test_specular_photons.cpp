@@ -165,12 +165,6 @@ TEST(SpecularPhotons, CarryTheShareThatVirtualLightsLeave) {
         const double carried = fluence(SpecularPhotons(direct, &lights, settings, share)) / all;
         EXPECT_NEAR(carried, not_held + share * (1.0 - not_held), 0.025) << share;
     }
-    // Particles whose number is theirs to choose are fewer, and bring the same.
-    settings.photons = kAutomaticPhotons;
-    const SpecularPhotons fewer(direct, &lights, settings);
-    EXPECT_LT(fewer.particles(), std::size_t(kMostAutomaticPhotons));
-    EXPECT_GE(double(fewer.particles()), lights.report().photons.unshared_fraction() * double(kMostAutomaticPhotons));
-    EXPECT_NEAR(fluence(fewer) / all, not_held, 0.025);
     const auto power = [&](float share) {
         double sum = 0.0;
         for (const PointLights& side : points_of_virtual_lights(lights, share))
