@@ -175,13 +175,14 @@ Plan plan_cells(const Shot& shot, const Medium& medium, const Surroundings* surr
     plan.surfaces = surroundings && surroundings->has_surfaces();
     plan.emitters = surroundings && !surroundings->emitters().empty();
     plan.emission = medium.emits();
-    decide(plan, medium.scatters(), plan.emitters && surroundings->emitters().visible(),
-           light_goes_between_surfaces(surroundings), shot.scattering.bounces);
+    const bool between_surfaces = light_goes_between_surfaces(surroundings);
+    decide(plan, medium.scatters(), plan.emitters && surroundings->emitters().visible(), between_surfaces,
+           shot.scattering.bounces);
     const std::string owner = choose_owners(plan, shot, medium, skip);
     choose_samplings(plan, shot);
     if (!plan.surfaces)
         skip("row S, column S", "no surfaces in the shot");
-    else if (!light_goes_between_surfaces(surroundings))
+    else if (!between_surfaces)
         skip("SS", "all surfaces are matt and lie in one plane");
     if (!plan.emitters)
         skip("column A", "no analytic lights in the shot");
