@@ -22,15 +22,9 @@ constexpr int kMostPatches = 4;  // of a pixel
 // many pixels.
 constexpr float kSameNormal = 0.9f, kSamePlane = 2.0f;
 
-// Neighbours share nothing where their normals have one less this cosine, for a lobe of width 1, where their planes lie
-// apart by this part of the radius, or where the widths of their lobes differ by this part.
-constexpr float kOtherNormal = 0.2f, kOtherPlane = 0.1f, kOtherLobe = 0.2f;
-
-// 1 for lobes of the same width, 0 for others.
-float alike(float lobe, float other) {
-    const float apart = (lobe - other) / (kOtherLobe * std::max(lobe, other));
-    return std::max(0.0f, 1.0f - apart * apart);
-}
+// Neighbours share nothing where their normals have one less this cosine, for a lobe of width 1, or where their planes
+// lie apart by this part of the radius.
+constexpr float kOtherNormal = 0.2f, kOtherPlane = 0.1f;
 
 float square(float x) {
     return x * x;
@@ -44,48 +38,55 @@ float turned(float lobe) {
 }  // namespace
 
 SharedBounce::SharedBounce(int width, int height, double radius, int rays, std::vector<Apart> told)
-    : width_(width),
-      height_(height),
-      radius_(float(radius * std::pow(double(kUsualRays) / std::max(rays, 1), 1.0 / 6.0))),
+    : radius_(float(radius * std::pow(double(kUsualRays) / std::max(rays, 1), 1.0 / 6.0))),
       told_(std::move(told)),
-      first_(std::size_t(width) * height, kNone) {}
+      map_(width, height) {
+    light_.kinds = 1 + told_.size();
+}
 
-// Lists that grow hold up to twice what is in them. Sharing makes radii and new light beside.
+// Lists that grow hold up to twice what is in them. Sharing makes radii and new light beside; where noise is taken away,
+// its squares and what is left.
 std::uint64_t SharedBounce::bytes_of(int width, int height, std::size_t told) {
     constexpr std::uint64_t kLobes = 2, kGrowth = 2;
-    const std::uint64_t apart = told * (kGrowth + 1) * sizeof(Rgb);
-    const std::uint64_t patch = kGrowth * sizeof(Patch) + sizeof(float) + sizeof(Rgb) + apart;
+    const std::uint64_t light = (kGrowth + 1) * sizeof(HalvedLight::Halves) + 2 * sizeof(Rgb) + 2 * sizeof(float);
+    const std::uint64_t patch = kGrowth * sizeof(Patch) + (kGrowth + 2) * sizeof(float) + (1 + told) * light;
     return std::uint64_t(width) * std::uint64_t(height) * (sizeof(std::uint32_t) + sizeof(Rgb) + kLobes * patch);
 }
 
 bool SharedBounce::add(const Sample& s) {
-    std::uint32_t* at = &first_[s.pixel];
-    for (int patches = 0; *at != kNone; ++patches) {
-        const Patch& p = patches_[*at];
+    std::vector<Patch>& patches = map_.patches;
+    std::uint32_t* at = &map_.first[s.pixel];
+    for (int others = 0; *at != PatchMap::kNone; ++others) {
+        const Patch& p = patches[*at];
         const vec3 normal = glm::normalize(p.normal);
         const float off_plane = std::abs(glm::dot(s.position - p.position / p.samples, normal));
         if (glm::dot(s.normal, normal) > kSameNormal && off_plane < kSamePlane * s.pixel_size &&
             alike(s.lobe, p.lobe / p.samples) > 0.0f)
             break;
-        if (patches + 1 == kMostPatches)
+        if (others + 1 == kMostPatches)
             return false;
-        at = &patches_[*at].next;
+        at = &patches[*at].next;
     }
-    const std::size_t found = *at == kNone ? patches_.size() : *at;
-    if (*at == kNone) {
+    const std::size_t found = *at == PatchMap::kNone ? patches.size() : *at;
+    if (*at == PatchMap::kNone) {
         *at = static_cast<std::uint32_t>(found);
-        patches_.emplace_back();  // may move what `at` points to
-        apart_.resize(apart_.size() + told_.size(), Rgb(0.0f));
+        patches.emplace_back();  // may move what `at` points to
+        light_.lights.resize(light_.lights.size() + light_.kinds);
+        light_.first.push_back(0.0f);
     }
+    Patch& p = patches[found];
+    // Neighbours begin with different halves: pixels may have one sample.
+    const std::size_t half = (s.pixel + s.pixel / std::uint32_t(map_.width) + std::uint32_t(p.samples)) % 2;
+    HalvedLight::Halves* const lights = &light_.lights[found * light_.kinds];
+    lights[0][half] += s.light;
     for (std::size_t t = 0; t < told_.size(); ++t)
-        apart_[found * told_.size() + t] += s.of(told_[t]);
-    Patch& p = patches_[found];
+        lights[1 + t][half] += s.of(told_[t]);
+    light_.first[found] += half == 0 ? 1.0f : 0.0f;
     p.position += s.position;
     p.normal += s.normal;
     p.pixel_size += s.pixel_size;
     p.area += s.area;
     p.lobe += s.lobe;
-    p.light += s.light;
     p.weight += s.weight;
     p.closeness += s.closeness;
     p.met += s.closeness > 0.0f ? 1.0f : 0.0f;
@@ -94,45 +95,43 @@ bool SharedBounce::add(const Sample& s) {
 }
 
 void SharedBounce::take_means() {
-    for (std::size_t k = 0; k < apart_.size(); ++k)
-        apart_[k] /= patches_[k / told_.size()].samples;
-    for (Patch& p : patches_) {
+    for (std::size_t k = 0; k < map_.patches.size(); ++k) {
+        Patch& p = map_.patches[k];
         const float each = 1.0f / p.samples;
         p.position *= each;
         p.normal = glm::normalize(p.normal);
         p.pixel_size *= each;
         p.area *= each;
         p.lobe *= each;
-        p.light *= each;
         p.closeness *= each;
         p.met *= each;
+        const float in_half[2] = {light_.first[k], p.samples - light_.first[k]};
+        for (std::size_t i = k * light_.kinds; i < (k + 1) * light_.kinds; ++i)
+            for (std::size_t h = 0; h < 2; ++h)
+                if (in_half[h] > 0.0f)
+                    light_.lights[i][h] /= in_half[h];
+        for (std::size_t i = k * light_.kinds; i < (k + 1) * light_.kinds; ++i)
+            for (std::size_t h = 0; h < 2; ++h)
+                if (in_half[h] == 0.0f)
+                    light_.lights[i][h] = light_.lights[i][1 - h];
+        light_.first[k] *= each;
     }
-}
-
-template <class Visit>
-void SharedBounce::for_each_patch(const Visit& visit) const {
-    parallel_for(
-        first_.size(),
-        [&](std::size_t pixel) {
-            for (std::uint32_t k = first_[pixel]; k != kNone; k = patches_[k].next)
-                visit(pixel, k);
-        },
-        256);
 }
 
 template <class Take>
 void SharedBounce::for_neighbours(std::size_t pixel, const Patch& patch, float radius, int step,
                                   const Take& take) const {
-    const int x = int(pixel % std::size_t(width_)), y = int(pixel / std::size_t(width_));
+    const int x = int(pixel % std::size_t(map_.width)), y = int(pixel / std::size_t(map_.width));
     const int reach = std::min(kReach, int(radius / (patch.pixel_size * float(step))) + 1);
     const float inverse = 1.0f / radius, least_facing = 1.0f - kOtherNormal * square(turned(patch.lobe));
     for (int dy = -reach; dy <= reach; ++dy)
         for (int dx = -reach; dx <= reach; ++dx) {
             const int u = x + dx * step, v = y + dy * step;
-            if (u < 0 || u >= width_ || v < 0 || v >= height_)
+            if (u < 0 || u >= map_.width || v < 0 || v >= map_.height)
                 continue;
-            for (std::uint32_t k = first_[std::size_t(v) * width_ + u]; k != kNone; k = patches_[k].next) {
-                const Patch& other = patches_[k];
+            for (std::uint32_t k = map_.first[std::size_t(v) * map_.width + u]; k != PatchMap::kNone;
+                 k = map_.patches[k].next) {
+                const Patch& other = map_.patches[k];
                 const vec3 offset = (other.position - patch.position) * inverse;
                 const float far = glm::dot(offset, offset), facing = glm::dot(other.normal, patch.normal);
                 const float off_plane = glm::dot(offset, patch.normal) / kOtherPlane;
@@ -148,15 +147,15 @@ void SharedBounce::for_neighbours(std::size_t pixel, const Patch& patch, float r
 // How far each patch shares [m]; 0 where the camera touches the surface. Distances to surfaces around are noisy
 // themselves and are averaged first. Rays that meet none bring no light, and say nothing of how it changes.
 std::vector<float> SharedBounce::radii() const {
-    std::vector<float> radius(patches_.size(), 0.0f);
-    for_each_patch([&](std::size_t pixel, std::uint32_t k) {
-        const Patch& p = patches_[k];
+    std::vector<float> radius(map_.patches.size(), 0.0f);
+    map_.for_each([&](std::size_t pixel, std::uint32_t k) {
+        const Patch& p = map_.patches[k];
         if (!(p.pixel_size > 0.0f))
             return;
         float closeness = 0.0f, met = 0.0f;
         for_neighbours(pixel, p, kReach * p.pixel_size, 1, [&](std::uint32_t j, float w) {
-            closeness += w * patches_[j].closeness;
-            met += w * patches_[j].met;
+            closeness += w * map_.patches[j].closeness;
+            met += w * map_.patches[j].met;
         });
         const float least = p.lobe == 1.0f ? kLeastPixels * p.pixel_size : 0.0f, most = kMostPixels * p.pixel_size;
         radius[k] = closeness > 0.0f ? std::clamp(radius_ * p.lobe * met / closeness, least, most) : most;
@@ -165,39 +164,25 @@ std::vector<float> SharedBounce::radii() const {
 }
 
 void SharedBounce::share(const std::vector<float>& radius, int step) {
-    std::vector<Rgb> light(patches_.size()), apart(apart_);
-    const std::size_t told = told_.size();
-    for_each_patch([&](std::size_t pixel, std::uint32_t k) {
-        const Patch& p = patches_[k];
-        light[k] = p.light;
+    HalvedLight out = light_;
+    map_.for_each([&](std::size_t pixel, std::uint32_t k) {
+        const Patch& p = map_.patches[k];
         // What is nearer than a step has been shared by the step before.
         if (radius[k] <= (step > 1 ? float(step) * p.pixel_size : 0.0f))
             return;
-        Rgb sum(0.0f);
-        Aparts sums{};
-        float weights = 0.0f;
+        MeanOfHalves mean(light_);
         for_neighbours(pixel, p, std::min(radius[k], float(kReach * step) * p.pixel_size), step,
                        [&](std::uint32_t j, float w) {
                            // Nor farther than the neighbour shares: beside things its light changes quickly.
-                           const vec3 offset = patches_[j].position - p.position;
+                           const vec3 offset = map_.patches[j].position - p.position;
                            const float within = 1.0f - glm::dot(offset, offset) / square(radius[j]);
-                           if (j != k && !(within > 0.0f))
-                               return;
-                           w *= j == k ? 1.0f : square(within);
-                           sum += w * patches_[j].light;
-                           weights += w;
-                           for (std::size_t t = 0; t < told; ++t)
-                               sums[t] += w * apart_[j * told + t];
+                           if (j == k || within > 0.0f)
+                               mean.add(j, w * (j == k ? 1.0f : square(within)));
                        });
-        if (!(weights > 0.0f))
-            return;
-        light[k] = sum / weights;
-        for (std::size_t t = 0; t < told; ++t)
-            apart[k * told + t] = sums[t] / weights;
+        if (mean.any())
+            mean.put(out, k);
     });
-    apart_.swap(apart);
-    for (std::size_t k = 0; k < patches_.size(); ++k)
-        patches_[k].light = light[k];
+    light_ = std::move(out);
 }
 
 std::vector<Rgb> SharedBounce::take_pixels() {
@@ -205,8 +190,11 @@ std::vector<Rgb> SharedBounce::take_pixels() {
     const std::vector<float> radius = radii();
     for (const int step : kSteps)
         share(radius, step);
-    std::vector<Rgb> out(first_.size(), Rgb(0.0f));
-    for_each_patch([&](std::size_t pixel, std::uint32_t k) { out[pixel] += patches_[k].weight * patches_[k].light; });
+    told_lights_ = without_noise(map_, std::move(light_));
+    std::vector<Rgb> out(map_.first.size(), Rgb(0.0f));
+    map_.for_each([&](std::size_t pixel, std::uint32_t k) {
+        out[pixel] += map_.patches[k].weight * told_lights_[k * (1 + told_.size())];
+    });
     return out;
 }
 
@@ -215,11 +203,11 @@ bool SharedBounce::tells(Apart which) const {
 }
 
 std::vector<Rgb> SharedBounce::told_pixels(Apart which) const {
-    std::vector<Rgb> out(first_.size(), Rgb(0.0f));
+    std::vector<Rgb> out(map_.first.size(), Rgb(0.0f));
     const auto at = static_cast<std::size_t>(std::find(told_.begin(), told_.end(), which) - told_.begin());
     if (at < told_.size())
-        for_each_patch([&](std::size_t pixel, std::uint32_t k) {
-            out[pixel] += patches_[k].weight * apart_[k * told_.size() + at];
+        map_.for_each([&](std::size_t pixel, std::uint32_t k) {
+            out[pixel] += map_.patches[k].weight * told_lights_[k * (1 + told_.size()) + 1 + at];
         });
     return out;
 }

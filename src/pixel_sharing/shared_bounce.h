@@ -15,7 +15,7 @@
 // The radius shrinks with the sixth root of the rays of a pixel, so that bias and noise go to zero together. Where
 // surfaces are close, as in corners, it ends at about a pixel. Steps of 1, 4 and 16 pixels reach far with few
 // neighbours each (H. Dammertz et al., Edge-Avoiding A-Trous Wavelet Transform for fast Global Illumination Filtering,
-// HPG 2010).
+// HPG 2010). What noise is left then, as in corners, is told from light by two halves of the samples (noise_bands.h).
 #pragma once
 
 #include <array>
@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "core/vec.h"
+#include "pixel_sharing/patches.h"
 
 namespace brisance {
 
@@ -78,32 +79,18 @@ public:
     float pixels_sharing(const Sample& at, float closeness) const;
 
 private:
-    // The samples of a pixel that lie on one surface, of lobes of one width: sums, then their means, but for `weight`.
-    struct Patch {
-        vec3 position{0.0f}, normal{0.0f};
-        float pixel_size = 0.0f, area = 0.0f, lobe = 0.0f;
-        Rgb light{0.0f}, weight{0.0f};
-        float closeness = 0.0f, met = 0.0f;  // and how many samples met a surface
-        float samples = 0.0f;
-        std::uint32_t next = kNone;  // of the pixel
-    };
-    static constexpr std::uint32_t kNone = ~0u;
-
     void take_means();
     // Calls take(neighbour, weight) for all patches within `radius` metres that lie `step` pixels apart.
     template <class Take>
     void for_neighbours(std::size_t pixel, const Patch& patch, float radius, int step, const Take& take) const;
     std::vector<float> radii() const;
     void share(const std::vector<float>& radius, int step);
-    template <class Visit>
-    void for_each_patch(const Visit& visit) const;  // visit(pixel, patch), in parallel
 
-    int width_, height_;
     float radius_;
     std::vector<Apart> told_;
-    std::vector<std::uint32_t> first_;  // patch of each pixel
-    std::vector<Patch> patches_;
-    std::vector<Rgb> apart_;  // told_.size() for each patch, as Patch::light
+    PatchMap map_;
+    HalvedLight light_;            // Sample::light, then what is told
+    std::vector<Rgb> told_lights_;  // of each patch, after take_pixels()
 };
 
 }  // namespace brisance

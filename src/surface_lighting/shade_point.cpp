@@ -45,11 +45,11 @@ void SurfaceShader::reflect_scattered(const SurfaceSample& sample, ShadedPoint& 
     light.add(found, Rgb(1.0f));
 }
 
-// Whether pixels share what rough lobes reflect, whoever sent it.
+// Whether pixels share what lobes beside the base reflect, whoever sent it.
 bool SurfaceShader::shares_gloss(const ShadedPoint& at) const {
     const SurfaceMaterial& m = at.seen.point.material;
     return input_.shared && input_.shared->tells(Apart::SV) && at.seen.mirrors == 0 && has_specular(m) &&
-           m.transmission == 0.0f && has_wide_lobes(m) && !shows_others(at);
+           m.transmission == 0.0f && (has_wide_lobes(m) || shows_others(at));
 }
 
 VirtualLights::Shading SurfaceShader::shading(ShadedPoint& at) const {
@@ -79,15 +79,20 @@ Rgb SurfaceShader::from_virtual_lights(const SurfaceSample& sample, const PathVe
         if (const Rgb albedo = base.base_albedo(-at.seen.arriving); albedo != Rgb(0.0f))
             at.base = shared_sample(sample, base, Lobes::Base, {.colour = albedo, .lobe = 1.0f}, rng, at);
     }
-    if (!has_specular(point.material) || reflected)
+    if (!has_specular(point.material))
         return Rgb(0.0f);
+    const LightToShare of_gloss{.colour = colour_of_gloss(point.material),
+                                .lobe = width_of_gloss(point.material.roughness),
+                                .closeness = at.closeness,
+                                .apart = at.of_gloss};
+    if (reflected) {
+        if (shares_gloss(at))
+            at.gloss = share_light(sample, point, at.seen.arriving, input_.pixel_angle, of_gloss);
+        return Rgb(0.0f);
+    }
     const Bsdf others(point.material, point.frame, Lobes::Specular);
     if (point.material.transmission > 0.0f || !has_wide_lobes(point.material))
         return shade_vertex(sample, PathVertex(point, others, at.seen.arriving), Lobes::Specular, shading(at), rng, at);
-    LightToShare of_gloss{.colour = colour_of_gloss(point.material),
-                          .lobe = width_of_gloss(point.material.roughness),
-                          .closeness = at.closeness,
-                          .apart = at.of_gloss};
     at.gloss = shared_sample(sample, others, Lobes::Specular, of_gloss, rng, at);
     return Rgb(0.0f);
 }

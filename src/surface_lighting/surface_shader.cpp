@@ -163,7 +163,9 @@ void SurfaceShader::tell(const Samples& samples, const Some& some, const Points&
                 if (*s)
                     known.shared[i] += luminance((*s)->shown()) / samples[i].share;
             if (const auto& gloss = points[i].gloss)
-                known.noisy[i] += luminance(gloss->weight * gloss->of_other_cells()) / samples[i].share /
+                known.noisy[i] += luminance(shows_others(points[i]) ? gloss->shown()
+                                                                    : gloss->weight * gloss->of_other_cells()) /
+                                  samples[i].share /
                                   std::sqrt(input_.shared->pixels_sharing(*gloss, closeness / std::max(met, 1.0f)));
         }
     }
@@ -218,8 +220,12 @@ void SurfaceShader::shade_reflected(const Samples& samples, const Some& some, Po
     Light light(meets.size());
     light_reflected(seen_by, there, light);
     for (std::size_t k = 0; k < meets.size(); ++k) {
-        found[meets[k]].add(light[k], Rgb(1.0f));
-        points[meets[k]].vertices += there[k].vertices;
+        ShadedPoint& from = points[meets[k]];
+        from.vertices += there[k].vertices;
+        if (from.gloss)  // all of it is SS
+            from.gloss->light += light[k].at(Cell::SS) / colour_of_gloss(from.seen.point.material);
+        else
+            found[meets[k]].add(light[k], Rgb(1.0f));
     }
 }
 

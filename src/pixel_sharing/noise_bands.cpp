@@ -1,0 +1,159 @@
+#include "pixel_sharing/noise_bands.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace brisance {
+
+namespace {
+
+// Of blurs, in pixels. That of a gain's neighbourhood follows in two blurs with steps twice and four times as wide.
+constexpr int kBands[] = {1, 2, 4, 8, 16};
+constexpr int kSides = 2;
+constexpr float kSpline[] = {6.0f / 16.0f, 4.0f / 16.0f, 1.0f / 16.0f};
+
+// Patches have nothing in common where their normals have a cosine below this, where they lie off each other's plane by
+// this part of their distance and a pixel, or where the distances to surfaces around have this ratio. Those are told
+// apart from so many pixels to so many.
+constexpr float kNearest = 4.0f, kFarthest = 1e4f;
+constexpr float kLeastFacing = 0.9f, kMostOffPlane = 0.2f, kMostRatio = 2.0f;
+
+constexpr std::size_t kAtOnce = 4096;
+
+float squared(float x) {
+    return x * x;
+}
+
+// Squares of light, and of light with noise.
+struct Squares {
+    float light = 0.0f, all = 0.0f;
+};
+
+// By chance noise seems to be light half of the time: a part of it is taken from that.
+float gain(const Squares& s) {
+    constexpr float kChance = 0.5f;
+    return s.all > 0.0f ? std::clamp((s.light - kChance * (s.all - s.light)) / s.all, 0.0f, 1.0f) : 0.0f;
+}
+
+class Bands {
+public:
+    explicit Bands(const PatchMap& map) : map_(map), distance_(map.patches.size(), 1.0f) { distance_ = distances(); }
+
+    HalvedLight blurred(const HalvedLight& light, int step) const {
+        HalvedLight out = light;
+        map_.for_each([&](std::size_t pixel, std::uint32_t k) {
+            MeanOfHalves mean(light);
+            for_neighbours(pixel, k, step,
+                           [&](std::uint32_t j, float w) { mean.add(j, w * map_.patches[j].samples); });
+            if (mean.any())
+                mean.put(out, k);
+        });
+        return out;
+    }
+
+    // `kinds` of each patch.
+    std::vector<Squares> blurred(const std::vector<Squares>& squares, std::size_t kinds, int step) const {
+        std::vector<Squares> out = squares;
+        map_.for_each([&](std::size_t pixel, std::uint32_t k) {
+            std::array<Squares, MeanOfHalves::kMostKinds> sums{};
+            float weights = 0.0f;
+            for_neighbours(pixel, k, step, [&](std::uint32_t j, float w) {
+                for (std::size_t kind = 0; kind < kinds; ++kind) {
+                    sums[kind].light += w * squares[j * kinds + kind].light;
+                    sums[kind].all += w * squares[j * kinds + kind].all;
+                }
+                weights += w;
+            });
+            for (std::size_t kind = 0; kind < kinds && weights > 0.0f; ++kind)
+                out[k * kinds + kind] = {sums[kind].light / weights, sums[kind].all / weights};
+        });
+        return out;
+    }
+
+private:
+    // To the surfaces around, from the closeness that samples found.
+    std::vector<float> distances() const {
+        std::vector<Squares> sums(map_.patches.size());
+        for (std::size_t k = 0; k < sums.size(); ++k)
+            sums[k] = {map_.patches[k].closeness, map_.patches[k].met};
+        sums = blurred(blurred(sums, 1, 1), 1, 2);
+        std::vector<float> out(sums.size());
+        for (std::size_t k = 0; k < sums.size(); ++k) {
+            const float pixel = std::max(map_.patches[k].pixel_size, std::numeric_limits<float>::min());
+            const float pixels = sums[k].all / (sums[k].light * pixel);
+            out[k] = pixel * (pixels < kFarthest ? std::max(pixels, kNearest) : kFarthest);
+        }
+        return out;
+    }
+
+    template <class Take>
+    void for_neighbours(std::size_t pixel, std::uint32_t number, int step, const Take& take) const {
+        const Patch& patch = map_.patches[number];
+        const int x = int(pixel % std::size_t(map_.width)), y = int(pixel / std::size_t(map_.width));
+        for (int dy = -kSides; dy <= kSides; ++dy)
+            for (int dx = -kSides; dx <= kSides; ++dx) {
+                const int u = x + dx * step, v = y + dy * step;
+                if (u < 0 || u >= map_.width || v < 0 || v >= map_.height)
+                    continue;
+                const float near = kSpline[std::abs(dx)] * kSpline[std::abs(dy)];
+                for (std::uint32_t k = map_.first[std::size_t(v) * map_.width + u]; k != PatchMap::kNone;
+                     k = map_.patches[k].next)
+                    if (const float w = k == number ? 1.0f : in_common(patch, distance_[number], k); w > 0.0f)
+                        take(k, near * w);
+            }
+    }
+
+    float in_common(const Patch& patch, float distance, std::uint32_t number) const {
+        const Patch& other = map_.patches[number];
+        const float facing = (glm::dot(other.normal, patch.normal) - kLeastFacing) / (1.0f - kLeastFacing);
+        if (!(facing > 0.0f))
+            return 0.0f;
+        const vec3 offset = other.position - patch.position;
+        const float off_plane = glm::dot(offset, patch.normal) / (kMostOffPlane * glm::length(offset) + patch.pixel_size);
+        const float ratio = std::max(distance, distance_[number]) / std::min(distance, distance_[number]);
+        const float apart = (ratio - 1.0f) / (kMostRatio - 1.0f);
+        return facing * std::max(0.0f, 1.0f - squared(off_plane)) * alike(patch.lobe, other.lobe) *
+               (apart < 1.0f ? squared(1.0f - squared(apart)) : 0.0f);
+    }
+
+    const PatchMap& map_;
+    std::vector<float> distance_;
+};
+
+}  // namespace
+
+std::vector<Rgb> without_noise(const PatchMap& map, HalvedLight light) {
+    const Bands bands(map);
+    const std::size_t kinds = light.kinds, count = light.lights.size();
+    std::vector<Rgb> out(count, Rgb(0.0f));
+    std::vector<Squares> squares(count);
+    std::vector<float> gains(count, 0.0f);
+    for (const int step : kBands) {
+        HalvedLight wide = bands.blurred(light, step);
+        parallel_for(
+            count,
+            [&](std::size_t i) {
+                const auto of_half = [&](std::size_t h) { return light.lights[i][h] - wide.lights[i][h]; };
+                const Rgb all = light.mean(i / kinds, i % kinds) - wide.mean(i / kinds, i % kinds);
+                squares[i] = {glm::dot(of_half(0), of_half(1)), glm::dot(all, all)};
+            },
+            kAtOnce);
+        for (const int wider : {2, 4, 8})
+            squares = bands.blurred(squares, kinds, wider * step);
+        parallel_for(
+            count,
+            [&](std::size_t i) {
+                const float known = std::max(gains[i], gain(squares[i]));
+                out[i] += (known - gains[i]) * light.mean(i / kinds, i % kinds);
+                gains[i] = known;
+            },
+            kAtOnce);
+        light = std::move(wide);
+    }
+    for (std::size_t i = 0; i < count; ++i)
+        out[i] += (1.0f - gains[i]) * light.mean(i / kinds, i % kinds);
+    return out;
+}
+
+}  // namespace brisance
