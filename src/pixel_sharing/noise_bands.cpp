@@ -25,15 +25,20 @@ float squared(float x) {
     return x * x;
 }
 
-// Squares of light, and of light with noise.
+// Squares of light, and of light with noise, over that of the light around: noise follows the light, and what is known of
+// a highlight says nothing of what lies beside it.
 struct Squares {
     float light = 0.0f, all = 0.0f;
 };
 
-// By chance noise seems to be light half of the time: a part of it is taken from that.
+// Wiener's. By chance noise seems to be light half of the time: what is below half of it is not taken for light, and
+// what is far above is not touched.
 float gain(const Squares& s) {
     constexpr float kChance = 0.5f;
-    return s.all > 0.0f ? std::clamp((s.light - kChance * (s.all - s.light)) / s.all, 0.0f, 1.0f) : 0.0f;
+    if (!(s.light > 0.0f))
+        return 0.0f;
+    const float chance = kChance * std::max(0.0f, s.all - s.light) / s.light;
+    return std::min(1.0f, std::max(0.0f, 1.0f - squared(chance)) * s.light / s.all);
 }
 
 class Bands {
@@ -135,8 +140,9 @@ std::vector<Rgb> without_noise(const PatchMap& map, HalvedLight light) {
             count,
             [&](std::size_t i) {
                 const auto of_half = [&](std::size_t h) { return light.lights[i][h] - wide.lights[i][h]; };
-                const Rgb all = light.mean(i / kinds, i % kinds) - wide.mean(i / kinds, i % kinds);
-                squares[i] = {glm::dot(of_half(0), of_half(1)), glm::dot(all, all)};
+                const Rgb around = wide.mean(i / kinds, i % kinds), all = light.mean(i / kinds, i % kinds) - around;
+                const float scale = 1.0f / std::max(glm::dot(around, around), std::numeric_limits<float>::min());
+                squares[i] = {scale * glm::dot(of_half(0), of_half(1)), scale * glm::dot(all, all)};
             },
             kAtOnce);
         for (const int wider : {2, 4, 8})

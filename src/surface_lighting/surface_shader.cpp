@@ -22,6 +22,18 @@ constexpr int kMostReflections = 2;
 
 using Apart = SharedBounce::Apart;
 
+// Of what the samples of a pixel met.
+struct MeanCloseness {
+    float sum = 0.0f, met = 0.0f;
+    void add(const std::optional<SharedBounce::Sample>& sample) {
+        if (sample && sample->closeness > 0.0f) {
+            sum += sample->closeness;
+            met += 1.0f;
+        }
+    }
+    float mean() const { return sum / std::max(met, 1.0f); }
+};
+
 // Where smoke scatters sharply, what is known of its light toward the camera says little of other directions. Virtual
 // lights in the smoke have noise of their own along every segment.
 float share_of_walks(const SurfaceLightingInput& input) {
@@ -150,23 +162,26 @@ void SurfaceShader::shade(const Samples& samples, Light& light) {
 void SurfaceShader::tell(const Samples& samples, const Some& some, const Points& points, const Light& found,
                          SurfaceRounds::Found& known) const {
     for (std::size_t begin = 0, end = 0; begin < some.size(); begin = end) {
-        float closeness = 0.0f, met = 0.0f;
-        for (; end < some.size() && samples[some[end]].pixel == samples[some[begin]].pixel; ++end)
-            if (const auto& gloss = points[some[end]].gloss; gloss && gloss->closeness > 0.0f) {
-                closeness += gloss->closeness;
-                met += 1.0f;
-            }
+        MeanCloseness of_base, of_gloss;
+        for (; end < some.size() && samples[some[end]].pixel == samples[some[begin]].pixel; ++end) {
+            of_base.add(points[some[end]].base);
+            of_gloss.add(points[some[end]].gloss);
+        }
         for (std::size_t k = begin; k < end; ++k) {
             const std::size_t i = some[k];
+            const ShadedPoint& at = points[i];
+            const auto noise = [&](const SharedBounce::Sample& of, const Rgb& shown, const MeanCloseness& around) {
+                return luminance(shown) / samples[i].share /
+                       std::sqrt(input_.shared->pixels_sharing(of, around.mean()));
+            };
             known.noisy[i] = luminance(found[i]);
-            for (const auto* s : {&points[i].base, &points[i].gloss, &points[i].sky})
+            for (const auto* s : {&at.base, &at.gloss, &at.sky})
                 if (*s)
                     known.shared[i] += luminance((*s)->shown()) / samples[i].share;
-            if (const auto& gloss = points[i].gloss)
-                known.noisy[i] += luminance(shows_others(points[i]) ? gloss->shown()
-                                                                    : gloss->weight * gloss->of_other_cells()) /
-                                  samples[i].share /
-                                  std::sqrt(input_.shared->pixels_sharing(*gloss, closeness / std::max(met, 1.0f)));
+            if (at.base)
+                known.noisy[i] += noise(*at.base, at.base->shown(), of_base);
+            if (at.gloss)
+                known.noisy[i] += noise(*at.gloss, shows_others(at) ? at.gloss->shown() : at.gloss->weight * at.gloss->of_other_cells(), of_gloss);
         }
     }
 }
