@@ -87,23 +87,6 @@ constexpr std::size_t kRaysAtOnce = 1 << 18;
 
 }  // namespace
 
-AutomaticSamples automatic_samples(const Camera& camera, const Medium& medium, const BrickLattice& voxels) {
-    constexpr double kFewOfVoxel = 1.7, kEnoughOfVoxel = 5.0;
-    constexpr int kMost = 8;
-    if (voxels.empty())
-        return {1, 1};
-    double nearest = 1e300;
-    for (std::size_t b = 0; b < voxels.brick_count(); ++b) {
-        const dvec3 centre(medium.local_of_node(voxels.first_node(b) + BrickLattice::kSize / 2));
-        nearest = std::min(nearest, std::max(0.0, glm::dot(centre - camera.eye_local(), camera.forward())));
-    }
-    const double footprint = camera.pixel_angle() * nearest / medium.spacing;  // voxels per pixel
-    const auto samples = [&](double of_voxel) {
-        return std::clamp(static_cast<int>(std::ceil(of_voxel * std::min(footprint, 1e3))), 1, kMost);
-    };
-    return {samples(kFewOfVoxel), samples(kEnoughOfVoxel)};
-}
-
 int rows_at_once(int width, int height, std::size_t rays) {
     const std::size_t per_row = std::max<std::size_t>(1, std::size_t(width) * rays);
     return static_cast<int>(std::clamp<std::size_t>(kRaysAtOnce / per_row, 1, std::size_t(height)));

@@ -66,15 +66,6 @@ using LightSurfaces = std::function<void(const std::vector<SurfaceSample>& sampl
 // Anti-aliasing samples along a pixel's side where there are surfaces, unless the shot says: their edges are sharp.
 inline constexpr int kSurfaceSamples = 4;
 
-// Numbers of samples along a pixel's side that keep neighbouring rays within 0.6 and within a fifth of a voxel where
-// the medium is nearest. A fifth is enough for any picture: smoke as hard as a wall errs by 0.1 % then, and by 1 % at
-// 0.6, where soft smoke errs by 0.2 to 0.3 %.
-struct AutomaticSamples {
-    int few, enough;
-};
-// `voxels`: voxel_lattice() of the medium.
-AutomaticSamples automatic_samples(const Camera& camera, const Medium& medium, const BrickLattice& voxels);
-
 // Rows of a picture that are drawn, and their surfaces lit, in one go. `rays`: of a pixel.
 int rows_at_once(int width, int height, std::size_t rays);
 

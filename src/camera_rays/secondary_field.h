@@ -8,6 +8,7 @@
 #include <array>
 
 #include "camera_rays/source_field.h"
+#include "core/ray.h"
 
 namespace brisance {
 

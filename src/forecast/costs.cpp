@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "camera/camera.h"
+#include "camera_rays/automatic_samples.h"
 #include "camera_rays/picture.h"
 #include "core/parallel.h"
 #include "gathering/map_layouts.h"
-#include "medium/lattice/voxel_walk.h"
 #include "medium_lighting/levels/lighting_level.h"
 #include "medium_lighting/lit_lattice.h"
 #include "reference/trace_picture.h"
@@ -37,7 +37,7 @@ constexpr int kPilotSamples = 8;
 double camera_rays(const Shot& shot, const Medium& medium, const CameraSettings& settings) {
     int side = settings.samples_per_axis;
     if (side <= 0)
-        side = automatic_samples(Camera(settings, medium), medium, voxel_lattice(medium)).few;
+        side = automatic_samples(Camera(settings, medium), medium).few;
     return double(shot.camera.width) * shot.camera.height * side * side;
 }
 

@@ -9,6 +9,7 @@
 
 #include "camera/pixel_filter.h"
 #include "camera_rays/moment_mean.h"
+#include "camera_rays/automatic_samples.h"
 #include "camera_rays/picture.h"
 #include "camera_rays/source_field.h"
 #include "core/error.h"
@@ -195,7 +196,7 @@ Image sampled_layers(const TracedScene& scene) {
         const int requested = scene.camera.settings().samples_per_axis;
         settings.samples_per_axis =
             requested > 0 ? requested
-                          : std::min(automatic_samples(*moment.camera, *moment.medium, field.bricks()).enough, kEnough);
+                          : std::min(automatic_samples(*moment.camera, *moment.medium).enough, kEnough);
         settings.cells = false;
         settings.surroundings = moment.surroundings;
         Progress silent;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "camera/pixel_samples.h"
+#include "camera_rays/automatic_samples.h"
 #include "camera_rays/moment_mean.h"
 #include "core/cpu_clock.h"
 #include "core/stopwatch.h"
@@ -39,8 +40,7 @@ PictureSettings picture_settings(const DrawInput& input, const ManyLights& light
     PictureSettings settings;
     settings.samples_per_axis = camera.samples_per_axis;
     if (camera.samples_per_axis == 0) {
-        const SourceField& field = lights.medium().field();
-        const AutomaticSamples of_medium = automatic_samples(input.camera, field.medium(), field.bricks());
+        const AutomaticSamples of_medium = automatic_samples(input.camera, lights.medium().field().medium());
         const int first = looks_twice(input, moments) ? of_medium.few : of_medium.enough;
         settings.samples_per_axis = input.plan.surfaces ? std::max(first, kSurfaceSamples) : first;
         settings.medium_samples_per_axis = first;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "camera_rays/automatic_samples.h"
 #include "camera_rays/picture.h"
 #include "core/parallel.h"
 #include "fixtures/media.h"
@@ -210,17 +211,16 @@ TEST(Picture, TheNumberOfThreadsDoesNotShow) {
 
 TEST(Picture, FinerPixelsNeedFewerSamples) {
     const Medium medium = make_medium(cloud());
-    const BrickLattice voxels = voxel_lattice(medium);
     CameraSettings camera = front();
     camera.height = camera.width = 1000;
-    EXPECT_EQ(automatic_samples(Camera(camera, medium), medium, voxels).few, 1);
-    EXPECT_EQ(automatic_samples(Camera(camera, medium), medium, voxels).enough, 1);
+    EXPECT_EQ(automatic_samples(Camera(camera, medium), medium).few, 1);
+    EXPECT_EQ(automatic_samples(Camera(camera, medium), medium).enough, 1);
     camera.height = camera.width = 100;
-    const AutomaticSamples medium_size = automatic_samples(Camera(camera, medium), medium, voxels);
+    const AutomaticSamples medium_size = automatic_samples(Camera(camera, medium), medium);
     EXPECT_LT(medium_size.few, medium_size.enough);
     camera.height = camera.width = 5;
-    EXPECT_EQ(automatic_samples(Camera(camera, medium), medium, voxels).few, 8);
-    EXPECT_EQ(automatic_samples(Camera(camera, medium), medium, voxels).enough, 8);
+    EXPECT_EQ(automatic_samples(Camera(camera, medium), medium).few, 8);
+    EXPECT_EQ(automatic_samples(Camera(camera, medium), medium).enough, 8);
 }
 
 // Fine smoke over coarse pixels: one ray in each is off. A second look finds where. Most pixels err by far less than

@@ -4,13 +4,13 @@
 #include <cmath>
 
 #include "camera/camera.h"
+#include "camera_rays/automatic_samples.h"
 #include "camera_rays/picture.h"
 #include "core/stopwatch.h"
 #include "correction/correct.h"
 #include "forecast/correction_plan.h"
 #include "forecast/memory_need.h"
 #include "forecast/plan.h"
-#include "medium/lattice/voxel_walk.h"
 #include "pixel_sharing/shared_bounce.h"
 #include "render/bound_layers.h"
 #include "render/choice/choose_method.h"
@@ -43,7 +43,7 @@ std::size_t surface_rays(const FrameInput& input) {
     if (stated > 0)
         return std::size_t(stated) * std::size_t(stated);
     const Camera camera(input.camera, input.medium);
-    const int of_medium = automatic_samples(camera, input.medium, voxel_lattice(input.medium)).enough;
+    const int of_medium = automatic_samples(camera, input.medium).enough;
     const int side = std::max(kSurfaceSamples, of_medium);
     return std::size_t(side) * std::size_t(side);
 }
