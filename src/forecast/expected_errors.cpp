@@ -43,6 +43,15 @@ double noted(const Statistics& statistics, const std::string& stage, const char*
     return 0.0;
 }
 
+// What noise leaves in light that pixels share: the root of the sum of squares over pixels and channels, which the
+// camera expected from its samples [W/(m^2 sr)].
+double error_of_shared(const Statistics& statistics, const std::string& cell) {
+    for (const StageCost& s : statistics.stages)
+        if (s.name == "camera" && s.detail.contains("errors_of_shared_light"))
+            return s.detail["errors_of_shared_light"].value(cell, 0.0);
+    return 0.0;
+}
+
 // Of a voxel, as a collision meets it.
 double voxel_depth(const Medium& medium) {
     return medium.spacing * extinction_met(medium.extinction);
@@ -131,6 +140,8 @@ std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFra
         for (const Layer& layer : image.layers)
             if (const double part = layer.name == cell ? sum_of_squares(layer) : 0.0; part > 0.0) {
                 out.push_back(model.of(cell));
+                if (const double shared = error_of_shared(statistics, cell); shared > 0.0)
+                    out.back().error = limited(std::hypot(out.back().error, shared / std::sqrt(part)));
                 if (change)
                     change(out.back());
                 errors += part * square(out.back().error);

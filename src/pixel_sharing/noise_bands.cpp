@@ -41,6 +41,12 @@ float gain(const Squares& s) {
     return std::min(1.0f, std::max(0.0f, 1.0f - squared(chance)) * s.light / s.all);
 }
 
+// Mean square of what a gain leaves of the noise and takes of the light.
+float error_left(const Squares& s, float gain) {
+    const float light = std::clamp(s.light, 0.0f, s.all);
+    return squared(gain) * (s.all - light) + squared(1.0f - gain) * light;
+}
+
 class Bands {
 public:
     explicit Bands(const PatchMap& map) : map_(map), distance_(map.patches.size(), 1.0f) { distance_ = distances(); }
@@ -128,10 +134,10 @@ private:
 
 }  // namespace
 
-std::vector<Rgb> without_noise(const PatchMap& map, HalvedLight light) {
+CalmLight without_noise(const PatchMap& map, HalvedLight light) {
     const Bands bands(map);
     const std::size_t kinds = light.kinds, count = light.lights.size();
-    std::vector<Rgb> out(count, Rgb(0.0f));
+    CalmLight out{std::vector<Rgb>(count, Rgb(0.0f)), std::vector<float>(count, 0.0f)};
     std::vector<Squares> squares(count);
     std::vector<float> gains(count, 0.0f);
     for (const int step : kBands) {
@@ -151,14 +157,16 @@ std::vector<Rgb> without_noise(const PatchMap& map, HalvedLight light) {
             count,
             [&](std::size_t i) {
                 const float known = std::max(gains[i], gain(squares[i]));
-                out[i] += (known - gains[i]) * light.mean(i / kinds, i % kinds);
+                const Rgb around = wide.mean(i / kinds, i % kinds);
+                out.lights[i] += (known - gains[i]) * light.mean(i / kinds, i % kinds);
+                out.square_errors[i] += glm::dot(around, around) * error_left(squares[i], known);
                 gains[i] = known;
             },
             kAtOnce);
         light = std::move(wide);
     }
     for (std::size_t i = 0; i < count; ++i)
-        out[i] += (1.0f - gains[i]) * light.mean(i / kinds, i % kinds);
+        out.lights[i] += (1.0f - gains[i]) * light.mean(i / kinds, i % kinds);
     return out;
 }
 

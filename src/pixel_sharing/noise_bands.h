@@ -19,7 +19,12 @@
 
 namespace brisance {
 
-// Of each kind of light on each patch, without what is noise.
-std::vector<Rgb> without_noise(const PatchMap& map, HalvedLight light);
+// Of each kind of light on each patch. The errors are those that the gains expect: the noise that they keep, and the
+// light that they take away.
+struct CalmLight {
+    std::vector<Rgb> lights;
+    std::vector<float> square_errors;  // sum over the channels
+};
+CalmLight without_noise(const PatchMap& map, HalvedLight light);
 
 }  // namespace brisance

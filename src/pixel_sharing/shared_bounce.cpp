@@ -41,7 +41,7 @@ SharedBounce::SharedBounce(int width, int height, double radius, int rays, std::
     : radius_(float(radius * std::pow(double(kUsualRays) / std::max(rays, 1), 1.0 / 6.0))),
       told_(std::move(told)),
       map_(width, height) {
-    light_.kinds = 1 + told_.size();
+    light_.kinds = kinds();
 }
 
 // Lists that grow hold up to twice what is in them. Sharing makes radii and new light beside; where noise is taken away,
@@ -190,26 +190,39 @@ std::vector<Rgb> SharedBounce::take_pixels() {
     const std::vector<float> radius = radii();
     for (const int step : kSteps)
         share(radius, step);
-    told_lights_ = without_noise(map_, std::move(light_));
+    CalmLight calm = without_noise(map_, std::move(light_));
+    calm_ = std::move(calm.lights);
+    square_errors_.assign(kinds(), 0.0);
+    for (std::size_t i = 0; i < calm_.size(); ++i) {
+        const Rgb& weight = map_.patches[i / kinds()].weight;
+        square_errors_[i % kinds()] += double(glm::dot(weight, weight)) / 3.0 * double(calm.square_errors[i]);
+    }
+    return pixels(0);
+}
+
+std::vector<Rgb> SharedBounce::pixels(std::size_t kind) const {
     std::vector<Rgb> out(map_.first.size(), Rgb(0.0f));
-    map_.for_each([&](std::size_t pixel, std::uint32_t k) {
-        out[pixel] += map_.patches[k].weight * told_lights_[k * (1 + told_.size())];
-    });
+    if (kind < kinds())
+        map_.for_each([&](std::size_t pixel, std::uint32_t k) {
+            out[pixel] += map_.patches[k].weight * calm_[k * kinds() + kind];
+        });
     return out;
+}
+
+std::size_t SharedBounce::kind_of(Apart which) const {
+    return 1 + static_cast<std::size_t>(std::find(told_.begin(), told_.end(), which) - told_.begin());
 }
 
 bool SharedBounce::tells(Apart which) const {
-    return std::find(told_.begin(), told_.end(), which) != told_.end();
+    return kind_of(which) < kinds();
 }
 
 std::vector<Rgb> SharedBounce::told_pixels(Apart which) const {
-    std::vector<Rgb> out(map_.first.size(), Rgb(0.0f));
-    const auto at = static_cast<std::size_t>(std::find(told_.begin(), told_.end(), which) - told_.begin());
-    if (at < told_.size())
-        map_.for_each([&](std::size_t pixel, std::uint32_t k) {
-            out[pixel] += map_.patches[k].weight * told_lights_[k * (1 + told_.size()) + 1 + at];
-        });
-    return out;
+    return pixels(kind_of(which));
+}
+
+double SharedBounce::square_error(Apart which) const {
+    return tells(which) ? square_errors_[kind_of(which)] : 0.0;
 }
 
 // The weights of share() are 1 - r^2 twice squared, less what normals and planes take: a fifth of the circle.

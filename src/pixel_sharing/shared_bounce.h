@@ -73,6 +73,10 @@ public:
     // After that: what comes from Sample::apart, of those told.
     std::vector<Rgb> told_pixels(Apart which) const;
     bool tells(Apart which) const;
+    // After that, of all pixels and channels: the expected sum of squares of what noise leaves in take_pixels(), and in
+    // told_pixels().
+    double square_error() const { return square_errors_[0]; }
+    double square_error(Apart which) const;
 
     // About how many pixels like this one share, where the mean of 1 / distance around it is `closeness` [1/m]; the
     // noise of a sample falls by the square root of that.
@@ -85,12 +89,17 @@ private:
     void for_neighbours(std::size_t pixel, const Patch& patch, float radius, int step, const Take& take) const;
     std::vector<float> radii() const;
     void share(const std::vector<float>& radius, int step);
+    std::vector<Rgb> pixels(std::size_t kind) const;
+    std::size_t kinds() const { return 1 + told_.size(); }
+    std::size_t kind_of(Apart which) const;  // none: as many as there are
 
     float radius_;
     std::vector<Apart> told_;
     PatchMap map_;
     HalvedLight light_;            // Sample::light, then what is told
-    std::vector<Rgb> told_lights_;  // of each patch, after take_pixels()
+    // Of each patch, Sample::light and what is told, and over all pixels: after take_pixels().
+    std::vector<Rgb> calm_;
+    std::vector<double> square_errors_;
 };
 
 }  // namespace brisance

@@ -97,6 +97,8 @@ Drawn draw_lit(const DrawInput& input, const LitStretch* stretch, Statistics& st
                                  watch.seconds() - picture.seconds_on_estimators(),
                                  lights.medium().field().bytes() + (lights.once() ? lights.once()->field().bytes() : 0),
                                  {{"samples_per_pixel", out.samples_per_pixel}}});
+    if (nlohmann::ordered_json errors = picture.errors_of_shared(); !errors.empty())
+        statistics.stages.back().detail["errors_of_shared_light"] = std::move(errors);
     if (const PathLengths* const lengths = picture.path_lengths())
         out.light_pictures = picture_lights(input, *lights.virtual_lights(), out.image, *lengths, statistics, progress);
     return out;

@@ -229,6 +229,25 @@ std::vector<SharedBounce::Apart> FramePicture::told_of_shared(const InScattering
     return {SharedBounce::Apart::SV, SharedBounce::Apart::SM, SharedBounce::Apart::SA};
 }
 
+void FramePicture::add_shared(Image& image, SharedBounce& shared) {
+    add_to_cell(image, Cell::SS, shared.take_pixels());
+    square_errors_of_shared_[int(Cell::SS)] += shared.square_error();
+    for (const auto& [cell, part] : kSharedCells)
+        if (shared.tells(part)) {
+            add_to_cell(image, cell, shared.told_pixels(part));
+            square_errors_of_shared_[int(cell)] += shared.square_error(part);
+        }
+}
+
+// Of the mean of all pictures.
+nlohmann::ordered_json FramePicture::errors_of_shared() const {
+    nlohmann::ordered_json json = nlohmann::ordered_json::object();
+    for (int cell = 0; cell < kCells; ++cell)
+        if (square_errors_of_shared_[cell] > 0.0)
+            json[kCellNames[cell]] = std::sqrt(square_errors_of_shared_[cell]) / pictures_;
+    return json;
+}
+
 Image FramePicture::picture(const InScattering* estimator, int number, const MomentLights& lights, const Camera& camera,
                             const Surroundings* surroundings) {
     settings_.pass = number;
@@ -281,14 +300,13 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
                                  [&](const auto& samples, auto& light) { shader.shade(samples, light); });
     if (reuse)
         add_to_cell(image, Cell::SS, reuse->take_pixels());
-    if (shared) {
-        add_to_cell(image, Cell::SS, shared->take_pixels());
-        for (const auto& [cell, part] : kSharedCells)
-            if (shared->tells(part))
-                add_to_cell(image, cell, shared->told_pixels(part));
-    }
-    if (shared_sky)
+    ++pictures_;
+    if (shared)
+        add_shared(image, *shared);
+    if (shared_sky) {
         add_to_cell(image, Cell::SA, shared_sky->take_pixels());
+        square_errors_of_shared_[int(Cell::SA)] += shared_sky->square_error();
+    }
     if (shared && bound)
         bound->add_residual(shared->told_pixels(SharedBounce::Apart::Residual));
     if (compensated)

@@ -34,6 +34,9 @@ public:
     double samples_per_pixel() const;  // of all moments
     double seconds_on_estimators() const { return seconds_on_estimators_; }
     const BoundTally& bound_costs() const { return bound_costs_; }  // of the layers of output.layers.bound
+    // What noise leaves in light that pixels share, as expected from its samples: of each cell, the root of the sum of
+    // squares over all pixels and channels.
+    nlohmann::ordered_json errors_of_shared() const;
     const PathLengths* path_lengths() const { return lengths_ ? &*lengths_ : nullptr; }
 
 private:
@@ -51,6 +54,7 @@ private:
     std::optional<ScreenSpaceCompensation> compensation(const Camera& camera) const;
     int samples_of_pixel(const Camera& camera) const;
     float shading_tolerance() const;
+    void add_shared(Image& image, SharedBounce& shared);
     Image order_picture(const NodeSources& order, PictureSettings settings);
 
     const DrawInput& input_;
@@ -60,6 +64,8 @@ private:
     Progress& progress_;
     std::optional<PathLengths> lengths_;
     BoundTally bound_costs_;
+    std::array<double, kCells> square_errors_of_shared_{};  // sums over the pictures
+    int pictures_ = 0;
     double seconds_on_estimators_ = 0.0;
 };
 
