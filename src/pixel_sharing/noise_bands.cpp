@@ -17,7 +17,7 @@ constexpr float kSpline[] = {6.0f / 16.0f, 4.0f / 16.0f, 1.0f / 16.0f};
 // this part of their distance and a pixel, or where the distances to surfaces around have this ratio. Those are told
 // apart from so many pixels to so many.
 constexpr float kNearest = 4.0f, kFarthest = 1e4f;
-constexpr float kLeastFacing = 0.9f, kMostOffPlane = 0.2f, kMostRatio = 2.0f;
+constexpr float kLeastFacing = 0.9f, kMostOffPlane = 0.05f, kMostRatio = 2.0f;
 
 constexpr std::size_t kAtOnce = 4096;
 
