@@ -50,7 +50,8 @@ Change change_in(const Medium& medium, std::size_t brick) {
 std::vector<Detail> details(const Camera& camera, const Medium& medium) {
     const BrickLattice& lattice = medium.lattice;
     std::vector<Change> changes(lattice.brick_count());
-    parallel_for(changes.size(), [&](std::size_t b) { changes[b] = change_in(medium, b); }, 64);
+    parallel_for(
+        changes.size(), [&](std::size_t b) { changes[b] = change_in(medium, b); }, 64);
     float brightest = 0.0f;
     for (const Change& c : changes)
         brightest = std::max(brightest, c.light);

@@ -25,8 +25,8 @@ float squared(float x) {
     return x * x;
 }
 
-// Squares of light, and of light with noise, over that of the light around: noise follows the light, and what is known of
-// a highlight says nothing of what lies beside it.
+// Squares of light, and of light with noise, over that of the light around: noise follows the light, and what is known
+// of a highlight says nothing of what lies beside it.
 struct Squares {
     float light = 0.0f, all = 0.0f;
 };
@@ -55,8 +55,7 @@ public:
         HalvedLight out = light;
         map_.for_each([&](std::size_t pixel, std::uint32_t k) {
             MeanOfHalves mean(light);
-            for_neighbours(pixel, k, step,
-                           [&](std::uint32_t j, float w) { mean.add(j, w * map_.patches[j].samples); });
+            for_neighbours(pixel, k, step, [&](std::uint32_t j, float w) { mean.add(j, w * map_.patches[j].samples); });
             if (mean.any())
                 mean.put(out, k);
         });
@@ -121,7 +120,8 @@ private:
         if (!(facing > 0.0f))
             return 0.0f;
         const vec3 offset = other.position - patch.position;
-        const float off_plane = glm::dot(offset, patch.normal) / (kMostOffPlane * glm::length(offset) + patch.pixel_size);
+        const float off_plane =
+            glm::dot(offset, patch.normal) / (kMostOffPlane * glm::length(offset) + patch.pixel_size);
         const float ratio = std::max(distance, distance_[number]) / std::min(distance, distance_[number]);
         const float apart = (ratio - 1.0f) / (kMostRatio - 1.0f);
         return facing * std::max(0.0f, 1.0f - squared(off_plane)) * alike(patch.lobe, other.lobe) *

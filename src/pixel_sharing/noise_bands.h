@@ -9,8 +9,8 @@
 // neighbourhood some times as wide as the band, is the gain that leaves the least square error, Wiener's: where
 // a band is noise it vanishes, and where it is light it stays. As samples grow, all gains go to 1.
 //
-// Blurs follow surfaces on which light is alike: of one normal and plane, at a like distance from others. Bands that are
-// wrong all the same show it, and stay.
+// Blurs follow surfaces on which light is alike: of one normal and plane, at a like distance from others. Bands that
+// are wrong all the same show it, and stay.
 #pragma once
 
 #include <vector>

@@ -16,7 +16,7 @@ namespace brisance {
 struct Patch {
     vec3 position{0.0f}, normal{0.0f};
     float pixel_size = 0.0f, area = 0.0f, lobe = 0.0f;
-    Rgb weight{0.0f};                   // the pixel shows the light times this
+    Rgb weight{0.0f};                    // the pixel shows the light times this
     float closeness = 0.0f, met = 0.0f;  // and how many samples met a surface
     float samples = 0.0f;
     std::uint32_t next = ~0u;  // of the pixel; ~0u: it is the last

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "pixel_sharing/noise_bands.h"
 
 namespace brisance {
 
@@ -37,15 +38,16 @@ float turned(float lobe) {
 
 }  // namespace
 
-SharedBounce::SharedBounce(int width, int height, double radius, int rays, std::vector<Apart> told)
+SharedBounce::SharedBounce(int width, int height, double radius, int rays, std::vector<Apart> told, bool calms)
     : radius_(float(radius * std::pow(double(kUsualRays) / std::max(rays, 1), 1.0 / 6.0))),
       told_(std::move(told)),
+      calms_(calms),
       map_(width, height) {
     light_.kinds = kinds();
 }
 
-// Lists that grow hold up to twice what is in them. Sharing makes radii and new light beside; where noise is taken away,
-// its squares and what is left.
+// Lists that grow hold up to twice what is in them. Sharing makes radii and new light beside; where noise is taken
+// away, its squares and what is left.
 std::uint64_t SharedBounce::bytes_of(int width, int height, std::size_t told) {
     constexpr std::uint64_t kLobes = 2, kGrowth = 2;
     const std::uint64_t light = (kGrowth + 1) * sizeof(HalvedLight::Halves) + 2 * sizeof(Rgb) + 2 * sizeof(float);
@@ -190,14 +192,24 @@ std::vector<Rgb> SharedBounce::take_pixels() {
     const std::vector<float> radius = radii();
     for (const int step : kSteps)
         share(radius, step);
+    square_errors_.assign(kinds(), 0.0);
+    if (calms_) {
+        take_noise();
+        return pixels(0);
+    }
+    calm_.resize(light_.lights.size());
+    for (std::size_t i = 0; i < calm_.size(); ++i)
+        calm_[i] = light_.mean(i / kinds(), i % kinds());
+    return pixels(0);
+}
+
+void SharedBounce::take_noise() {
     CalmLight calm = without_noise(map_, std::move(light_));
     calm_ = std::move(calm.lights);
-    square_errors_.assign(kinds(), 0.0);
     for (std::size_t i = 0; i < calm_.size(); ++i) {
         const Rgb& weight = map_.patches[i / kinds()].weight;
         square_errors_[i % kinds()] += double(glm::dot(weight, weight)) / 3.0 * double(calm.square_errors[i]);
     }
-    return pixels(0);
 }
 
 std::vector<Rgb> SharedBounce::pixels(std::size_t kind) const {

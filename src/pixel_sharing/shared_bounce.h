@@ -54,8 +54,9 @@ public:
     };
 
     // `radius`: over the distance to surrounding surfaces, for 16 rays per pixel. `rays`: of a pixel. `told`: for what
-    // told_pixels() is asked.
-    SharedBounce(int width, int height, double radius, int rays, std::vector<Apart> told = {});
+    // told_pixels() is asked. `calms`: noise is told from light; otherwise what comes out is linear in the samples'
+    // light.
+    SharedBounce(int width, int height, double radius, int rays, std::vector<Apart> told = {}, bool calms = true);
 
     // Over how much pixels share: the radius over the distance to surrounding surfaces [rad].
     double angle(float lobe) const { return double(radius_) * lobe; }
@@ -74,7 +75,7 @@ public:
     std::vector<Rgb> told_pixels(Apart which) const;
     bool tells(Apart which) const;
     // After that, of all pixels and channels: the expected sum of squares of what noise leaves in take_pixels(), and in
-    // told_pixels().
+    // told_pixels(); 0 where it is not told from light.
     double square_error() const { return square_errors_[0]; }
     double square_error(Apart which) const;
 
@@ -89,14 +90,16 @@ private:
     void for_neighbours(std::size_t pixel, const Patch& patch, float radius, int step, const Take& take) const;
     std::vector<float> radii() const;
     void share(const std::vector<float>& radius, int step);
+    void take_noise();
     std::vector<Rgb> pixels(std::size_t kind) const;
     std::size_t kinds() const { return 1 + told_.size(); }
     std::size_t kind_of(Apart which) const;  // none: as many as there are
 
     float radius_;
     std::vector<Apart> told_;
+    bool calms_;
     PatchMap map_;
-    HalvedLight light_;            // Sample::light, then what is told
+    HalvedLight light_;  // Sample::light, then what is told
     // Of each patch, Sample::light and what is told, and over all pixels: after take_pixels().
     std::vector<Rgb> calm_;
     std::vector<double> square_errors_;

@@ -8,8 +8,8 @@
 #include <mutex>
 
 #include "camera/pixel_filter.h"
-#include "camera_rays/moment_mean.h"
 #include "camera_rays/automatic_samples.h"
+#include "camera_rays/moment_mean.h"
 #include "camera_rays/picture.h"
 #include "camera_rays/source_field.h"
 #include "core/error.h"
@@ -195,8 +195,7 @@ Image sampled_layers(const TracedScene& scene) {
         PictureSettings settings;
         const int requested = scene.camera.settings().samples_per_axis;
         settings.samples_per_axis =
-            requested > 0 ? requested
-                          : std::min(automatic_samples(*moment.camera, *moment.medium).enough, kEnough);
+            requested > 0 ? requested : std::min(automatic_samples(*moment.camera, *moment.medium).enough, kEnough);
         settings.cells = false;
         settings.surroundings = moment.surroundings;
         Progress silent;

@@ -108,6 +108,12 @@ void add_compensation(Image& image, ScreenSpaceCompensation& compensated, BoundA
     add_to_cell(image, Cell::SS, pixels);
 }
 
+// Whether noise is told from light that pixels share: the parts of points and spheres, which are there for comparison,
+// have to add up.
+bool calms_shared_light(const VirtualLightSettings& lights) {
+    return lights.kind == VirtualLightSettings().kind;
+}
+
 }  // namespace
 
 FramePicture::FramePicture(const DrawInput& input, const ManyLights& lights, const LitStretch* stretch,
@@ -267,7 +273,7 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
     const double radius = input_.shot.virtual_lights.sharing_radius;
     if (lights_.virtual_lights() && input_.plan.needs(Cell::SS) && radius > 0.0)
         shared.emplace(camera.settings().width, camera.settings().height, radius, rays_of_pixel(),
-                       told_of_shared(estimator, asks_for_bound));
+                       told_of_shared(estimator, asks_for_bound), calms_shared_light(input_.shot.virtual_lights));
     std::optional<SharedBounce> shared_sky;
     if (radius > 0.0 && input_.plan.needs(Cell::SA) && !lights.unified() &&
         surroundings->emitters().has_even_background())

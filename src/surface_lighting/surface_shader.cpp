@@ -181,7 +181,9 @@ void SurfaceShader::tell(const Samples& samples, const Some& some, const Points&
             if (at.base)
                 known.noisy[i] += noise(*at.base, at.base->shown(), of_base);
             if (at.gloss)
-                known.noisy[i] += noise(*at.gloss, shows_others(at) ? at.gloss->shown() : at.gloss->weight * at.gloss->of_other_cells(), of_gloss);
+                known.noisy[i] += noise(
+                    *at.gloss, shows_others(at) ? at.gloss->shown() : at.gloss->weight * at.gloss->of_other_cells(),
+                    of_gloss);
         }
     }
 }

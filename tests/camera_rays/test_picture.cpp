@@ -223,6 +223,25 @@ TEST(Picture, FinerPixelsNeedFewerSamples) {
     EXPECT_EQ(automatic_samples(Camera(camera, medium), medium).enough, 8);
 }
 
+// Smoke is as fine in haze as without: what has no detail, and is nearest, says nothing of the rays that smoke needs.
+TEST(Picture, HazeAroundTheCameraLeavesTheSamples) {
+    Recipe r = cloud();
+    const auto ball = [](const ivec3& n) { return testing::ball(n, dvec3(0.0), 13.0); };
+    r.flame = [ball](const ivec3& n) { return ball(n) * noise(n, 2); };
+    const Medium alone = make_medium(r);
+    r.box = testing::cube(-56, 56);
+    r.density = [ball](const ivec3& n) { return 1e-3f + ball(n) * noise(n >> 1, 1); };
+    const Medium in_haze = make_medium(r);
+    for (const int size : {50, 100, 300}) {
+        CameraSettings camera = front();
+        camera.height = camera.width = size;
+        const AutomaticSamples a = automatic_samples(Camera(camera, alone), alone),
+                               b = automatic_samples(Camera(camera, in_haze), in_haze);
+        EXPECT_EQ(a.few, b.few) << size;
+        EXPECT_EQ(a.enough, b.enough) << size;
+    }
+}
+
 // Fine smoke over coarse pixels: one ray in each is off. A second look finds where. Most pixels err by far less than
 // the most that is tolerated of one.
 double error_after_second_look(const Medium& medium, const CameraSettings& camera, float tolerance) {
