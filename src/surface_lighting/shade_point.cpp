@@ -37,19 +37,22 @@ void SurfaceShader::reflect_scattered(const SurfaceSample& sample, ShadedPoint& 
     CellSum found;
     const dvec3 numbers = lobe_numbers(kGloss, sample, input_.samples, input_.seed, rng);
     const double closeness = gloss_.reflect(point, toward_viewer, *gloss, numbers, at.ray_rng, found);
-    if (shares_gloss(at)) {
+    if (shares_gloss(at) || shows_others(at))
         at.closeness = closeness;
+    if (shares_gloss(at)) {
         at.of_gloss[std::size_t(Apart::SV)] = std::exchange(found.at(Cell::SV), Rgb(0.0f));
         at.of_gloss[std::size_t(Apart::SM)] = std::exchange(found.at(Cell::SM), Rgb(0.0f));
     }
     light.add(found, Rgb(1.0f));
 }
 
-// Whether pixels share what lobes beside the base reflect, whoever sent it.
+// Whether pixels share what rough lobes reflect, whoever sent it. Of narrow lobes they share what is sampled there, the
+// light between surfaces: a pixel's own samples of the medium and of emitters are stratified, and know more than halves
+// of them tell.
 bool SurfaceShader::shares_gloss(const ShadedPoint& at) const {
     const SurfaceMaterial& m = at.seen.point.material;
     return input_.shared && input_.shared->tells(Apart::SV) && at.seen.mirrors == 0 && has_specular(m) &&
-           m.transmission == 0.0f && (has_wide_lobes(m) || shows_others(at));
+           m.transmission == 0.0f && has_wide_lobes(m) && !shows_others(at);
 }
 
 VirtualLights::Shading SurfaceShader::shading(ShadedPoint& at) const {
@@ -86,7 +89,7 @@ Rgb SurfaceShader::from_virtual_lights(const SurfaceSample& sample, const PathVe
                                 .closeness = at.closeness,
                                 .apart = at.of_gloss};
     if (reflected) {
-        if (shares_gloss(at))
+        if (input_.shared->tells(Apart::SV) && point.material.transmission == 0.0f)
             at.gloss = share_light(sample, point, at.seen.arriving, input_.pixel_angle, of_gloss);
         return Rgb(0.0f);
     }
