@@ -8,7 +8,8 @@ namespace brisance {
 
 namespace {
 
-// Of blurs, in pixels. That of a gain's neighbourhood follows in two blurs with steps twice and four times as wide.
+// Of blurs, in pixels. A gain's neighbourhood is that of three blurs, whose steps are two, four and eight times as
+// wide.
 constexpr int kBands[] = {1, 2, 4, 8, 16};
 constexpr int kSides = 2;
 constexpr float kSpline[] = {6.0f / 16.0f, 4.0f / 16.0f, 1.0f / 16.0f};

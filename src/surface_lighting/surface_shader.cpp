@@ -239,10 +239,15 @@ void SurfaceShader::shade_reflected(const Samples& samples, const Some& some, Po
     for (std::size_t k = 0; k < meets.size(); ++k) {
         ShadedPoint& from = points[meets[k]];
         from.vertices += there[k].vertices;
-        if (from.gloss)  // all of it is SS
-            from.gloss->light += light[k].at(Cell::SS) / colour_of_gloss(from.seen.point.material);
-        else
+        if (!from.gloss) {
             found[meets[k]].add(light[k], Rgb(1.0f));
+            continue;
+        }
+        const dvec3& position = from.seen.point.position;
+        if (!from.closeness)  // nothing but surfaces is around
+            from.gloss->closeness = float(1.0 / glm::distance(position, there[k].seen.point.position) +
+                                          1.0 / glm::distance(position, seen_by[k].ray.origin));
+        from.gloss->light += light[k].at(Cell::SS) / colour_of_gloss(from.seen.point.material);  // all of it is SS
     }
 }
 
