@@ -47,23 +47,15 @@ Change change_in(const Medium& medium, std::size_t brick) {
 }
 
 // By distance. Bricks behind the camera have none.
-std::vector<Detail> details(const Camera& camera, const Medium& medium) {
-    const BrickLattice& lattice = medium.lattice;
-    std::vector<Change> changes(lattice.brick_count());
-    parallel_for(
-        changes.size(), [&](std::size_t b) { changes[b] = change_in(medium, b); }, 64);
-    float brightest = 0.0f;
-    for (const Change& c : changes)
-        brightest = std::max(brightest, c.light);
+std::vector<Detail> details(const Camera& camera, const Medium& medium, const std::vector<float>& changes) {
     std::vector<Detail> out;
     const double least = BrickLattice::kSize * double(medium.spacing);
     for (std::size_t b = 0; b < changes.size(); ++b) {
-        const dvec3 centre(medium.local_of_node(lattice.first_node(b) + BrickLattice::kSize / 2));
+        const dvec3 centre(medium.local_of_node(medium.lattice.first_node(b) + BrickLattice::kSize / 2));
         const double distance = glm::dot(centre - camera.eye_local(), camera.forward());
-        const double change = changes[b].opacity + (brightest > 0.0f ? changes[b].light / brightest : 0.0f);
-        if (distance > -least && change > 0.0) {
+        if (distance > -least && changes[b] > 0.0f) {
             const double near = std::max(distance, least);
-            out.push_back({std::max(0.0, distance), change / (near * near)});
+            out.push_back({std::max(0.0, distance), double(changes[b]) / (near * near)});
         }
     }
     std::ranges::sort(out, {}, &Detail::distance);
@@ -83,16 +75,31 @@ double quantile(const std::vector<Detail>& details, double part) {
 
 }  // namespace
 
-AutomaticSamples automatic_samples(const Camera& camera, const Medium& medium) {
-    if (medium.lattice.empty())
-        return {1, 1};
-    const std::vector<Detail> all = details(camera, medium);
+std::vector<float> changes_in_bricks(const Medium& medium) {
+    std::vector<Change> changes(medium.lattice.brick_count());
+    parallel_for(
+        changes.size(), [&](std::size_t b) { changes[b] = change_in(medium, b); }, 64);
+    float brightest = 0.0f;
+    for (const Change& c : changes)
+        brightest = std::max(brightest, c.light);
+    std::vector<float> out;
+    for (const Change& c : changes)
+        out.push_back(c.opacity + (brightest > 0.0f ? c.light / brightest : 0.0f));
+    return out;
+}
+
+AutomaticSamples automatic_samples(const Camera& camera, const Medium& medium, const std::vector<float>& changes) {
+    const std::vector<Detail> all = details(camera, medium, changes);
     const auto samples = [&](double of_voxel, double distance) {
         const double footprint = camera.pixel_angle() * distance / medium.spacing;  // voxels per pixel
         return std::clamp(static_cast<int>(std::ceil(of_voxel * std::min(footprint, 1e3))), 1, kMost);
     };
     const int few = samples(kFewOfVoxel, quantile(all, kBeyond));
     return {few, std::max(few, samples(kEnoughOfVoxel, quantile(all, 1.0 - kBeyond)))};
+}
+
+AutomaticSamples automatic_samples(const Camera& camera, const Medium& medium) {
+    return automatic_samples(camera, medium, changes_in_bricks(medium));
 }
 
 }  // namespace brisance

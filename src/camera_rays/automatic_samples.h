@@ -1,6 +1,8 @@
 // How many rays of a pixel the medium needs.
 #pragma once
 
+#include <vector>
+
 #include "camera/camera.h"
 #include "medium/medium.h"
 
@@ -14,6 +16,12 @@ namespace brisance {
 struct AutomaticSamples {
     int few, enough;
 };
+
+// Changes within each brick of a medium, which take a pass over all its nodes: the opacity that comes or goes along one
+// voxel, and emission, over the largest such change.
+std::vector<float> changes_in_bricks(const Medium& medium);
+
+AutomaticSamples automatic_samples(const Camera& camera, const Medium& medium, const std::vector<float>& changes);
 AutomaticSamples automatic_samples(const Camera& camera, const Medium& medium);
 
 }  // namespace brisance

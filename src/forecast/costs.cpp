@@ -34,10 +34,10 @@ constexpr double kSmokeOfSet = 2.2, kVirtualLights = 6.0, kSurfaceRay = 4e-6;
 
 constexpr int kPilotSamples = 8;
 
-double camera_rays(const Shot& shot, const Medium& medium, const CameraSettings& settings) {
+double camera_rays(const Shot& shot, const CountedMedium& counted, const CameraSettings& settings) {
     int side = settings.samples_per_axis;
     if (side <= 0)
-        side = automatic_samples(Camera(settings, medium), medium).few;
+        side = automatic_samples(Camera(settings, counted.medium), counted.medium, counted.changes).few;
     return double(shot.camera.width) * shot.camera.height * side * side;
 }
 
@@ -80,7 +80,7 @@ PilotPixel trace_pilot_pixel(const PathTracer& tracer, const Camera& camera, std
 
 }  // namespace
 
-CountedMedium::CountedMedium(const Medium& counted) : medium(counted) {
+CountedMedium::CountedMedium(const Medium& counted) : medium(counted), changes(changes_in_bricks(counted)) {
     const std::vector<std::uint8_t> needed = nodes_beside_extinction(medium);
     lit_nodes = double(std::count_if(needed.begin(), needed.end(), [](std::uint8_t n) { return n != 0; }));
 }
@@ -120,7 +120,7 @@ double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& 
     const double of_smoke_alone =
         kEvaluation * (plan.directional ? kDirectional : 1.0) * evaluations + kMapValue * values + kCoarseNode * coarse;
     return kFrame + (has_set(plan) ? kSmokeOfSet : 1.0) * of_smoke_alone +
-           kCameraRay * camera_rays(shot, counted.medium, camera) + surface_seconds(shot, plan, camera);
+           kCameraRay * camera_rays(shot, counted, camera) + surface_seconds(shot, plan, camera);
 }
 
 bool grid_is_forecast(const Plan& plan) {

@@ -1,6 +1,8 @@
 // What a frame will cost, forecast from counts and never from a clock: seconds of one core of an AMD EPYC with AVX-512.
 #pragma once
 
+#include <vector>
+
 #include "camera/camera.h"
 #include "forecast/plan.h"
 #include "medium/medium.h"
@@ -10,11 +12,12 @@
 
 namespace brisance {
 
-// A medium whose nodes are counted once, which is a pass over all of them. Keeps a reference.
+// What forecasts ask of a medium, in passes over all of its nodes. Keeps a reference.
 struct CountedMedium {
     explicit CountedMedium(const Medium& medium);
     const Medium& medium;
-    double lit_nodes = 0.0;  // at which light is gathered
+    double lit_nodes = 0.0;      // at which light is gathered
+    std::vector<float> changes;  // changes_in_bricks()
 };
 
 // How the shot's orders of scattering are solved.

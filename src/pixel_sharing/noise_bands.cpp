@@ -101,18 +101,10 @@ private:
     template <class Take>
     void for_neighbours(std::size_t pixel, std::uint32_t number, int step, const Take& take) const {
         const Patch& patch = map_.patches[number];
-        const int x = int(pixel % std::size_t(map_.width)), y = int(pixel / std::size_t(map_.width));
-        for (int dy = -kSides; dy <= kSides; ++dy)
-            for (int dx = -kSides; dx <= kSides; ++dx) {
-                const int u = x + dx * step, v = y + dy * step;
-                if (u < 0 || u >= map_.width || v < 0 || v >= map_.height)
-                    continue;
-                const float near = kSpline[std::abs(dx)] * kSpline[std::abs(dy)];
-                for (std::uint32_t k = map_.first[std::size_t(v) * map_.width + u]; k != PatchMap::kNone;
-                     k = map_.patches[k].next)
-                    if (const float w = k == number ? 1.0f : in_common(patch, distance_[number], k); w > 0.0f)
-                        take(k, near * w);
-            }
+        map_.for_around(pixel, kSides, step, [&](std::uint32_t k, int dx, int dy) {
+            if (const float w = k == number ? 1.0f : in_common(patch, distance_[number], k); w > 0.0f)
+                take(k, kSpline[std::abs(dx)] * kSpline[std::abs(dy)] * w);
+        });
     }
 
     float in_common(const Patch& patch, float distance, std::uint32_t number) const {

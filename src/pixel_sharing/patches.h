@@ -14,16 +14,17 @@ namespace brisance {
 
 // The samples of a pixel that lie on one surface, of lobes of one width: sums, then their means, but for `weight`.
 struct Patch {
+    static constexpr std::uint32_t kNone = ~0u;
     vec3 position{0.0f}, normal{0.0f};
     float pixel_size = 0.0f, area = 0.0f, lobe = 0.0f;
     Rgb weight{0.0f};                    // the pixel shows the light times this
     float closeness = 0.0f, met = 0.0f;  // and how many samples met a surface
     float samples = 0.0f;
-    std::uint32_t next = ~0u;  // of the pixel; ~0u: it is the last
+    std::uint32_t next = kNone;  // of the pixel
 };
 
 struct PatchMap {
-    static constexpr std::uint32_t kNone = ~0u;
+    static constexpr std::uint32_t kNone = Patch::kNone;
     int width, height;
     std::vector<std::uint32_t> first;  // patch of each pixel
     std::vector<Patch> patches;
@@ -39,6 +40,20 @@ struct PatchMap {
                     visit(pixel, k);
             },
             256);
+    }
+
+    // visit(patch, dx, dy) for those of pixels that lie dx and dy steps from one, up to `reach` to each side.
+    template <class Visit>
+    void for_around(std::size_t pixel, int reach, int step, const Visit& visit) const {
+        const int x = int(pixel % std::size_t(width)), y = int(pixel / std::size_t(width));
+        for (int dy = -reach; dy <= reach; ++dy)
+            for (int dx = -reach; dx <= reach; ++dx) {
+                const int u = x + dx * step, v = y + dy * step;
+                if (u < 0 || u >= width || v < 0 || v >= height)
+                    continue;
+                for (std::uint32_t k = first[std::size_t(v) * width + u]; k != kNone; k = patches[k].next)
+                    visit(k, dx, dy);
+            }
     }
 };
 

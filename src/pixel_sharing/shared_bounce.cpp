@@ -108,14 +108,15 @@ void SharedBounce::take_means() {
         p.closeness *= each;
         p.met *= each;
         const float in_half[2] = {light_.first[k], p.samples - light_.first[k]};
-        for (std::size_t i = k * light_.kinds; i < (k + 1) * light_.kinds; ++i)
-            for (std::size_t h = 0; h < 2; ++h)
-                if (in_half[h] > 0.0f)
-                    light_.lights[i][h] /= in_half[h];
-        for (std::size_t i = k * light_.kinds; i < (k + 1) * light_.kinds; ++i)
-            for (std::size_t h = 0; h < 2; ++h)
-                if (in_half[h] == 0.0f)
-                    light_.lights[i][h] = light_.lights[i][1 - h];
+        // A half without samples takes the other's light.
+        for (std::size_t i = k * light_.kinds; i < (k + 1) * light_.kinds; ++i) {
+            HalvedLight::Halves& light = light_.lights[i];
+            const HalvedLight::Halves sums = light;
+            for (std::size_t h = 0; h < 2; ++h) {
+                const std::size_t from = in_half[h] > 0.0f ? h : 1 - h;
+                light[h] = sums[from] / in_half[from];
+            }
+        }
         light_.first[k] *= each;
     }
 }
@@ -123,27 +124,19 @@ void SharedBounce::take_means() {
 template <class Take>
 void SharedBounce::for_neighbours(std::size_t pixel, const Patch& patch, float radius, int step,
                                   const Take& take) const {
-    const int x = int(pixel % std::size_t(map_.width)), y = int(pixel / std::size_t(map_.width));
     const int reach = std::min(kReach, int(radius / (patch.pixel_size * float(step))) + 1);
     const float inverse = 1.0f / radius, least_facing = 1.0f - kOtherNormal * square(turned(patch.lobe));
-    for (int dy = -reach; dy <= reach; ++dy)
-        for (int dx = -reach; dx <= reach; ++dx) {
-            const int u = x + dx * step, v = y + dy * step;
-            if (u < 0 || u >= map_.width || v < 0 || v >= map_.height)
-                continue;
-            for (std::uint32_t k = map_.first[std::size_t(v) * map_.width + u]; k != PatchMap::kNone;
-                 k = map_.patches[k].next) {
-                const Patch& other = map_.patches[k];
-                const vec3 offset = (other.position - patch.position) * inverse;
-                const float far = glm::dot(offset, offset), facing = glm::dot(other.normal, patch.normal);
-                const float off_plane = glm::dot(offset, patch.normal) / kOtherPlane;
-                if (far >= 1.0f || facing <= least_facing || off_plane * off_plane >= 1.0f)
-                    continue;
-                if (const float same_lobe = alike(patch.lobe, other.lobe); same_lobe > 0.0f)
-                    take(k, other.area * other.samples * square(1.0f - far) * (1.0f - off_plane * off_plane) *
-                                same_lobe * (facing - least_facing));
-            }
-        }
+    map_.for_around(pixel, reach, step, [&](std::uint32_t k, int, int) {
+        const Patch& other = map_.patches[k];
+        const vec3 offset = (other.position - patch.position) * inverse;
+        const float far = glm::dot(offset, offset), facing = glm::dot(other.normal, patch.normal);
+        const float off_plane = glm::dot(offset, patch.normal) / kOtherPlane;
+        if (far >= 1.0f || facing <= least_facing || off_plane * off_plane >= 1.0f)
+            return;
+        if (const float same_lobe = alike(patch.lobe, other.lobe); same_lobe > 0.0f)
+            take(k, other.area * other.samples * square(1.0f - far) * (1.0f - off_plane * off_plane) * same_lobe *
+                        (facing - least_facing));
+    });
 }
 
 // How far each patch shares [m]; 0 where the camera touches the surface. Distances to surfaces around are noisy
