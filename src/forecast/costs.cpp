@@ -45,12 +45,13 @@ bool has_set(const Plan& plan) {
     return plan.surfaces || plan.emitters;
 }
 
-double surface_seconds(const Shot& shot, const Plan& plan, const CameraSettings& camera) {
-    if (!plan.surfaces)
-        return 0.0;
-    const bool lights = shot.virtual_lights.count > 0 && (plan.needs(Cell::SS) || plan.needs(Cell::MS));
+bool has_virtual_lights(const Shot& shot, const Plan& plan) {
+    return plan.surfaces && shot.virtual_lights.count > 0 && (plan.needs(Cell::SS) || plan.needs(Cell::MS));
+}
+
+double surface_rays(const Plan& plan, const CameraSettings& camera) {
     const int side = camera.samples_per_axis > 0 ? camera.samples_per_axis : kSurfaceSamples;
-    return (lights ? kVirtualLights : 0.0) + kSurfaceRay * side * side * double(camera.width) * camera.height;
+    return plan.surfaces ? double(side * side) * double(camera.width) * camera.height : 0.0;
 }
 
 // The samples of one pixel: variance of one, and the square of their mean without its own noise, over all colours.
@@ -97,7 +98,7 @@ LatticeChoice forecast_lattice(const Shot& shot, const Medium& medium, int smoke
                              ExtinctionPyramid::kMaxLevels - 1);
 }
 
-double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan, const CameraSettings& camera) {
+double lighting_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan) {
     const LightingLevels levels = lighting_levels(counted.medium, shot.lighting);
     const auto nodes_of = [&](const LightingLevel& level) {
         return counted.lit_nodes / std::pow(kNodesOfParent, level.level);
@@ -120,7 +121,12 @@ double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& 
     const double of_smoke_alone =
         kEvaluation * (plan.directional ? kDirectional : 1.0) * evaluations + kMapValue * values + kCoarseNode * coarse;
     return kFrame + (has_set(plan) ? kSmokeOfSet : 1.0) * of_smoke_alone +
-           kCameraRay * camera_rays(shot, counted, camera) + surface_seconds(shot, plan, camera);
+           (has_virtual_lights(shot, plan) ? kVirtualLights : 0.0);
+}
+
+double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan, const CameraSettings& camera) {
+    return lighting_seconds(shot, counted, plan) + kCameraRay * camera_rays(shot, counted, camera) +
+           kSurfaceRay * surface_rays(plan, camera);
 }
 
 bool grid_is_forecast(const Plan& plan) {

@@ -30,6 +30,8 @@ LatticeChoice forecast_lattice(const Shot& shot, const Medium& medium, int smoke
 // rays. With surfaces and lamps it is a guess, within a factor of three; of lamps in haze it is up to seven times too
 // low.
 double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan, const CameraSettings& camera);
+// Of these, all but the camera's.
+double lighting_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan);
 
 // Whether that is known for pictures of the plan: not with surfaces, lamps and methods other than the hierarchy's.
 bool grid_is_forecast(const Plan& plan);

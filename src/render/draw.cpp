@@ -9,6 +9,7 @@
 #include "forecast/memory_need.h"
 #include "medium_lighting/levels/lighting_level.h"
 #include "render/bound_layers.h"
+#include "render/choice/camera_time.h"
 #include "render/frame_picture.h"
 #include "render/many_lights.h"
 
@@ -85,8 +86,14 @@ void check_memory_to_light(const DrawInput& input) {
 }
 
 // The picture of a frame, or of a stretch of its shutter, and the lights that it is made with.
-Drawn draw_lit(const DrawInput& input, const LitStretch* stretch, Statistics& statistics, Progress& progress) {
-    ManyLights lights(input, statistics, progress);
+Drawn draw_lit(const DrawInput& given, const LitStretch* stretch, Statistics& statistics, Progress& progress) {
+    ManyLights lights(given, statistics, progress);
+    std::optional<Camera> timed;
+    if (given.time)
+        timed.emplace(camera_for_time(given, lights, given.time->left(), statistics, progress), given.medium);
+    const DrawInput input{
+        given.shot,    given.plan,           given.medium, given.surroundings, timed ? *timed : given.camera,
+        given.shutter, given.light_positions};
     progress.stage("camera");
     const Stopwatch watch;
     FramePicture picture(input, lights, stretch, progress);

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "camera/camera.h"
+#include "core/stopwatch.h"
 #include "diagnostics/light_pictures.h"
 #include "emitters/surroundings.h"
 #include "film/write_image.h"
@@ -16,6 +17,13 @@
 
 namespace brisance {
 
+// Until when the camera may work.
+struct CameraTime {
+    const Stopwatch& watch;  // of the frame
+    double end;              // on that [s]
+    double left() const { return end - watch.seconds(); }
+};
+
 // Input of a picture, by reference.
 struct DrawInput {
     const Shot& shot;
@@ -25,6 +33,7 @@ struct DrawInput {
     const Camera& camera;
     const OpenShutter* shutter = nullptr;                   // null: nothing moves
     std::span<const SharedPositions> light_positions = {};  // of virtual lights; empty: the frame places its own
+    const CameraTime* time = nullptr;                       // null: the camera takes the samples of its settings
 
     std::span<const Moment> moments() const {  // empty: nothing moves
         return shutter ? shutter->moments() : std::span<const Moment>{};

@@ -121,10 +121,10 @@ Correction draw_and_correct(RenderedFrame& out, const DrawInput& input, const Sh
     }
     Shot with_cells = input.shot;
     with_cells.output.cell_layers = true;
-    draw_into(
-        out,
-        {with_cells, input.plan, input.medium, input.surroundings, input.camera, input.shutter, input.light_positions},
-        progress);
+    draw_into(out,
+              {with_cells, input.plan, input.medium, input.surroundings, input.camera, input.shutter,
+               input.light_positions, input.time},
+              progress);
     Correction correction = correct_frame(out, input, asked, progress);
     if (!input.shot.output.cell_layers)
         std::erase_if(out.image.layers,
@@ -149,6 +149,7 @@ struct FrameView {
     const Surroundings* surroundings;
     const CameraSettings& camera;
     const Animation& animation;
+    std::optional<CameraTime> time = std::nullopt;  // none: the camera takes the samples of its settings
 };
 
 // A black picture of something that is there wants a word.
@@ -189,7 +190,12 @@ void render_into(RenderedFrame& out, const Shot& given, const FrameView& frame, 
     std::vector<SharedPositions> positions;
     if (positions_for && needs_virtual_lights(plan))
         positions = positions_for(shot, progress);
-    const DrawInput input{shot, plan, medium, surroundings, camera, shutter.still() ? nullptr : &shutter, positions};
+    const DrawInput input{shot,      plan,
+                          medium,    surroundings,
+                          camera,    shutter.still() ? nullptr : &shutter,
+                          positions, frame.time ? &*frame.time : nullptr};
+    if (frame.time && !shutter.still())
+        progress.warning("seconds", "things move while the shutter is open: the shot's own samples stay");
     if (shot.output.virtual_lights)
         if (const std::optional<std::string> reason = why_no_virtual_lights(shot, plan))
             progress.warning("virtual-lights", kNoLightPictures + *reason);
@@ -206,19 +212,25 @@ void render_into(RenderedFrame& out, const Shot& given, const FrameView& frame, 
     out.statistics.peak_resident_bytes = peak_resident_bytes();
 }
 
-// Resolves the shot's time for this frame alone. Some settings are the camera's.
-Shot with_time(const Shot& shot, const Medium& medium, const Surroundings* surroundings, CameraSettings& camera,
-               double spent, RenderedFrame& out, Progress& progress) {
+struct TimedShot {
+    Shot shot;
+    std::optional<CameraTime> time;
+};
+
+// Resolves the shot's time for this frame alone. Some settings are the camera's. `watch`: of the frame.
+TimedShot with_time(const Shot& shot, const Medium& medium, const Surroundings* surroundings, CameraSettings& camera,
+                    const Stopwatch& watch, RenderedFrame& out, Progress& progress) {
     if (!(shot.seconds > 0.0))
-        return shot;
-    const Stopwatch watch;
+        return {shot, std::nullopt};
     const double speed = machine_speed();
     TimedSettings timed =
-        settings_for_time(shot, medium, surroundings, camera, {shot.seconds, spent + watch.seconds(), speed}, progress);
+        settings_for_time(shot, medium, surroundings, camera, {shot.seconds, watch.seconds(), speed}, progress);
     camera.samples_per_axis = timed.shot.camera.samples_per_axis;
     camera.edge_refinement = timed.shot.camera.edge_refinement;
     out.statistics.stages.push_back(std::move(timed.cost));
-    return timed.shot;
+    if (!timed.camera_end)
+        return {timed.shot, std::nullopt};
+    return {timed.shot, CameraTime{watch, *timed.camera_end}};
 }
 
 // Seconds in all; what no stage reports is a stage, too.
@@ -241,12 +253,12 @@ RenderedFrame render_frame(const Shot& given, const std::filesystem::path& volum
     FrameInput input = load_frame(given, volume, frame, out.statistics, progress, kept);
     if (kept)
         read_next_frame(given, input.medium, *kept);
-    const Shot shot =
-        with_time(given, input.medium, input.surroundings.get(), input.camera, watch.seconds(), out, progress);
+    const auto [shot, time] =
+        with_time(given, input.medium, input.surroundings.get(), input.camera, watch, out, progress);
     const auto positions_for = [&](const Shot& chosen, Progress& said) {
         return shared_positions(chosen, frame, input, kept, out.statistics, said);
     };
-    render_into(out, shot, {input.medium, input.surroundings.get(), input.camera, input.animation},
+    render_into(out, shot, {input.medium, input.surroundings.get(), input.camera, input.animation, time},
                 {checkpoint, checkpoint_key(shot, volume, frame)}, positions_for, progress);
     out.metadata.frame = frame;
     finish(out, watch.seconds());
@@ -258,8 +270,8 @@ RenderedFrame render_medium(const Shot& given, const Medium& medium, Progress& t
     RenderedFrame out;
     Recorder progress(to, out.statistics);
     CameraSettings camera = given.camera_given ? given.camera : framed_camera(medium, given.camera);
-    const Shot shot = with_time(given, medium, surroundings, camera, watch.seconds(), out, progress);
-    render_into(out, shot, {medium, surroundings, camera, {}}, {}, {}, progress);
+    const auto [shot, time] = with_time(given, medium, surroundings, camera, watch, out, progress);
+    render_into(out, shot, {medium, surroundings, camera, {}, time}, {}, {}, progress);
     finish(out, watch.seconds());
     return out;
 }
@@ -270,8 +282,7 @@ Statistics plan_frame(const Shot& shot, const std::filesystem::path& volume, int
     Recorder progress(to, statistics);
     FrameInput input = load_frame(shot, volume, frame, statistics, progress);
     RenderedFrame unused;
-    Shot chosen =
-        with_time(shot, input.medium, input.surroundings.get(), input.camera, watch.seconds(), unused, progress);
+    Shot chosen = with_time(shot, input.medium, input.surroundings.get(), input.camera, watch, unused, progress).shot;
     if (chosen.method == RenderMethod::Automatic)
         chosen = with_method(chosen,
                              forecast_methods(chosen, input.medium, input.surroundings.get(), input.camera, progress));

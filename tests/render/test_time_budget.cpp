@@ -5,8 +5,10 @@
 #include "fixtures/media.h"
 #include "fixtures/sets.h"
 #include "forecast/machine_speed.h"
+#include "make_vdb.h"
 #include "render/choice/time_budget.h"
 #include "render/render_frame.h"
+#include "temp_folder.h"
 
 namespace brisance::test_time_budget {
 namespace {
@@ -94,16 +96,82 @@ TEST(TimeBudget, AutoTakesPathsForSmallPicturesAndTheGridForLargeOnes) {
     EXPECT_EQ(timed(large, medium, 4.0).shot.method, RenderMethod::LightingGrid);
 }
 
-TEST(TimeBudget, WhatIsNotForecastKeepsItsSettings) {
+Surroundings floor_below() {
     Scene scene;
     add_quad(scene, {-4, -4, -1.1f}, {8, 0, 0}, {0, 8, 0}, lambert(0.7f));
-    const Surroundings set(std::move(scene), {});
+    return Surroundings(std::move(scene), {});
+}
+
+TEST(TimeBudget, WhatIsNotForecastKeepsItsSettings) {
+    const Surroundings set = floor_below();
     Listener listener;
     Shot shot = shot_of(5.0);
     shot.lighting.error = 0.037f;
+    shot.virtual_lights.passes = 2;
     const TimedSettings t = settings_for_time(shot, glow(8), &set, shot.camera, {shot.seconds, 0.0, 1.0}, listener);
     EXPECT_FLOAT_EQ(t.shot.lighting.error, 0.037f);
+    EXPECT_FALSE(t.camera_end);
     EXPECT_EQ(listener.warnings.size(), 1u);
+}
+
+// Samples along a pixel's side that a set's picture took; 0: automatic.
+int samples_of_set(const Shot& shot, Listener& listener) {
+    const Surroundings set = floor_below();
+    const RenderedFrame frame = render_medium(shot, glow(8), listener, &set);
+    for (const StageCost& stage : frame.statistics.stages)
+        if (stage.name == "choice of the samples") {
+            const std::string side = stage.detail.at("samples_per_axis");
+            return side == "auto" ? 0 : std::stoi(side);
+        }
+    return -1;
+}
+
+// Nobody can say how fast a machine is, but none does this in a hundredth of a second, and any in minutes.
+TEST(TimeBudget, SamplesOfASetFollowTheTime) {
+    Listener hurried, patient;
+    EXPECT_EQ(samples_of_set(shot_of(0.01), hurried), 1);
+    ASSERT_FALSE(hurried.warnings.empty());
+    EXPECT_NE(hurried.warnings.front().second.find("may not suffice"), std::string::npos);
+    EXPECT_EQ(samples_of_set(shot_of(600.0), patient), 8);
+    EXPECT_TRUE(patient.warnings.empty());
+}
+
+// The picture is that of the same settings without a time, where nothing else follows from the samples.
+TEST(TimeBudget, ATimedSetIsDrawnAsIfItsSettingsWereStated) {
+    const Surroundings set = floor_below();
+    const Medium medium = glow(8);
+    Listener listener;
+    Shot hurried = shot_of(0.01);
+    hurried.virtual_lights.photons = 10000;
+    const RenderedFrame timed = render_medium(hurried, medium, listener, &set);
+    Shot stated = hurried;
+    stated.seconds = 0.0;
+    stated.lighting.error = 0.1f;
+    stated.lighting.alpha = stated.scattering.alpha = 1.0f;
+    stated.camera.samples_per_axis = stated.camera.edge_refinement = 1;
+    EXPECT_EQ(timed.image.layer("").pixels, render_medium(stated, medium, listener, &set).image.layer("").pixels);
+}
+
+// All frames of a sequence take the samples that one of them has time for.
+TEST(TimeBudget, SamplesOfASequenceAreChosenOnce) {
+    const TempFolder folder;
+    TestGrid smoke;
+    smoke.name = "density";
+    smoke.world_from_index = cubic(0.1);
+    smoke.voxels = fill_box(ivec3(-4), ivec3(4), [](const ivec3&) { return 1.0; });
+    write_vdb(folder / "smoke.0001.vdb", {smoke});
+    Shot shot = shot_of(600.0);
+    shot.volume.file = (folder / "smoke.####.vdb").string();
+    QuickQuad floor;
+    floor.corners = {dvec3(-4, -4, -1), dvec3(4, -4, -1), dvec3(4, 4, -1), dvec3(-4, 4, -1)};
+    shot.scene.quads.push_back(floor);
+    Listener listener;
+    const TimedSettings t = settings_for_time(shot, folder / "smoke.0001.vdb", 1, listener);
+    EXPECT_FALSE(t.camera_end);
+    EXPECT_EQ(t.shot.seconds, 0.0);
+    EXPECT_EQ(t.shot.camera.samples_per_axis, 8);
+    for (const auto& [code, line] : listener.warnings)
+        EXPECT_NE(code, "seconds") << line;
 }
 
 }  // namespace

@@ -11,7 +11,9 @@
 #include "forecast/correction_plan.h"
 #include "forecast/expected_errors.h"
 #include "forecast/machine_speed.h"
+#include "render/choice/camera_time.h"
 #include "render/input/frame_input.h"
+#include "render/many_lights.h"
 
 namespace brisance {
 
@@ -20,14 +22,15 @@ namespace {
 // From coarse to fine. Errors below 0.02 are reached by a correction (correction/correct.h).
 struct Step {
     float error, alpha, scattering_alpha;
-    double correction = 0.0;  // seconds of unbiased samples over those of the picture
+    // Seconds of unbiased samples over those of the picture: at least and at most.
+    double least_correction = 0.0, most_correction = 0.0;
 };
 constexpr std::array<Step, 6> kGridSteps = {{{0.1f, 1.0f, 1.0f},
                                              {0.05f, 1.0f, 1.0f},
                                              {0.03f, 1.5f, 1.25f},
                                              {0.02f, 2.0f, 1.5f},
-                                             {0.02f, 2.0f, 1.5f, 1.5},
-                                             {0.01f, 3.0f, 2.0f, 2.0}}};
+                                             {0.02f, 2.0f, 1.5f, 0.3, 1.5},
+                                             {0.01f, 3.0f, 2.0f, 1.5, 2.0}}};
 
 // Forecasts of the lighting grid are up to 30 % too low (docs/numbers.md).
 constexpr double kMargin = 1.3;
@@ -35,6 +38,9 @@ constexpr double kMargin = 1.3;
 constexpr double kPathMargin = 1.1;
 // The error falls about as this power of the time while a correction takes more of it (docs/numbers.md).
 constexpr double kCorrected = 0.45;
+// What lights of a set may take of the time, by a forecast that may err by a factor of three; and their finest step.
+constexpr double kLightsOfSet = 0.3;
+constexpr int kFinestOfSet = 3;
 constexpr double kWriting = 0.02;  // of the time, for alpha, depth and files
 constexpr std::size_t kTimedPixels = 512;
 constexpr const char* kStage = "choice for the time";
@@ -44,6 +50,7 @@ struct Option {
     double seconds;  // of wall time, for what is left of the frame
     double error;    // expected
     std::string text;
+    std::optional<double> camera_end = std::nullopt;  // as of TimedSettings
 };
 
 struct Timing {
@@ -51,27 +58,38 @@ struct Timing {
     const Medium& medium;
     const CameraSettings& camera;
     const TimeBudget& budget;
-    double left() const { return (1.0 - kWriting) * budget.seconds - budget.spent; }
+    double end() const { return (1.0 - kWriting) * budget.seconds; }
+    double left() const { return end() - budget.spent; }
 };
+
+Shot with_lights(Shot shot, const Step& s) {
+    shot.lighting.error = s.error;
+    shot.lighting.alpha = s.alpha;
+    shot.scattering.alpha = s.scattering_alpha;
+    return shot;
+}
 
 Option grid_option(const Timing& t, const Plan& plan, const Surroundings* surroundings) {
     Option out;
     const CountedMedium counted(t.medium);
+    const bool corrects = t.shot.correction.samples == kAutomaticCorrection;
     double share = 0.0;
     for (int step = step_count() - 1; step >= 0; --step) {
+        const Step& of_step = kGridSteps.at(static_cast<std::size_t>(step));
         out.shot = with_step(t.shot, step);
-        if (t.shot.correction.samples == kAutomaticCorrection)
-            share = kGridSteps.at(static_cast<std::size_t>(step)).correction;
         CameraSettings camera = t.camera;
         if (step == 0)
             camera.samples_per_axis = 1;
-        const double cost = (1.0 + share) * grid_seconds(out.shot, counted, plan, camera);
-        out.seconds = kMargin * (1.0 + t.shot.certify.belief) * cost / t.budget.speed;
-        if (out.seconds <= t.left())
+        const double alone =
+            kMargin * (1.0 + t.shot.certify.belief) * grid_seconds(out.shot, counted, plan, camera) / t.budget.speed;
+        const double more = t.left() / alone - 1.0;  // of that time is left for samples
+        share = corrects ? std::clamp(more, 0.0, of_step.most_correction) : 0.0;
+        out.seconds = (1.0 + share) * alone;
+        if (more >= (corrects ? of_step.least_correction : 0.0))
             break;
     }
     out.shot.method = RenderMethod::LightingGrid;
-    if (t.shot.correction.samples == kAutomaticCorrection)
+    if (corrects)
         out.shot.correction.samples = static_cast<int>(
             samples_of_share(share, out.shot, counted, plan, Camera(t.camera, t.medium), surroundings));
     out.error = expected_error({out.shot, t.medium, plan}).error * std::pow(1.0 + share, -kCorrected);
@@ -98,6 +116,29 @@ Option path_option(const Timing& t, const Surroundings* surroundings) {
     return out;
 }
 
+// With a set: its lights are known within a factor of three, and what is left is the camera's.
+Option set_option(const Timing& t, const Plan& plan) {
+    Option out;
+    const CountedMedium counted(t.medium);
+    for (int step = kFinestOfSet; step >= 0; --step) {
+        out.shot = with_lights(t.shot, kGridSteps.at(static_cast<std::size_t>(step)));
+        out.seconds = lighting_seconds(out.shot, counted, plan) / t.budget.speed;
+        if (out.seconds <= kLightsOfSet * t.left())
+            break;
+    }
+    out.shot.method = RenderMethod::LightingGrid;
+    if (t.shot.correction.samples == kAutomaticCorrection)
+        out.shot.correction.samples = 0;
+    out.error = out.shot.lighting.error;
+    const double belief = t.shot.certify.belief * grid_seconds(out.shot, counted, plan, t.camera) / t.budget.speed;
+    out.camera_end = t.end() - belief;
+    out.text = fmt::format(
+        "the lighting grid with lighting.error={:.3g}, lighting.alpha={:.2g} and as many samples as "
+        "fit once its lights are there",
+        out.shot.lighting.error, out.shot.lighting.alpha);
+    return out;
+}
+
 // None: nothing can be forecast.
 std::optional<Option> best_option(const Timing& t, const Surroundings* surroundings) {
     Shot grid = t.shot;
@@ -106,6 +147,8 @@ std::optional<Option> best_option(const Timing& t, const Surroundings* surroundi
     std::optional<Option> best;
     if (t.shot.method != RenderMethod::Path && grid_is_forecast(plan))
         best = grid_option(t, plan, surroundings);
+    else if (t.shot.method != RenderMethod::Path && samples_follow_time(grid, plan, t.camera))
+        return set_option(t, plan);
     if (t.shot.method == RenderMethod::Path || (t.shot.method == RenderMethod::Automatic && best)) {
         const Option paths = path_option(t, surroundings);
         const bool grid_fits = best && best->seconds <= t.left();
@@ -123,10 +166,7 @@ int step_count() {
 }
 
 Shot with_step(Shot shot, int step) {
-    const Step& s = kGridSteps.at(static_cast<std::size_t>(step));
-    shot.lighting.error = s.error;
-    shot.lighting.alpha = s.alpha;
-    shot.scattering.alpha = s.scattering_alpha;
+    shot = with_lights(std::move(shot), kGridSteps.at(static_cast<std::size_t>(step)));
     if (step == 0) {
         shot.camera.samples_per_axis = 1;
         shot.camera.edge_refinement = 1;
@@ -145,18 +185,21 @@ TimedSettings settings_for_time(const Shot& shot, const Medium& medium, const Su
     if (const std::optional<Option> best = best_option(timing, surroundings)) {
         out.shot = best->shot;
         out.seconds = given.spent + best->seconds;
-        out.too_short = best->seconds > timing.left();
-        out.reason = fmt::format(
-            "seconds={:.3g}: {}, which should take {:.2g} s on a machine that does {:.2g} core "
-            "seconds in one",
-            given.seconds, best->text, out.seconds, given.speed);
+        out.camera_end = best->camera_end;
+        out.too_short = !out.camera_end && best->seconds > timing.left();
+        out.reason = fmt::format("seconds={:.3g}: {}", given.seconds, best->text);
+        if (!out.camera_end)
+            out.reason += fmt::format(", which should take {:.2g} s on a machine that does {:.2g} core seconds in one",
+                                      out.seconds, given.speed);
         progress.notice(out.reason);
         if (out.too_short)
             progress.warning("seconds", fmt::format("{:.3g} s do not suffice: the coarsest settings should take {:.2g} "
                                                     "s, of which {:.2g} s are gone already",
                                                     given.seconds, out.seconds, given.spent));
     } else {
-        out.reason = "shots with surfaces, lamps or another scattering.method are forecast for method=path only";
+        out.reason =
+            "with another scattering.method, several passes of virtual lights, or stated samples of a set, times "
+            "are known for method=path only";
         progress.warning("seconds", out.reason + ": the shot's own settings stay");
     }
     out.shot.seconds = 0.0;
@@ -180,6 +223,16 @@ TimedSettings settings_for_time(const Shot& shot, const std::filesystem::path& v
     const FrameInput input = load_frame(shot, volume, frame, statistics, progress);
     TimedSettings out = settings_for_time(shot, input.medium, input.surroundings.get(), input.camera,
                                           {shot.seconds, watch.seconds(), speed}, progress);
+    if (out.camera_end) {
+        const Plan plan = plan_cells(out.shot, input.medium, input.surroundings.get());
+        const Camera camera(input.camera, input.medium);
+        const DrawInput draw{out.shot, plan, input.medium, input.surroundings.get(), camera};
+        const ManyLights lights(draw, statistics, progress);
+        const CameraTime time{watch, *out.camera_end};
+        out.shot.camera.samples_per_axis =
+            camera_for_time(draw, lights, time.left(), statistics, progress).samples_per_axis;
+        out.camera_end.reset();
+    }
     out.cost.seconds = watch.seconds();
     return out;
 }

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "core/progress.h"
@@ -29,7 +30,10 @@ struct TimedSettings {
     std::string reason;      // one line
     double seconds = 0.0;    // of wall time, forecast for the whole frame
     bool too_short = false;  // even the coarsest settings take longer
-    StageCost cost;          // of the choice
+    // When the camera of a set has to be done, in seconds of the frame: its samples are chosen once the lights are
+    // there (camera_time.h). None: the settings say how many there are.
+    std::optional<double> camera_end;
+    StageCost cost;  // of the choice
 };
 
 // Settings of the step of the lighting grid, from 0, the coarsest.
