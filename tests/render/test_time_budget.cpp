@@ -170,6 +170,7 @@ TEST(TimeBudget, SamplesOfASequenceAreChosenOnce) {
     EXPECT_FALSE(t.camera_end);
     EXPECT_EQ(t.shot.seconds, 0.0);
     EXPECT_EQ(t.shot.camera.samples_per_axis, 8);
+    EXPECT_EQ(t.shot.camera.edge_refinement, 1) << "as it was timed";
     for (const auto& [code, line] : listener.warnings)
         EXPECT_NE(code, "seconds") << line;
 }

@@ -1,8 +1,8 @@
 // --seconds where surfaces or lamps are: how many samples a pixel may have.
 //
 // What a pixel of a set costs depends on what it shows, and counts do not tell it. So the lights are built first, and
-// small pictures by them are timed. A small picture's pixels cost at least as much as those of a large one, since what
-// is prepared once, and what pixels share, counts for more there.
+// small pictures by them are timed. What is prepared once for a picture counts for more there, so that times of large
+// ones are overrated rather than underrated.
 #pragma once
 
 #include "camera/settings.h"

@@ -229,8 +229,9 @@ TimedSettings settings_for_time(const Shot& shot, const std::filesystem::path& v
         const DrawInput draw{out.shot, plan, input.medium, input.surroundings.get(), camera};
         const ManyLights lights(draw, statistics, progress);
         const CameraTime time{watch, *out.camera_end};
-        out.shot.camera.samples_per_axis =
-            camera_for_time(draw, lights, time.left(), statistics, progress).samples_per_axis;
+        const CameraSettings chosen = camera_for_time(draw, lights, time.left(), statistics, progress);
+        out.shot.camera.samples_per_axis = chosen.samples_per_axis;
+        out.shot.camera.edge_refinement = chosen.edge_refinement;
         out.camera_end.reset();
     }
     out.cost.seconds = watch.seconds();

@@ -3,8 +3,9 @@
 // The lighting grid has steps from coarse to fine. Their times are forecast from counts (forecast/costs.h), in seconds
 // of one core; only how many of those this machine does in a second is timed (forecast/machine_speed.h). The finest
 // step that fits is taken, with a margin since forecasts err. The path tracer stops by the clock, before the pass that
-// would not fit. Where method=auto leaves the choice, the method of less expected error is taken. A certificate's time
-// is extra.
+// would not fit. With surfaces and lamps the lights take a step, and the camera the samples that then fit
+// (camera_time.h). Where method=auto leaves the choice, the method of less expected error is taken. A certificate's
+// time is extra.
 #pragma once
 
 #include <filesystem>
