@@ -68,12 +68,12 @@ double spot_solid_angle(const LightSettings& light) {
 
 }  // namespace
 
-Emitters::Emitters(const Scene& scene, const std::vector<LightSettings>& lights,
+Emitters::Emitters(const Intersector& surfaces, const std::vector<LightSettings>& lights,
                    const std::vector<const Texture*>& pictures)
-    : scene_(scene), tree_({}) {
+    : scene_(surfaces.scene()), tree_({}) {
     add_triangles();
     for (std::size_t i = 0; i < lights.size(); ++i)
-        add_light(lights[i], i < pictures.size() ? pictures[i] : nullptr);
+        add_light(surfaces, lights[i], i < pictures.size() ? pictures[i] : nullptr);
     tree_ = LightTree(near_bounds());
 }
 
@@ -120,14 +120,14 @@ void Emitters::add_triangles() {
             if (!(area > 0.0) || !(radiance > 0.0))
                 continue;
             light_[m][t] = static_cast<std::int32_t>(near_.size());
-            near_.push_back({m, t, nullptr, {}, area, radiance});
+            near_.push_back({m, t, nullptr, {}, {}, area, radiance});
             const double before = near_power_.empty() ? 0.0 : near_power_.back();
             near_power_.push_back(before + pi * area * radiance * (material.double_sided ? 2.0 : 1.0));
         }
     }
 }
 
-void Emitters::add_light(const LightSettings& light, const Texture* picture) {
+void Emitters::add_light(const Intersector& surfaces, const LightSettings& light, const Texture* picture) {
     if (light.kind == LightKind::Quad || light.power == Rgb(0.0f))
         return;  // quads are triangles of the scene
     const double power = luminance(light.power);
@@ -136,7 +136,7 @@ void Emitters::add_light(const LightSettings& light, const Texture* picture) {
         const dvec3 position = light.position - scene_.origin;
         const dvec3 axis = spot ? glm::normalize(light.direction) : dvec3(0, 0, 1);
         points_.push_back({position, axis, spot ? cosine_of_degrees(light.outer_degrees) : -1.0, power});
-        near_.push_back({0, 0, &light, position});
+        near_.push_back({0, 0, &light, position, OwnSurfaces(surfaces, position)});
         const double before = near_power_.empty() ? 0.0 : near_power_.back();
         near_power_.push_back(before + power * (spot ? spot_solid_angle(light) : 4.0 * pi));
         return;
@@ -224,8 +224,8 @@ std::optional<EmitterSample> Emitters::sample_on(const Near& near, const LitPoin
         if (!(distance > 0.0))
             return std::nullopt;
         const dvec3 direction = offset / distance;
-        s = EmitterSample{direction, distance, near.position, intensity(near, -direction) / float(distance * distance),
-                          0.0};
+        s = EmitterSample{direction, distance, near.start(-direction),
+                          intensity(near, -direction) / float(distance * distance), 0.0};
     } else {
         s = sample_triangle(near, point, on);
     }
@@ -355,11 +355,11 @@ std::optional<EmittedParticle> Emitters::emit(const dvec3& centre, double radius
 EmittedParticle Emitters::emit_near(const Near& near, Rng& rng) const {
     const double u = rng.next_double(), v = rng.next_double();
     if (near.light && near.light->kind == LightKind::Point)
-        return {{near.position, around({0, 0, 1}, 1.0 - 2.0 * u, 2.0 * pi * v)}, near.light->power * float(4.0 * pi)};
+        return {near.leaving(around({0, 0, 1}, 1.0 - 2.0 * u, 2.0 * pi * v)), near.light->power * float(4.0 * pi)};
     if (near.light) {
         const double outer = cosine_of_degrees(near.light->outer_degrees);
         const dvec3 d = around(glm::normalize(near.light->direction), 1.0 - u * (1.0 - outer), 2.0 * pi * v);
-        return {{near.position, d}, intensity(near, d) * float(2.0 * pi * (1.0 - outer))};
+        return {near.leaving(d), intensity(near, d) * float(2.0 * pi * (1.0 - outer))};
     }
     const vec2 b = sample_barycentric(u, v);
     const SurfaceHit hit{0.0, near.mesh, near.triangle, b};

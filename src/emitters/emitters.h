@@ -8,6 +8,7 @@
 #include "core/rng.h"
 #include "emitters/environment.h"
 #include "emitters/light_tree.h"
+#include "emitters/own_surfaces.h"
 #include "geometry/surface_point.h"
 
 namespace brisance {
@@ -53,7 +54,8 @@ private:
 class Emitters {
 public:
     // Keeps references. `pictures`: per light, of environments that have one. Lights' positions are world coordinates.
-    Emitters(const Scene& scene, const std::vector<LightSettings>& lights, const std::vector<const Texture*>& pictures);
+    Emitters(const Intersector& surfaces, const std::vector<LightSettings>& lights,
+             const std::vector<const Texture*>& pictures);
 
     bool empty() const { return tree_.empty() && far_.empty(); }
     bool visible() const;  // some light can be seen: not only points, spots, and suns without a disc
@@ -101,8 +103,12 @@ private:
     struct Near {
         std::uint32_t mesh = 0, triangle = 0;
         const LightSettings* light = nullptr;  // of points and spots
-        dvec3 position{0.0};                   // of them, local
-        double area = 0.0, radiance = 0.0;     // of triangles: [m^2], mean luminance [W/(m^2 sr)]
+        dvec3 position{0.0};                   // of them, local, and what they lie in
+        OwnSurfaces own;
+        double area = 0.0, radiance = 0.0;  // of triangles: [m^2], mean luminance [W/(m^2 sr)]
+
+        dvec3 start(const dvec3& direction) const { return own.start(position, direction); }
+        Ray leaving(const dvec3& direction) const { return {start(direction), direction}; }
     };
     // A light at infinity: a sun or the environment.
     struct Far {
@@ -114,7 +120,7 @@ private:
     };
 
     void add_triangles();
-    void add_light(const LightSettings& light, const Texture* picture);
+    void add_light(const Intersector& surfaces, const LightSettings& light, const Texture* picture);
     double far_probability() const;
     std::optional<EmitterSample> sample_near(const LitPoint& point, double choice, PointNumbers on,
                                              double probability) const;

@@ -21,7 +21,7 @@ Surroundings::Surroundings(Scene scene, std::vector<LightSettings> lights, std::
       lights_(std::move(lights)),
       pictures_(std::move(pictures)),
       intersector_(scene_),
-      emitters_(scene_, lights_, pointers_to(pictures_)) {
+      emitters_(intersector_, lights_, pointers_to(pictures_)) {
     // Computes the tables now, before threads use them concurrently.
     for (const SceneMaterial& material : scene_.materials) {
         if (needs_energy_tables(material.surface))

@@ -85,7 +85,7 @@ LitLattice::LitLattice(const MediumLightingInput& input, int level)
       needed_(nodes_beside_extinction(medium())),
       depths_(pyramid_, kExteriorRayLevel) {
     if (input.surroundings && input.surroundings->has_surfaces()) {
-        surfaces_ = std::make_unique<SurfaceOccluders>(input.surroundings->intersector());
+        surfaces_ = std::make_unique<SurfaceOccluders>(input.surroundings->intersector(), input.medium.spacing);
         if (surfaces_reach_into(input.surroundings, medium()))
             pyramid_.set_occluders(surfaces_.get());
     }

@@ -37,8 +37,11 @@ bool may_touch(const Extent& box, const vec3& a, const vec3& b, const vec3& c) {
 
 }  // namespace
 
+SurfaceOccluders::SurfaceOccluders(const Intersector& intersector, float spacing)
+    : intersector_(intersector), moved_(spacing * kBesidePlanes) {}
+
 float SurfaceOccluders::first_hit(const vec3& from, const vec3& direction, float far) const {
-    const std::optional<SurfaceHit> hit = intersector_.first_hit({dvec3(from), dvec3(direction)}, far);
+    const std::optional<SurfaceHit> hit = intersector_.first_hit({dvec3(from + moved_), dvec3(direction)}, far);
     return hit ? float(hit->distance) : far;
 }
 

@@ -12,6 +12,7 @@
 #include "medium/extinction_met.h"
 #include "medium/phase.h"
 #include "medium_lighting/levels/coarse_lighting.h"
+#include "medium_lighting/levels/lamps_in_smoke.h"
 #include "medium_lighting/surface_occluders.h"
 
 namespace brisance {
@@ -51,6 +52,10 @@ constexpr float kErrorOfSmoke = 0.1f;
 // that arrives has flown a way.
 constexpr float kErrorOfEmissionInSmoke = 0.05f;
 
+// Of light that scatters within the voxel around a lamp. A lamp in a ball of smoke had a third of its light there on
+// voxels twice as wide, and MM 7 to 12 % too bright, the picture 4 to 7 %.
+constexpr float kErrorBesideLamps = 0.2f;
+
 // The mean albedo, as a collision meets it.
 float albedo_met(const Medium& medium) {
     double sum = 0.0, all = 0.0;
@@ -66,21 +71,25 @@ float albedo_met(const Medium& medium) {
 class LatticeErrors {
 public:
     // `surfaces`: null: none reaches into the medium.
-    LatticeErrors(const Medium& medium, const Occluders* surfaces)
-        : medium_(medium), surfaces_(surfaces), depth_(medium.spacing * float(extinction_met(medium.extinction))) {}
+    LatticeErrors(const Medium& medium, const Occluders* surfaces, const Surroundings* surroundings = nullptr)
+        : medium_(medium), surfaces_(surfaces), depth_(medium.spacing * float(extinction_met(medium.extinction))) {
+        if (surroundings && !surroundings->emitters().points().empty())
+            lamps_ = LampsInSmoke(*surroundings, medium, fire_power());
+    }
 
     // Relative, of the picture, on voxels 2^level wide; and with the light of their detail.
     float of_first_without_detail(int level) { return std::hypot(of_detail(level), of_small_fire(level)); }
     float of_first(int level) {
         const float left = medium_.emits() ? kLeftByDetail : 1.0f;  // not measured without fire
-        return std::hypot(left * of_detail(level), of_small_fire(level), of_walls(level));
+        return std::hypot(left * of_detail(level), of_small_fire(level), std::hypot(of_walls(level), of_lamps(level)));
     }
     float of_smoke(int level) {
         if (!albedo_)
             albedo_ = albedo_met(medium_);
         const float depth = std::exp2(float(level)) * depth_of_smoke();
         return std::hypot(kErrorOfSmoke * *albedo_ * *albedo_ * depth * depth,
-                          kErrorOfEmissionInSmoke * unresolved_emission(level), of_walls(level));
+                          kErrorOfEmissionInSmoke * unresolved_emission(level),
+                          std::hypot(of_walls(level), of_lamps(level)));
     }
 
     int widest_of_first() const { return medium_.emits() ? kWidest : kWidestWithoutFire; }
@@ -90,6 +99,16 @@ private:
     float of_detail(int level) {
         const float voxels = error_of_voxels(std::exp2(float(level)) * depth_) - error_of_voxels(depth_);
         return std::hypot(voxels, kErrorOfEmission * unresolved_emission(level));
+    }
+
+    float of_lamps(int level) const { return level > 0 ? kErrorBesideLamps * lamps_.scattered_beside_them(level) : 0.0f; }
+
+    double fire_power() {
+        double sum = 0.0;
+        if (medium_.emits())
+            for (const float j : emission())
+                sum += j;
+        return 4.0 * double(kPi) * double(medium_.voxel_volume) * sum;
     }
 
     // Light that smoke sends out on the other side of surfaces, of all of it.
@@ -170,6 +189,7 @@ private:
 
     const Medium& medium_;
     const Occluders* surfaces_;
+    LampsInSmoke lamps_;
     float depth_;  // of a voxel
     std::optional<float> albedo_;
     std::optional<float> fire_radius_;  // in voxels
@@ -280,9 +300,9 @@ float error_of_voxels(float depth) {
 LightingLevels lighting_levels(const Medium& medium, const LightingSettings& settings,
                                const Surroundings* surroundings) {
     if (!surfaces_reach_into(surroundings, medium))
-        return levels_by({medium, nullptr}, settings);
-    const SurfaceOccluders surfaces(surroundings->intersector());
-    return levels_by({medium, &surfaces}, settings);
+        return levels_by({medium, nullptr, surroundings}, settings);
+    const SurfaceOccluders surfaces(surroundings->intersector(), medium.spacing);
+    return levels_by({medium, &surfaces, surroundings}, settings);
 }
 
 float tolerated_interpolation(const Medium& medium, const LightingSettings& settings) {

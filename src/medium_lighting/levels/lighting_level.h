@@ -12,6 +12,7 @@
 //   smoke is lit. How many are is decided node by node, by what the picture shows (adaptive_gather.h).
 // - Light of the smoke is smooth where smoke is thin, whatever the fire does. Its voxels are the widest whose whole
 //   error lighting.error allows: they depend on the smoke in the world, not on the voxels that it is stored in.
+// - Lamps without extent inside of smoke need the finest voxels around them (lamps_in_smoke.h).
 #pragma once
 
 #include "medium_lighting/input.h"
