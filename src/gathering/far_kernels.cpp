@@ -238,7 +238,7 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Rece
         w = hn::Mul(w, hn::IfThenElse(hn::Lt(distance, hn::Set(d, l.balls[i].radius)), hn::Set(d, l.balls[i].inside),
                                       hn::Set(d, l.balls[i].escape)));
 
-    const bool moments = out.moments || l.directional;
+    const bool moments = out.moments || (l.directional && !(l.lobes && l.lobes[i].share == 1.0f));
     const Basis basis = moments ? basis_lanes(d, wx, wy, wz) : Basis{};
     V phase = hn::Zero(d);
     if (out.scattered) {
@@ -250,11 +250,19 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Rece
         else
             phase = henyey_greenstein_lanes(d, out.mean_cosine, cosine);
     }
+    const CosineLobe lobe = l.lobes ? l.lobes[i] : CosineLobe{vec3(0.0f), 0.0f};
+    const V along = hn::MulAdd(wx, hn::Set(d, lobe.normal.x),
+                               hn::MulAdd(wy, hn::Set(d, lobe.normal.y), hn::Mul(wz, hn::Set(d, lobe.normal.z))));
+    // Lambert's intensity is four times its mean along the normal.
+    const V by_cosine = hn::Mul(hn::Set(d, 4.0f * lobe.share), hn::Max(along, hn::Zero(d)));
     for (int c = 0; c < 3; ++c) {
         V intensity = hn::Set(d, l.intensity[i][c]);
-        if (l.directional)
+        if (l.directional && lobe.share < 1.0f)
             for (int m = 0; m < kShMoments; ++m)
                 intensity = hn::MulAdd(hn::Set(d, l.directional[i * 24 + 3 * m + c]), basis.y[m], intensity);
+        if (l.lobes)
+            intensity =
+                hn::MulAdd(by_cosine, hn::Set(d, l.intensity[i][c]), hn::Mul(hn::Set(d, 1.0f - lobe.share), intensity));
         const V arriving = hn::Mul(intensity, w);
         accumulate(d, out.fluence + c * out.plane + at, arriving);
         if (out.scattered)

@@ -18,6 +18,7 @@ struct FarLights {
     const Rgb* intensity;
     // Coefficients of degrees 1 and 2 of a directional intensity: 24 per light, [3 * m + c]; null: isotropic.
     const float* directional;
+    const CosineLobe* lobes;  // of the lights; null: none has one
 
     float radius;            // r_l = alpha h_l [m]
     bool bottom;             // level 0: does not fade in; lights are balls of their voxel's volume

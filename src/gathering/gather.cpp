@@ -149,6 +149,7 @@ private:
         lights.position = level.position.data();
         lights.intensity = level.intensity.data();
         lights.directional = level.directional.empty() ? nullptr : level.directional.data();
+        lights.lobes = level.lobe.empty() ? nullptr : level.lobe.data();
         lights.radius = field_.alpha * level.spacing;
         lights.bottom = level.level == field_.bottom;
         lights.top = top;

@@ -24,6 +24,12 @@ struct LightBall {
     float escape;  // transmittance out of the ball, mean
 };
 
+// Lambert's cosine about a normal, by which a part of a light shines; the rest by harmonics (point_grid.h).
+struct CosineLobe {
+    vec3 normal;  // unit
+    float share;  // in [0, 1]
+};
+
 struct GridLevel {
     int level = 0;
     float spacing = 0.0f;        // h_l [m]
@@ -33,6 +39,7 @@ struct GridLevel {
 
     // Degrees 1 and 2 of a directional intensity, 24 per light ([3 * m + colour], sh.h); empty: isotropic.
     std::vector<float> directional;
+    std::vector<CosineLobe> lobe;  // of each light; empty: harmonics alone
 
     // Luminance of what each light sends to receivers outside of dense smoke (thin_media/exterior_hierarchy.h); or
     // empty.

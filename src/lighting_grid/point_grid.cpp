@@ -23,8 +23,19 @@ struct Sum {
     double weight = 0.0;
     Rgb intensity{0.0f};
     std::vector<float> directional;
+    dvec3 weighted_normal{0.0};
     std::vector<std::uint32_t> members;
 };
+
+// Lights whose mean normal is shorter than this are no plane. That of a ball's half is 0.5 long.
+constexpr float kCurved = 0.8f;
+
+CosineLobe lobe_of(const Sum& sum) {
+    const float length = float(glm::length(sum.weighted_normal) / sum.weight);
+    if (!(length > kCurved))
+        return {vec3(0.0f, 0.0f, 1.0f), 0.0f};
+    return {vec3(glm::normalize(sum.weighted_normal)), glm::smoothstep(kCurved, 1.0f, length)};
+}
 
 // Appends the positions of up to kMostParts of the members, picked in proportion to their power.
 void add_parts(const PointLights& lights, const Sum& sum, std::vector<vec3>& parts) {
@@ -51,6 +62,8 @@ GridLevel make_level(const Medium& medium, const PointLights& lights, int number
         sum.weight += y;
         sum.intensity += lights.intensity[i];
         sum.members.push_back(static_cast<std::uint32_t>(i));
+        if (!lights.normal.empty())
+            sum.weighted_normal += double(y) * dvec3(lights.normal[i]);
         if (lights.directional.empty())
             continue;
         sum.directional.resize(24, 0.0f);
@@ -68,6 +81,8 @@ GridLevel make_level(const Medium& medium, const PointLights& lights, int number
         level.position.emplace_back(sum.weighted_position / sum.weight);
         level.intensity.push_back(sum.intensity);
         level.directional.insert(level.directional.end(), sum.directional.begin(), sum.directional.end());
+        if (!lights.normal.empty())
+            level.lobe.push_back(lobe_of(sum));
     }
     level.index_rows();
     return level;

@@ -4,6 +4,10 @@
 // and far from what they light, so a jump from one vertex to the next does not show. Levels below the top keep only
 // lights within range of the medium. A coarse light's centre may lie behind a surface that its lights are in front of.
 // Its visibility is therefore that of some of those lights, its parts.
+//
+// Lights on surfaces send nothing along them. Harmonics of degree 2 do, a tenth of what they send along the normal, and
+// smoke near a floor, which sees most of it at grazing angles, would get a third more light than there is. Lights
+// of a plane therefore shine by the cosine itself; those of curved surfaces by harmonics, the more the more they curve.
 #pragma once
 
 #include <vector>
@@ -16,6 +20,7 @@ struct PointLights {
     std::vector<vec3> position;      // local [m]
     std::vector<Rgb> intensity;      // mean over directions [W/sr]
     std::vector<float> directional;  // degrees 1 and 2, 24 per light as GridLevel has them; empty: isotropic
+    std::vector<vec3> normal;        // unit, of the lights' surfaces; empty: they have none
     std::size_t size() const { return position.size(); }
 };
 

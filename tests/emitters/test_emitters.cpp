@@ -181,6 +181,35 @@ TEST(Emitters, ParticlesCarryThePower) {
     EXPECT_NEAR(e.mean[0], truth, kSigmas * e.error[0] + 2e-3 * truth);
 }
 
+// A lamp hung in a slanted wall, in the corner of three walls, or nowhere near: light leaves it to both sides of each
+// wall and arrives from there, whatever way single precision rounds.
+TEST(Emitters, LampsInThePlaneOfASurfaceKeepTheirLight) {
+    const dvec3 hung(0.37, 1.13, 2.71), free(0.2, -1.5, 1.0);
+    Scene scene;
+    for (const vec3& u : {vec3(3.1f, 1.7f, 0.3f), vec3(-0.4f, 2.2f, 2.9f), vec3(0.3f, 0.1f, 0.2f)})
+        for (const vec3& v : {vec3(-1.1f, 2.3f, 0.7f), vec3(0.2f, -0.3f, 1.9f)})
+            add_quad(scene, vec3(hung) - 0.41f * u - 0.37f * v, u, v, lambert(0.5f));
+    for (const dvec3& position : {hung, free}) {
+        const Surroundings set(scene, {lamp(LightKind::Point, position)});
+        const double near = position == hung ? 1e-3 : 0.0;
+        Rng rng(Stream::Points, 7);
+        int met = 0;
+        for (int i = 0; i < 4000; ++i) {
+            const auto particle = set.emitters().emit(dvec3(0.0), 5.0, rng);
+            ASSERT_TRUE(particle);
+            met += set.intersector().occluded(particle->ray, near);
+            const dvec3 from = position + 1e-3 * uniform_direction(rng.next_double(), rng.next_double());
+            const auto s = set.emitters().sample({from, dvec3(0.0), LitPoint::Kind::Medium}, rng);
+            ASSERT_TRUE(s);
+            const dvec3 way = s->end - from;
+            const Ray back{s->end, -glm::normalize(way)};
+            met += set.intersector().occluded(back, 0.5 * glm::length(way));
+        }
+        // Six planes: from a part of 1e-3 of all directions rays graze one of them.
+        EXPECT_LT(met, 8000 * 6 * 2e-3) << (position == hung ? "hung" : "free");
+    }
+}
+
 TEST(Emitters, DarkLightsAreNoLights) {
     LightSettings off = lamp(LightKind::Point, {1, 2, 3});
     off.power = Rgb(0.0f);

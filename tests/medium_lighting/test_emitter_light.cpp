@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 
 #include "emitters/surroundings.h"
+#include "fixtures/estimate.h"
 #include "fixtures/media.h"
 #include "medium_lighting/stages/emitter_light.h"
 
@@ -107,6 +109,37 @@ TEST(EmitterLight, ManyLampsAreNotBiased) {
         return sum;
     });
     EXPECT_LT(std::abs(e.together), 0.015);
+}
+
+// All light of a lamp in smoke of 8 mean free paths is scattered or absorbed there: the integral of extinction times
+// fluence is its power but for exp(-8). Voxels are 0.4 mean free paths wide, so that light falls to a fraction within
+// them. Wherever the lamp is in its voxel, nodes find it within what a cube differs from a ball.
+TEST(EmitterLight, ALampInSmokeLosesAllItsLightThere) {
+    Recipe r;
+    r.box = cube(-22, 22);
+    r.world_from_index = cubic(0.1);
+    r.density = [](const ivec3& n) { return ball(n, dvec3(0.0), 20.0); };
+    r.settings = black_smoke();
+    r.settings.smoke.extinction_per_metre = 4.0f;
+    const Medium medium = make_medium(r);
+    const ExtinctionPyramid pyramid(medium, 1);
+    const std::vector<std::uint8_t> needed(medium.lattice.node_count(), 1);
+    for (const dvec3& offset :
+         {dvec3(0.0), dvec3(0.03, 0.01, 0.02), dvec3(0.05, 0.0, 0.0), dvec3(0.049, 0.05, 0.051)}) {
+        Scene scene;
+        scene.origin = medium.world_of_local(vec3(0.0f));
+        const LightSettings inside = lamp(scene.origin + offset, 3.0f);
+        const Surroundings set(std::move(scene), {inside});
+        const Gathered g = gather_from_emitters(set, pyramid, {&needed, std::nullopt}, {0, -5, 0}, 1.0f);
+        double sum = 0.0;
+        for (std::size_t i = 0; i < medium.lattice.node_count(); ++i) {
+            sum += double(medium.extinction[i]) * g.fluence[i] * double(medium.voxel_volume);
+            EXPECT_TRUE(std::isfinite(g.fluence[i]));
+        }
+        const double power = 4.0 * kPi64 * 3.0;
+        std::printf("%.3f of the power\n", sum / power);
+        EXPECT_NEAR(sum, power, 0.07 * power);
+    }
 }
 
 }  // namespace

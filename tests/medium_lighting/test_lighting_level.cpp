@@ -186,6 +186,38 @@ TEST(LightingLevel, SmoothFireInThinSmokeNeedsNoFineLattice) {
         EXPECT_LT(layer_difference(coarse.image, fine.image, layer), 2.0 * 0.02) << layer;
 }
 
+// A lamp in smoke lights its own voxel most, which no wider voxel may take for even. One beside it changes nothing, and
+// one that moves into thinning smoke changes the lattice step by step.
+TEST(LightingLevel, ALampInSmokeNeedsFineVoxels) {
+    const auto position_with = [](double extinction, double x) {
+        Recipe r;
+        r.box = cube(-16, 16);
+        r.world_from_index = cubic(0.1);
+        r.density = [](const ivec3& n) { return ball(n, dvec3(0.0), 14.0); };
+        r.settings = media::black_smoke();
+        r.settings.smoke.albedo = Rgb(0.7f);
+        r.settings.smoke.extinction_per_metre = float(extinction);
+        const Medium medium = make_medium(r);
+        Scene scene;
+        scene.origin = medium.world_of_local(vec3(0.0f));
+        LightSettings lamp;
+        lamp.position = scene.origin + dvec3(x, 0.0, 0.0);
+        const Surroundings set(std::move(scene), {lamp});
+        const LightingLevels levels = lighting_levels(medium, {}, &set);
+        return dvec2(levels.first.level + double(levels.first.share_of_coarser),
+                     levels.smoke.level + double(levels.smoke.share_of_coarser));
+    };
+    EXPECT_EQ(position_with(2.0, 0.3), dvec2(0.0));
+    EXPECT_GT(position_with(2.0, 3.0).y, 0.5);
+    double before = position_with(0.2, 0.3).y;
+    EXPECT_GT(before, 0.5);
+    for (double extinction = 0.2; extinction < 2.0; extinction *= 1.05) {
+        const double now = position_with(extinction, 0.3).y;
+        EXPECT_LT(std::abs(now - before), 0.35) << extinction;
+        before = now;
+    }
+}
+
 // A fire of 18 voxels across: voxels twice as wide would change MV by 2 %.
 TEST(LightingLevel, SmallFiresAndStatedInterpolationKeepTheirLattice) {
     LightingSettings settings;

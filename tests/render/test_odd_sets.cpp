@@ -1,6 +1,6 @@
-// Sets that nobody builds on purpose, and everybody has once: surfaces that touch, cut or coincide, closed rooms without
-// light, lamps in walls, a sky of one bright texel, lamps of a million triangles. The lighting grid shows what paths
-// show, and no grain decides the picture.
+// Sets that nobody builds on purpose, and everybody has once: surfaces that touch, cut or coincide, closed rooms
+// without light, lamps in walls, a sky of one bright texel, lamps of a million triangles. The lighting grid shows what
+// paths show, and no grain decides the picture.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -146,11 +146,11 @@ TEST(OddSets, LampsInWalls) {
     add_quad(scene, {-3, -3, -1.3f}, {6, 0, 0}, {0, 6, 0}, lambert(0.6f));
     add_quad(scene, {-3, 2, -1.3f}, {6, 0, 0}, {0, 0, 4}, lambert(0.5f));
     add_box(scene, {1.2f, 0.6f, -1.3f}, {2.0f, 1.4f, -0.5f}, lambert(0.6f));
-    expect_as_paths(medium,
-                    Surroundings(std::move(scene),
-                                 {point_lamp({1.6, 1.0, -0.9}, 100.0f), point_lamp({-1.5, 2.0, 1.0}, 2.0f),
-                                  point_lamp({-1.5, -2.0, 1.5}, 2.0f)}),
-                    "lamps in walls");
+    expect_as_paths(
+        medium,
+        Surroundings(std::move(scene), {point_lamp({1.6, 1.0, -0.9}, 100.0f), point_lamp({-1.5, 2.0, 1.0}, 2.0f),
+                                        point_lamp({-1.5, -2.0, 1.5}, 2.0f)}),
+        "lamps in walls");
 }
 
 // Lamps inside of the smoke, one at a node, one on the face of a sheet in it.
@@ -159,10 +159,9 @@ TEST(OddSets, LampsInSmoke) {
     Scene scene = scene_of(medium);
     add_quad(scene, {-3, -3, -1.3f}, {6, 0, 0}, {0, 6, 0}, lambert(0.6f));
     add_quad(scene, {-0.4f, -0.3f, 0.0f}, {0, 0.8f, 0}, {0, 0, 0.8f}, lambert(0.5f));
-    expect_as_paths(medium,
-                    Surroundings(std::move(scene),
-                                 {point_lamp({0.3, 0.0, 0.0}, 2.0f), point_lamp({-0.4, 0.1, 0.4}, 2.0f)}),
-                    "lamps in smoke");
+    expect_as_paths(
+        medium, Surroundings(std::move(scene), {point_lamp({0.3, 0.0, 0.0}, 2.0f), point_lamp({-0.4, 0.1, 0.4}, 2.0f)}),
+        "lamps in smoke");
 }
 
 // One texel of 2,048 sends nearly all of a sky's light.

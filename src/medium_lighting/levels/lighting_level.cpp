@@ -101,7 +101,9 @@ private:
         return std::hypot(voxels, kErrorOfEmission * unresolved_emission(level));
     }
 
-    float of_lamps(int level) const { return level > 0 ? kErrorBesideLamps * lamps_.scattered_beside_them(level) : 0.0f; }
+    float of_lamps(int level) const {
+        return level > 0 ? kErrorBesideLamps * lamps_.scattered_beside_them(level) : 0.0f;
+    }
 
     double fire_power() {
         double sum = 0.0;

@@ -55,16 +55,16 @@ double turned(double x, double by) {
     return x + by - std::floor(x + by);
 }
 
-// The light of a lamp without extent averaged over a ball that stands for a voxel: 1 / r^2 has no bound, and a node beside
-// the lamp would have the light of its place for that of its voxel.
+// The light of a lamp without extent averaged over a ball that stands for a voxel: 1 / r^2 has no bound, and a node
+// beside the lamp would have the light of its place for that of its voxel.
 struct BallMean {
     double fluence = 1.0;  // over that at the ball's middle
     double along = 1.0;    // of it, what goes straight on; the rest has no direction
     double farther = 0.0;  // how much longer its way is than that to the middle, in radii
 };
 
-// `r`: from the lamp to the middle, in radii of the ball. The means of 1 / r^2, of its flux, which is that of gravity in
-// and around a ball, and of 1 / r, the potential. 1 / r over 1 / r^2 is the mean distance of that light.
+// `r`: from the lamp to the middle, in radii of the ball. The means of 1 / r^2, of its flux, which is that of gravity
+// in and around a ball, and of 1 / r, the potential. 1 / r over 1 / r^2 is the mean distance of that light.
 BallMean mean_over_ball(double r) {
     const double logarithm =
         std::abs(1.0 - r) > 1e-9 ? (1.0 - r * r) / (2.0 * r) * std::log((1.0 + r) / std::abs(1.0 - r)) : 0.0;
@@ -73,8 +73,8 @@ BallMean mean_over_ball(double r) {
     return {fluence, std::min(1.0, std::min(1.0, r * r * r) / fluence), potential * r * r / fluence - r};
 }
 
-// What reaches a voxel whose depth for the light's farther way is `depth`, over what reaches its middle: exact where the
-// lamp is there.
+// What reaches a voxel whose depth for the light's farther way is `depth`, over what reaches its middle: exact where
+// the lamp is there.
 double transmittance_in_ball(double depth) {
     return depth > 1e-6 ? -std::expm1(-2.0 * depth) / (2.0 * depth) : std::exp(-depth);
 }

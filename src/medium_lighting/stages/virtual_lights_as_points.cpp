@@ -29,6 +29,7 @@ PointsOfSides points_of_virtual_lights(const VirtualLights& lights, float share)
         out.position.emplace_back(light.position +
                                   std::max(kAboveSurface * light.radius, light.clearance) * light.frame.normal);
         out.intensity.push_back(flux / (4.0f * std::numbers::pi_v<float>));
+        out.normal.push_back(normal);
         const auto basis = sh_basis(normal);
         for (int m = 0; m < kShMoments; ++m)
             for (int c = 0; c < 3; ++c)

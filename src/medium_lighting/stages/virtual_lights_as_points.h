@@ -12,9 +12,9 @@ namespace brisance {
 // opposite normals, so that no coarse light represents both: such a light would lie in the wall and shine through it.
 using PointsOfSides = std::array<PointLights, 2>;
 
-// Each shines by Lambert's cosine about its normal, in spherical harmonics of degree 2 (6 % too bright along the
-// normal, less than 2 % wrong on average over the hemisphere). Glossy profiles count by their power alone. `share`: of
-// their light, in (0, 1].
+// Each shines by Lambert's cosine about its normal; where several of curved surfaces are one, in spherical harmonics of
+// degree 2 (6 % too bright along the normal, less than 2 % wrong on average over the hemisphere). Glossy profiles count
+// by their power alone. `share`: of their light, in (0, 1].
 PointsOfSides points_of_virtual_lights(const VirtualLights& lights, float share);
 
 }  // namespace brisance
