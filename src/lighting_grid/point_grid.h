@@ -6,7 +6,7 @@
 // Its visibility is therefore that of some of those lights, its parts.
 //
 // Lights on surfaces send nothing along them. Harmonics of degree 2 do, a tenth of what they send along the normal, and
-// smoke near a floor, which sees most of it at grazing angles, would get a third more light than there is. Lights
+// smoke near a floor, which sees most of it at grazing angles, would get a tenth more light than there is. Lights
 // of a plane therefore shine by the cosine itself; those of curved surfaces by harmonics, the more the more they curve.
 #pragma once
 

@@ -70,7 +70,7 @@ double worst_error(bool normals) {
     return worst;
 }
 
-// Of light at grazing angles, from far parts of the floor, harmonics of degree 2 make a third too much.
+// Of light at grazing angles, from far parts of the floor, harmonics of degree 2 make too much.
 TEST(FloorOfLights, SendsNoLightAlongItself) {
     const double by_cosine = worst_error(true), by_harmonics = worst_error(false);
     std::printf("off by %.3f, by harmonics alone %.3f\n", by_cosine, by_harmonics);

@@ -204,10 +204,10 @@ TEST(LightingLevel, ALampInSmokeNeedsFineVoxels) {
         lamp.position = scene.origin + dvec3(x, 0.0, 0.0);
         const Surroundings set(std::move(scene), {lamp});
         const LightingLevels levels = lighting_levels(medium, {}, &set);
-        return dvec2(levels.first.level + double(levels.first.share_of_coarser),
-                     levels.smoke.level + double(levels.smoke.share_of_coarser));
+        return glm::dvec2(levels.first.level + double(levels.first.share_of_coarser),
+                          levels.smoke.level + double(levels.smoke.share_of_coarser));
     };
-    EXPECT_EQ(position_with(2.0, 0.3), dvec2(0.0));
+    EXPECT_EQ(position_with(2.0, 0.3), glm::dvec2(0.0));
     EXPECT_GT(position_with(2.0, 3.0).y, 0.5);
     double before = position_with(0.2, 0.3).y;
     EXPECT_GT(before, 0.5);
