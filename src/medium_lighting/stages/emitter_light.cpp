@@ -10,6 +10,7 @@
 #include "gathering/sh.h"
 #include "medium/lattice/local_bounds.h"
 #include "medium/phase.h"
+#include "medium_lighting/stages/lamp_in_voxel.h"
 #include "medium_lighting/surface_occluders.h"
 
 namespace brisance {
@@ -28,10 +29,6 @@ constexpr float kSeenCone = 0.05f;
 // Width of the cone in which smoke is averaged, over that of the solid angle that a sample stands for. With 0.5 smoke
 // under a sky is 0.8 % too dark, with 0.2 by less than its noise; the time hardly differs.
 constexpr float kConeShare = 0.1f;
-
-// Within so many radii of a ball as large as a voxel, light of lamps without extent is averaged over it. There it
-// differs by less than a thousandth.
-constexpr double kNearLamps = 16.0;
 
 // A line from a node to an emitter that it sees past all surfaces.
 struct NodeRay {
@@ -55,38 +52,13 @@ double turned(double x, double by) {
     return x + by - std::floor(x + by);
 }
 
-// The light of a lamp without extent averaged over a ball that stands for a voxel: 1 / r^2 has no bound, and a node
-// beside the lamp would have the light of its place for that of its voxel.
-struct BallMean {
-    double fluence = 1.0;  // over that at the ball's middle
-    double along = 1.0;    // of it, what goes straight on; the rest has no direction
-    double farther = 0.0;  // how much longer its way is than that to the middle, in radii
-};
-
-// `r`: from the lamp to the middle, in radii of the ball. The means of 1 / r^2, of its flux, which is that of gravity
-// in and around a ball, and of 1 / r, the potential. 1 / r over 1 / r^2 is the mean distance of that light.
-BallMean mean_over_ball(double r) {
-    const double logarithm =
-        std::abs(1.0 - r) > 1e-9 ? (1.0 - r * r) / (2.0 * r) * std::log((1.0 + r) / std::abs(1.0 - r)) : 0.0;
-    const double fluence = 1.5 * r * r * (1.0 + logarithm);
-    const double potential = r < 1.0 ? 1.5 - 0.5 * r * r : 1.0 / r;
-    return {fluence, std::min(1.0, std::min(1.0, r * r * r) / fluence), potential * r * r / fluence - r};
-}
-
-// What reaches a voxel whose depth for the light's farther way is `depth`, over what reaches its middle: exact where
-// the lamp is there.
-double transmittance_in_ball(double depth) {
-    return depth > 1e-6 ? -std::expm1(-2.0 * depth) / (2.0 * depth) : std::exp(-depth);
-}
-
 class NodeSampler {
 public:
     NodeSampler(const Surroundings& surroundings, const Medium& medium)
         : surroundings_(surroundings),
           medium_(medium),
           // Larger than any distance within the medium.
-          beyond_(2.0f * local_bounds(medium).diagonal()),
-          ball_(medium.spacing * std::cbrt(0.75f / std::numbers::pi_v<float>)) {
+          beyond_(2.0f * local_bounds(medium).diagonal()) {
         const Emitters& emitters = surroundings.emitters();
         for (std::size_t part = 0; part < emitters.choices(); ++part)
             parts_.push_back({points_on(emitters, part), cones_across(emitters.width_of_choice(part), medium.spacing)});
@@ -157,18 +129,22 @@ private:
         average_near_lamps(first, rays);
     }
 
-    // What has no direction comes from the six directions of the axes: their means up to degree 3 are those of all.
+    // Beside a lamp a node has the light of its voxel. What has no direction comes from the six directions of the axes:
+    // their means up to degree 3 are those of all.
     void average_near_lamps(std::size_t first, std::vector<NodeRay>& rays) const {
         for (std::size_t i = first, count = rays.size(); i < count; ++i) {
-            const double r = double(glm::distance(rays[i].segment.from, rays[i].segment.to)) / double(ball_);
-            if (rays[i].widening > 0.0f || !(r > 0.0) || r > kNearLamps)
+            const vec3 from_lamp = rays[i].segment.from - rays[i].segment.to;
+            if (rays[i].widening > 0.0f || glm::length(from_lamp) > kBesideLamp * medium_.spacing)
                 continue;
-            const BallMean mean = mean_over_ball(r);
-            const double depth = mean.farther * double(ball_) * double(medium_.extinction[rays[i].node]);
+            const LampInVoxel lamp = lamp_in_voxel(medium_.local_from_index, from_lamp);
+            const double depth = lamp.farther * double(medium_.extinction[rays[i].node]);
+            const Rgb light = rays[i].light * float(lamp.fluence * transmittance_within(depth));
+            const float along = float(glm::length(lamp.along));
             NodeRay around = rays[i];
-            rays[i].light *= float(mean.fluence * transmittance_in_ball(depth));
-            around.light = rays[i].light * float((1.0 - mean.along) / 6.0);
-            rays[i].light *= float(mean.along);
+            rays[i].light = along * light;
+            if (along > 0.0f)
+                rays[i].direction = lamp.along / along;
+            around.light = (1.0f - along) / 6.0f * light;
             for (int axis = 0; axis < 3; ++axis)
                 for (const float way : {-1.0f, 1.0f}) {
                     around.direction = vec3(0.0f);
@@ -215,7 +191,6 @@ private:
     const Surroundings& surroundings_;
     const Medium& medium_;
     float beyond_;
-    float ball_;  // radius of the ball that is as large as a voxel [m]
     std::vector<Part> parts_;
 };
 
