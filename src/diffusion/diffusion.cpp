@@ -6,9 +6,9 @@
 
 #include "core/parallel.h"
 #include "diffusion/cell_loops.h"
-#include "gathering/sh.h"
 #include "lighting_grid/voxel_lights.h"
 #include "medium/lattice/local_bounds.h"
+#include "medium/sh.h"
 
 namespace brisance {
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/matrix_access.hpp>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "gathering/far_kernels.cpp"
@@ -11,9 +12,9 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
-#include "gathering/sh.h"
 #include "medium/lattice/extinction_sampler-inl.h"
 #include "medium/phase-inl.h"
+#include "medium/sh.h"
 
 #ifndef BRISANCE_GATHERING_LEVEL_RANGE_
 #define BRISANCE_GATHERING_LEVEL_RANGE_
@@ -195,14 +196,20 @@ HWY_INLINE void accumulate(D d, float* to, V value) {
     hn::StoreU(hn::Add(hn::LoadU(d, to), value), d, to);
 }
 
+V dot(V ax, V ay, V az, V bx, V by, V bz) {
+    return hn::MulAdd(ax, bx, hn::MulAdd(ay, by, hn::Mul(az, bz)));
+}
+
+V dot(D d, V x, V y, V z, const vec3& v) {
+    return dot(x, y, z, hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z));
+}
+
 // Optical depth of a voxel ball's radius in the extinction at the receivers.
 V radius_depth(D d, const FarLights& l, const Receivers& r, std::size_t at) {
     const V p[3] = {hn::LoadU(d, &r.x[at]), hn::LoadU(d, &r.y[at]), hn::LoadU(d, &r.z[at])};
     V n[3];
     for (int a = 0; a < 3; ++a)
-        n[a] = hn::MulAdd(hn::Set(d, l.index_from_local[0][a]), p[0],
-                          hn::MulAdd(hn::Set(d, l.index_from_local[1][a]), p[1],
-                                     hn::Mul(hn::Set(d, l.index_from_local[2][a]), p[2])));
+        n[a] = dot(d, p[0], p[1], p[2], glm::row(l.index_from_local, a));
     return hn::Mul(sample_extinction(d, *l.extinction, n[0], n[1], n[2]), hn::Set(d, l.ball));
 }
 
@@ -213,8 +220,7 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Rece
     const V to_light[3] = {hn::Sub(hn::Set(d, p.x), hn::LoadU(d, &r.x[at])),
                            hn::Sub(hn::Set(d, p.y), hn::LoadU(d, &r.y[at])),
                            hn::Sub(hn::Set(d, p.z), hn::LoadU(d, &r.z[at]))};
-    const V square =
-        hn::MulAdd(to_light[0], to_light[0], hn::MulAdd(to_light[1], to_light[1], hn::Mul(to_light[2], to_light[2])));
+    const V square = dot(to_light[0], to_light[1], to_light[2], to_light[0], to_light[1], to_light[2]);
     const V safe = hn::Max(square, hn::Set(d, 1e-30f));
     const V inverse = reciprocal_sqrt(d, safe);
     const V distance = hn::Mul(safe, inverse);
@@ -243,18 +249,15 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Rece
     V phase = hn::Zero(d);
     if (out.scattered) {
         const V cosine =
-            hn::MulAdd(wx, hn::LoadU(d, &r.out_x[at]),
-                       hn::MulAdd(wy, hn::LoadU(d, &r.out_y[at]), hn::Mul(wz, hn::LoadU(d, &r.out_z[at]))));
+            dot(wx, wy, wz, hn::LoadU(d, &r.out_x[at]), hn::LoadU(d, &r.out_y[at]), hn::LoadU(d, &r.out_z[at]));
         if (out.kind == ReceiverKind::Surface)
             phase = hn::Mul(hn::Max(hn::Neg(cosine), hn::Zero(d)), hn::Set(d, 1.0f / kPi));
         else
             phase = henyey_greenstein_lanes(d, out.mean_cosine, cosine);
     }
     const CosineLobe lobe = l.lobes ? l.lobes[i] : CosineLobe{vec3(0.0f), 0.0f};
-    const V along = hn::MulAdd(wx, hn::Set(d, lobe.normal.x),
-                               hn::MulAdd(wy, hn::Set(d, lobe.normal.y), hn::Mul(wz, hn::Set(d, lobe.normal.z))));
     // Lambert's intensity is four times its mean along the normal.
-    const V by_cosine = hn::Mul(hn::Set(d, 4.0f * lobe.share), hn::Max(along, hn::Zero(d)));
+    const V by_cosine = hn::Mul(hn::Set(d, 4.0f * lobe.share), hn::Max(dot(d, wx, wy, wz, lobe.normal), hn::Zero(d)));
     for (int c = 0; c < 3; ++c) {
         V intensity = hn::Set(d, l.intensity[i][c]);
         if (l.directional && lobe.share < 1.0f)

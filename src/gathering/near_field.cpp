@@ -7,8 +7,8 @@
 
 #include "core/parallel.h"
 #include "gathering/near_kernels.h"
-#include "gathering/sh.h"
 #include "medium/phase.h"
+#include "medium/sh.h"
 
 namespace brisance {
 

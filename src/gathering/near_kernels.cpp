@@ -10,8 +10,8 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
-#include "gathering/sh.h"
 #include "medium/phase-inl.h"
+#include "medium/sh.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace brisance {

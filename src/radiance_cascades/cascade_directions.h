@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/vec.h"
-#include "gathering/sh.h"
+#include "medium/sh.h"
 
 namespace brisance {
 

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "gathering/sh.h"
 #include "lighting_grid/footprint.h"
 #include "medium/lattice/extinction_pyramid.h"
+#include "medium/sh.h"
 
 namespace brisance {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "gathering/sh.h"
 #include "lighting_grid/voxel_lights.h"
 #include "medium/coarse_medium.h"
 #include "medium/phase.h"
+#include "medium/sh.h"
 #include "scattering/balance.h"
 #include "scattering/multiple_scattering.h"
 

@@ -6,10 +6,10 @@
 
 #include "core/parallel.h"
 #include "core/stopwatch.h"
-#include "gathering/sh.h"
 #include "lighting_grid/light_clusters.h"
 #include "lighting_grid/voxel_lights.h"
 #include "medium/phase.h"
+#include "medium/sh.h"
 #include "scattering/coarse_operator.h"
 
 namespace brisance {

@@ -8,7 +8,7 @@
 #include "diffusion/diffusion.h"
 #include "fixtures/tracing_fixture.h"
 #include "fixtures/wall.h"
-#include "gathering/sh.h"
+#include "medium/sh.h"
 
 namespace brisance {
 namespace {

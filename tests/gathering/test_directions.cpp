@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "gather_fixture.h"
-#include "gathering/sh.h"
 #include "medium/phase.h"
+#include "medium/sh.h"
 
 namespace brisance {
 namespace {

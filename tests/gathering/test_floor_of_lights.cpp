@@ -7,8 +7,8 @@
 
 #include "fixtures/media.h"
 #include "gathering/gather.h"
-#include "gathering/sh.h"
 #include "lighting_grid/point_grid.h"
+#include "medium/sh.h"
 
 namespace brisance {
 namespace {

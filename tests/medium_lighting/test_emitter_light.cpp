@@ -138,7 +138,7 @@ TEST(EmitterLight, ALampInSmokeLosesAllItsLightThere) {
         }
         const double power = 4.0 * kPi64 * 3.0;
         std::printf("%.3f of the power\n", sum / power);
-        EXPECT_NEAR(sum, power, 0.07 * power);
+        EXPECT_NEAR(sum, power, 0.05 * power);
     }
 }
 

@@ -7,9 +7,9 @@
 
 #include "core/parallel.h"
 #include "gathering/cone_depths.h"
-#include "gathering/sh.h"
 #include "medium/lattice/local_bounds.h"
 #include "medium/phase.h"
+#include "medium/sh.h"
 #include "medium_lighting/stages/lamp_in_voxel.h"
 #include "medium_lighting/surface_occluders.h"
 

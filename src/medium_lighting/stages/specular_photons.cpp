@@ -6,9 +6,9 @@
 
 #include "core/fixed_sums.h"
 #include "core/parallel.h"
-#include "gathering/sh.h"
 #include "medium/lattice/track_lengths.h"
 #include "medium/phase.h"
+#include "medium/sh.h"
 #include "transport/particle_walk.h"
 #include "transport/roulette.h"
 

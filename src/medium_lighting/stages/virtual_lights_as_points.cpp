@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "gathering/sh.h"
+#include "medium/sh.h"
 
 namespace brisance {
 
