@@ -15,21 +15,13 @@ double largest(const dvec3& v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-double extent_of(const Scene& scene) {
-    float out = 0.0f;
-    for (const SceneMesh& mesh : scene.meshes)
-        for (const vec3& p : mesh.positions)
-            out = std::max({out, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-    return out;
-}
-
 }  // namespace
 
 // Of rays along the axes one meets any plane at 55 degrees or more.
 OwnSurfaces::OwnSurfaces(const Intersector& surfaces, const dvec3& position) {
     if (surfaces.empty())
         return;
-    const double within = kWithin * (largest(position) + extent_of(surfaces.scene()));
+    const double within = kWithin * (largest(position) + surfaces.scene().largest_coordinate());
     for (int axis = 0; axis < 3; ++axis) {
         dvec3 direction(0.0);
         direction[axis] = 1.0;

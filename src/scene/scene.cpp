@@ -47,6 +47,14 @@ bool Scene::is_flat() const {
     return true;
 }
 
+double Scene::largest_coordinate() const {
+    float out = 0.0f;
+    for (const SceneMesh& mesh : meshes)
+        for (const vec3& p : mesh.positions)
+            out = std::max({out, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    return double(out);
+}
+
 std::uint64_t Scene::bytes() const {
     std::uint64_t sum = bytes_of(meshes) + bytes_of(materials) + bytes_of(textures) + bytes_of(cameras);
     for (const SceneMesh& mesh : meshes)

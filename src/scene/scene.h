@@ -86,7 +86,8 @@ struct Scene {
     // Whether all triangles lie in one plane, as those of a floor do: none of them sends light to another. A slanted
     // plane whose first triangle is small may be missed, for that does not know its normal well.
     bool is_flat() const;
-    std::uint64_t bytes() const;  // shared textures included
+    double largest_coordinate() const;  // of all vertices, absolute [m]
+    std::uint64_t bytes() const;        // shared textures included
 };
 
 }  // namespace brisance

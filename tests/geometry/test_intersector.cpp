@@ -133,7 +133,6 @@ INSTANTIATE_TEST_SUITE_P(Intersector, AtAnyScale,
                                            ScaleAndOffset{1e6f, 0.0f}, ScaleAndOffset{1.0f, 100.0f},
                                            ScaleAndOffset{1e-3f, 100.0f}, ScaleAndOffset{1e3f, 30.0f}));
 
-// Of coincident faces every intersector finds the same one.
 // any_within() must find every surface that a ray hits within the radius. Inside a mesh of a ball it may report few
 // surfaces that are farther away.
 TEST_P(AtAnyScale, NothingNearIsOverlooked) {
@@ -165,6 +164,7 @@ TEST_P(AtAnyScale, NothingNearIsOverlooked) {
     EXPECT_LT(said_near, far / 10) << "nothing is gained";
 }
 
+// Of coincident faces every intersector finds the same one.
 TEST(Intersector, CoincidentFacesAreOneSurface) {
     Scene scene;
     add_quad(scene, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, lambert(0.2f));

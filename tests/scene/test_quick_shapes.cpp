@@ -102,6 +102,28 @@ TEST(QuickShapes, AQuadLightIsBlackAndEmitsFromItsFront) {
     EXPECT_FALSE(material.double_sided);
 }
 
+// Wherever the ceiling is and however large: of rays from below all see the panel.
+TEST(QuickShapes, AQuadLightInACeilingIsSeen) {
+    for (const double size : {1.0, 1000.0})
+        for (const dvec3& at : {dvec3(0.0), dvec3(13.7, -41.3, 7.9)}) {
+            SceneSettings settings;
+            QuickQuad ceiling = unit_quad();
+            for (dvec3& corner : ceiling.corners)
+                corner = at + size * (corner - dvec3(0.4, 0.3, 0.0));
+            settings.quads = {ceiling};
+            settings.lights.resize(1);
+            settings.lights[0].kind = LightKind::Quad;
+            settings.lights[0].corners = unit_quad().corners;
+            for (dvec3& corner : settings.lights[0].corners)
+                corner += at;
+            const Scene scene = load_settings(settings).scene;
+            ASSERT_EQ(scene.meshes.size(), 2u);
+            const vec3 panel = scene.meshes[1].positions[0], wall = scene.meshes[0].positions[0];
+            EXPECT_GT(panel.z, wall.z) << size << " " << at.x;
+            EXPECT_LT(panel.z - wall.z, 1e-5f * float(size + 100.0));
+        }
+}
+
 TEST(QuickShapes, ASphereIsRoundAndFacesOutward) {
     SceneSettings settings;
     settings.spheres.resize(1);
