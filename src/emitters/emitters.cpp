@@ -72,8 +72,9 @@ Emitters::Emitters(const Intersector& surfaces, const std::vector<LightSettings>
                    const std::vector<const Texture*>& pictures)
     : scene_(surfaces.scene()), tree_({}) {
     add_triangles();
+    const double extent = lights.empty() ? 0.0 : scene_.largest_coordinate();
     for (std::size_t i = 0; i < lights.size(); ++i)
-        add_light(surfaces, lights[i], i < pictures.size() ? pictures[i] : nullptr);
+        add_light(surfaces, extent, lights[i], i < pictures.size() ? pictures[i] : nullptr);
     tree_ = LightTree(near_bounds());
 }
 
@@ -127,7 +128,8 @@ void Emitters::add_triangles() {
     }
 }
 
-void Emitters::add_light(const Intersector& surfaces, const LightSettings& light, const Texture* picture) {
+void Emitters::add_light(const Intersector& surfaces, double extent, const LightSettings& light,
+                         const Texture* picture) {
     if (light.kind == LightKind::Quad || light.power == Rgb(0.0f))
         return;  // quads are triangles of the scene
     const double power = luminance(light.power);
@@ -136,7 +138,7 @@ void Emitters::add_light(const Intersector& surfaces, const LightSettings& light
         const dvec3 position = light.position - scene_.origin;
         const dvec3 axis = spot ? glm::normalize(light.direction) : dvec3(0, 0, 1);
         points_.push_back({position, axis, spot ? cosine_of_degrees(light.outer_degrees) : -1.0, power});
-        near_.push_back({0, 0, &light, position, OwnSurfaces(surfaces, position)});
+        near_.push_back({0, 0, &light, position, OwnSurfaces(surfaces, position, extent)});
         const double before = near_power_.empty() ? 0.0 : near_power_.back();
         near_power_.push_back(before + power * (spot ? spot_solid_angle(light) : 4.0 * pi));
         return;

@@ -120,7 +120,7 @@ private:
     };
 
     void add_triangles();
-    void add_light(const Intersector& surfaces, const LightSettings& light, const Texture* picture);
+    void add_light(const Intersector& surfaces, double extent, const LightSettings& light, const Texture* picture);
     double far_probability() const;
     std::optional<EmitterSample> sample_near(const LitPoint& point, double choice, PointNumbers on,
                                              double probability) const;

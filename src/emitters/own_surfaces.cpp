@@ -1,6 +1,7 @@
 #include "emitters/own_surfaces.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "geometry/surface_point.h"
 
@@ -18,10 +19,10 @@ double largest(const dvec3& v) {
 }  // namespace
 
 // Of rays along the axes one meets any plane at 55 degrees or more.
-OwnSurfaces::OwnSurfaces(const Intersector& surfaces, const dvec3& position) {
+OwnSurfaces::OwnSurfaces(const Intersector& surfaces, const dvec3& position, double extent) {
     if (surfaces.empty())
         return;
-    const double within = kWithin * (largest(position) + surfaces.scene().largest_coordinate());
+    const double within = kWithin * (largest(position) + extent);
     for (int axis = 0; axis < 3; ++axis) {
         dvec3 direction(0.0);
         direction[axis] = 1.0;

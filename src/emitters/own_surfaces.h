@@ -12,8 +12,8 @@ namespace brisance {
 class OwnSurfaces {
 public:
     OwnSurfaces() = default;
-    // `position`: of the lamp, local [m].
-    OwnSurfaces(const Intersector& surfaces, const dvec3& position);
+    // `position`: of the lamp, local [m]. `extent`: Scene::largest_coordinate().
+    OwnSurfaces(const Intersector& surfaces, const dvec3& position, double extent);
 
     // The same position just beside the surfaces, on the side that `direction` goes to.
     dvec3 start(const dvec3& position, const dvec3& direction) const;

@@ -46,7 +46,7 @@ float SurfaceOccluders::first_hit(const vec3& from, const vec3& direction, float
 }
 
 bool SurfaceOccluders::any_within(const vec3& centre, float radius) const {
-    return intersector_.any_within(dvec3(centre), radius);
+    return intersector_.any_within(dvec3(centre + moved_), radius);
 }
 
 bool surfaces_reach_into(const Surroundings* surroundings, const Medium& medium) {

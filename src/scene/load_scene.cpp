@@ -101,9 +101,10 @@ Scene load_scene(const SceneSettings& settings, const std::filesystem::path& fol
         add_quad(settings.quads[i], fmt::format("quad {}", i), scene, once);
     for (std::size_t i = 0; i < settings.spheres.size(); ++i)
         add_sphere(settings.spheres[i], fmt::format("sphere {}", i), scene, budget);
+    const double extent = settings.lights.empty() ? 0.0 : scene.largest_coordinate();
     for (const LightSettings& light : settings.lights)
         if (light.kind == LightKind::Quad)
-            add_quad_light(light, scene, once);
+            add_quad_light(light, extent, scene, once);
     return scene;
 }
 

@@ -103,11 +103,11 @@ void add_quad(const QuickQuad& quad, const std::string& name, Scene& scene, Prog
 
 // Lamps are hung exactly on ceilings, which would hide them as rounding goes: they are moved to their front by a few
 // roundings.
-void add_quad_light(const LightSettings& light, Scene& scene, Progress& progress) {
+void add_quad_light(const LightSettings& light, double extent, Scene& scene, Progress& progress) {
     QuickQuad quad;
     quad.corners = light.corners;
     const dvec3 normal = glm::cross(light.corners[2] - light.corners[0], light.corners[3] - light.corners[1]);
-    double largest = scene.largest_coordinate();
+    double largest = extent;
     for (const dvec3& corner : light.corners)
         largest = std::max(largest, glm::length(corner - scene.origin));
     if (const double length = glm::length(normal); length > 0.0)

@@ -12,8 +12,8 @@ namespace brisance {
 // warning.
 void add_quad(const QuickQuad& quad, const std::string& name, Scene& scene, Progress& progress);
 
-// A light of kind Quad: black, and emits from its front only.
-void add_quad_light(const LightSettings& light, Scene& scene, Progress& progress);
+// A light of kind Quad: black, and emits from its front only. `extent`: Scene::largest_coordinate() of what is there.
+void add_quad_light(const LightSettings& light, double extent, Scene& scene, Progress& progress);
 
 // 20480 triangles with their corners on the sphere, whose area is 0.03 % below the sphere's, and with the sphere's own
 // normals. Throws Error BadData when the radius is not above 0.

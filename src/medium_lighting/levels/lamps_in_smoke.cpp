@@ -9,10 +9,18 @@ namespace brisance {
 
 namespace {
 
+// Trilinear, so that a lamp that moves changes nothing at once.
 double extinction_at(const Medium& medium, const vec3& local) {
-    const vec3 node = glm::round(medium.index_from_local * local);
-    const std::int64_t found = medium.lattice.find_node(ivec3(node) + medium.reference_node);
-    return found < 0 ? 0.0 : double(medium.extinction[static_cast<std::size_t>(found)]);
+    const vec3 at = medium.index_from_local * local, low = glm::floor(at);
+    double sum = 0.0;
+    for (int k = 0; k < 8; ++k) {
+        const ivec3 corner(k & 1, k >> 1 & 1, k >> 2 & 1);
+        const vec3 weight = glm::mix(1.0f - (at - low), at - low, vec3(corner));
+        const std::int64_t node = medium.lattice.find_node(ivec3(low) + corner + medium.reference_node);
+        if (node >= 0)
+            sum += double(weight.x * weight.y * weight.z) * medium.extinction[static_cast<std::size_t>(node)];
+    }
+    return sum;
 }
 
 }  // namespace
