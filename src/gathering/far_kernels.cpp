@@ -196,11 +196,11 @@ HWY_INLINE void accumulate(D d, float* to, V value) {
     hn::StoreU(hn::Add(hn::LoadU(d, to), value), d, to);
 }
 
-V dot(V ax, V ay, V az, V bx, V by, V bz) {
+HWY_INLINE V dot(V ax, V ay, V az, V bx, V by, V bz) {
     return hn::MulAdd(ax, bx, hn::MulAdd(ay, by, hn::Mul(az, bz)));
 }
 
-V dot(D d, V x, V y, V z, const vec3& v) {
+HWY_INLINE V dot(D d, V x, V y, V z, const vec3& v) {
     return dot(x, y, z, hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z));
 }
 
@@ -257,7 +257,9 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Rece
     }
     const CosineLobe lobe = l.lobes ? l.lobes[i] : CosineLobe{vec3(0.0f), 0.0f};
     // Lambert's intensity is four times its mean along the normal.
-    const V by_cosine = hn::Mul(hn::Set(d, 4.0f * lobe.share), hn::Max(dot(d, wx, wy, wz, lobe.normal), hn::Zero(d)));
+    V by_cosine = hn::Zero(d);
+    if (l.lobes)
+        by_cosine = hn::Mul(hn::Set(d, 4.0f * lobe.share), hn::Max(dot(d, wx, wy, wz, lobe.normal), hn::Zero(d)));
     for (int c = 0; c < 3; ++c) {
         V intensity = hn::Set(d, l.intensity[i][c]);
         if (l.directional && lobe.share < 1.0f)
