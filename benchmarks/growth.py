@@ -13,45 +13,12 @@ CPU seconds and memory are those of runs without the certificate, as the operati
 """
 
 import argparse
-import json
-import os
 import pathlib
-import subprocess
-import sys
 import tempfile
 
+from measurement import Measurement, Paths, run, stage
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-
-
-def run(command):
-    """Runs a command to its end. Returns its processor time [s] and peak memory [bytes]."""
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-    message = process.stderr.read().decode(errors="replace")
-    _, status, usage = os.wait4(process.pid, 0)
-    if os.waitstatus_to_exitcode(status) != 0:
-        sys.exit(f"growth.py: {' '.join(command)}\n{message}")
-    return usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024
-
-
-def stage(statistics, name):
-    return next((s for s in statistics["stages"] if s["name"] == name), {"seconds": 0.0, "detail": {}})
-
-
-class Measurement:
-    """One method on one volume: cost without the certificate, error with it."""
-
-    def __init__(self, brisance, settings, folder, label):
-        command = [brisance, "render", *settings, "--progress", "none", "-o"]
-        self.cpu, self.memory = run([*command, str(folder / f"{label}.exr")])
-        run([*command, str(folder / f"{label}.certified.exr"), "--certify"])
-        self.statistics = json.loads((folder / f"{label}.certified.stats.json").read_text())
-        picture = self.statistics["certificate"]["picture"]
-        self.error, self.interval = picture["error"], picture["error_interval"]
-
-    def text(self):
-        low, high = (100.0 * x for x in self.interval)
-        return (f"{self.cpu:.0f} | {self.memory / 2**30:.2f} GiB | "
-                f"{100.0 * self.error:.1f} % ({low:.1f} to {high:.1f})")
 
 
 def row(arguments, factor, folder):
@@ -63,11 +30,9 @@ def row(arguments, factor, folder):
     brisance = str(arguments.build / "bin/brisance")
     of_grid = [option for setting in arguments.grid for option in ("--set", setting)]
     grid = Measurement(brisance, [*settings, *of_grid], folder, f"grid{factor}")
-    paths = Measurement(brisance, [*settings, "--method", "path", "--set", f"tracing.samples={arguments.samples}"],
-                        folder, f"paths{factor}")
+    paths = Paths(brisance, [*settings, "--set", f"tracing.samples={arguments.samples}"], folder, f"paths{factor}")
     voxels = stage(grid.statistics, "medium")["detail"]["absorbing_nodes"]
-    tracing = stage(paths.statistics, "path tracing")["detail"]["cpu_seconds"]
-    needed = paths.cpu + tracing * ((paths.error / grid.error) ** 2 - 1.0)
+    needed = paths.cpu_to(grid.error)
     volume.unlink()
     return (f"| {voxels:,} | {int(width) * int(height):,} | {grid.text()} | {paths.text()} | {needed:,.0f} | "
             f"{needed / grid.cpu:.1f} |")

@@ -1,0 +1,62 @@
+#!/usr/bin/env python3
+"""What shots cost by the lighting grid and by paths to the same error, and what the grid believes of its own error.
+
+One row for each shot: CPU seconds, peak memory, certified error with its 95 % interval, the error that the frame
+believed, and over the certified one; what paths have after some seconds, and what they would need for the grid's error.
+
+    benchmarks/against_paths.py > shots.md                        # all that come with Brisance, at 160 x 90
+    benchmarks/against_paths.py shots/hall.json --size 640x360 --grid lighting.error=0.01
+
+CPU seconds and memory are those of runs without the certificate, as the operating system counts them.
+"""
+
+import argparse
+import pathlib
+import tempfile
+
+from measurement import Measurement, Paths, percent
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+def believed(grid):
+    """Error that the frame believed of its picture, and over the certified one."""
+    error = grid.statistics["believed"]["picture"]["error"]
+    return f"{100.0 * error:.1f} % | {error / grid.error:.2f}"
+
+
+def row(arguments, shot, folder):
+    brisance = str(arguments.build / "bin/brisance")
+    settings = [str(shot)]
+    if arguments.size:
+        width, height = arguments.size.split("x")
+        settings += ["--set", f"camera.width={width}", "--set", f"camera.height={height}"]
+    of_grid = ["--method", "lighting_grid"] + [option for key in arguments.grid for option in ("--set", key)]
+    grid = Measurement(brisance, [*settings, *of_grid], folder, "grid")
+    until = ["--set", "tracing.samples=none", "--set", f"tracing.seconds={arguments.seconds}"]
+    paths = Paths(brisance, [*settings, *until], folder, "paths")
+    needed = paths.cpu_to(grid.error)
+    return (f"| `{shot.stem}` | {grid.text()} | {believed(grid)} | {paths.cpu:.0f} | "
+            f"{percent(paths.error, paths.interval)} | {needed:,.0f} | {needed / grid.cpu:.1f} |")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    ours = [ROOT / "shots" / f"{name}.json" for name in ("explosion", "fire_room", "hall", "street")]
+    parser.add_argument("shots", type=pathlib.Path, nargs="*", help="all that come with Brisance by default",
+                        default=ours + sorted((ROOT / "shots/media").glob("*.json")))
+    parser.add_argument("--size", default="160x90", help="of the picture; empty: that of each shot")
+    parser.add_argument("--seconds", type=float, default=30.0, help="of wall time for paths")
+    parser.add_argument("--grid", nargs="*", default=[], metavar="KEY=VALUE", help="of the lighting grid's shot")
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+    arguments = parser.parse_args()
+    print("| shot | grid: CPU s | memory | error | believed | over certified | paths: CPU s | error | "
+          "paths to the grid's error, CPU s | ratio |")
+    print("|" + " --- |" * 10, flush=True)
+    with tempfile.TemporaryDirectory() as folder:
+        for shot in arguments.shots:
+            print(row(arguments, shot, pathlib.Path(folder)), flush=True)
+
+
+if __name__ == "__main__":
+    main()

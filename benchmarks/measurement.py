@@ -1,0 +1,52 @@
+"""What a render costs and how far it is from the truth: for the benchmarks beside it."""
+
+import json
+import os
+import subprocess
+import sys
+
+
+def run(command):
+    """Runs a command to its end. Returns its processor time [s] and peak memory [bytes]."""
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    message = process.stderr.read().decode(errors="replace")
+    _, status, usage = os.wait4(process.pid, 0)
+    if os.waitstatus_to_exitcode(status) != 0:
+        sys.exit(f"{' '.join(command)}\n{message}")
+    return usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024
+
+
+def stage(statistics, name):
+    """The first stage of that name; one that cost nothing where there is none."""
+    return next((s for s in statistics["stages"] if s["name"] == name), {"seconds": 0.0, "detail": {}})
+
+
+def percent(error, interval):
+    return f"{100.0 * error:.1f} % ({100.0 * interval[0]:.1f} to {100.0 * interval[1]:.1f})"
+
+
+class Measurement:
+    """One method on one shot: cost without the certificate, error with it."""
+
+    def __init__(self, brisance, settings, folder, label):
+        command = [brisance, "render", *settings, "--progress", "none", "-o"]
+        self.cpu, self.memory = run([*command, str(folder / f"{label}.exr")])
+        run([*command, str(folder / f"{label}.certified.exr"), "--certify"])
+        self.statistics = json.loads((folder / f"{label}.certified.stats.json").read_text())
+        picture = self.statistics["certificate"]["picture"]
+        self.error, self.interval = picture["error"], picture["error_interval"]
+
+    def text(self):
+        return f"{self.cpu:.0f} | {self.memory / 2**30:.2f} GiB | {percent(self.error, self.interval)}"
+
+
+class Paths(Measurement):
+    """Traced until they have done something; what they would take to another error, by the law of large numbers."""
+
+    def __init__(self, brisance, settings, folder, label):
+        super().__init__(brisance, [*settings, "--method", "path"], folder, label)
+        self.tracing = stage(self.statistics, "path tracing")["detail"]["cpu_seconds"]
+
+    def cpu_to(self, error):
+        """CPU seconds. Tracing grows as the inverse square of the error, the rest of the run stays."""
+        return self.cpu + self.tracing * ((self.error / error) ** 2 - 1.0)
