@@ -13,6 +13,12 @@ namespace brisance {
 
 namespace {
 
+// Of surfaces, of the whole picture.
+double samples_of(const CameraSettings& camera) {
+    const double per_axis = camera.samples_per_axis > 0 ? camera.samples_per_axis : kSurfaceSamples;
+    return double(camera.width) * camera.height * per_axis * per_axis;
+}
+
 std::unique_ptr<VirtualLights> place_virtual_lights(const DrawInput& input, const DirectLight& scene, int pass,
                                                     Statistics& statistics, Progress& progress) {
     const std::string stage = pass == 0 ? "virtual lights" : fmt::format("virtual lights, pass {}", pass + 1);
@@ -20,9 +26,7 @@ std::unique_ptr<VirtualLights> place_virtual_lights(const DrawInput& input, cons
     const Stopwatch watch;
     const Camera& camera = input.camera;
     const CameraSettings& c = camera.settings();
-    const double per_axis = c.samples_per_axis > 0 ? c.samples_per_axis : kSurfaceSamples;
-    const PixelCamera pixels{c.width, c.height, [&](double x, double y) { return camera.ray(x, y); },
-                             double(c.width) * c.height * per_axis * per_axis};
+    const PixelCamera pixels{c.width, c.height, [&](double x, double y) { return camera.ray(x, y); }, samples_of(c)};
     VirtualLightSettings settings = settings_of_pass(input.shot.virtual_lights, pass);
     settings.picture_error = input.shot.lighting.error;
     auto lights = std::make_unique<VirtualLights>(scene, pixels, settings, input.light_positions);
@@ -233,7 +237,7 @@ void ManyLights::light_medium(const DrawInput& input, Statistics& statistics, Pr
         const VirtualLights* const shining = cast < 1.0f ? virtual_lights_.get() : nullptr;
         if (shining)
             reflecting_ = points_of_virtual_lights(*shining, 1.0f - cast);
-        cast_.emplace(paths_->direct(), shining, input.shot.virtual_lights, cast);
+        cast_.emplace(paths_->direct(), shining, input.shot.virtual_lights, cast, samples_of(input.camera.settings()));
     }
     medium_ = std::make_unique<LitMedium>(input, plan, bounces, reflected(), input.shot.output.bounce_layers,
                                           statistics, progress);

@@ -2,6 +2,8 @@
 // them.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -32,9 +34,17 @@ enum class BoundCompensation : std::uint8_t {
     ScreenSpace  // it is taken from what pixels show
 };
 
-// As many photons as the lights need (photons_needed), up to kMostAutomaticPhotons.
+// As many photons as the lights need (photons_needed), up to most_automatic_photons().
 inline constexpr int kAutomaticPhotons = -1;
-inline constexpr int kMostAutomaticPhotons = 1000000;
+// A photon takes some two microseconds, a sample of a surface ten and more.
+inline constexpr double kAutomaticPhotonsOfSample = 16.0;
+inline constexpr double kManyPhotons = 1e6, kMostAutomaticPhotons = 8e6;
+
+// `samples`: of surfaces, of the whole picture. A million photons are worth while for the smallest.
+inline std::size_t most_automatic_photons(double samples) {
+    return static_cast<std::size_t>(
+        std::clamp(kAutomaticPhotonsOfSample * samples, kManyPhotons, kMostAutomaticPhotons));
+}
 
 // Placement, flux, kind and sampling are names; choices.h lists them and says which go together.
 struct VirtualLightSettings {

@@ -82,7 +82,7 @@ TEST(GlossyGrains, AreNotLeftOnAPlinthUnderABall) {
 }
 
 // As the key says: four times the photons for half of the error, no more than four for each sample of the picture but
-// for eight for each light, and never more than a million.
+// for eight for each light, and never more than eight million.
 TEST(AutomaticPhotons, FollowThePicture) {
     const Room room(coloured_room());
     const auto traced = [&](double error, double samples) {
@@ -102,6 +102,8 @@ TEST(AutomaticPhotons, FollowThePicture) {
     EXPECT_NEAR(double(small.photons.arrivals), 40000.0, 0.05 * 40000.0);
     EXPECT_EQ(tiny.photons.photons, 16384u);  // as the pilot; eight for each light take less
     EXPECT_EQ(exact.photons.photons, std::uint64_t(kMostAutomaticPhotons));
+    EXPECT_EQ(most_automatic_photons(10000.0), 1000000u);
+    EXPECT_EQ(most_automatic_photons(250000.0), 4000000u);
 }
 
 }  // namespace

@@ -130,14 +130,14 @@ private:
 };
 
 SpecularPhotons::SpecularPhotons(const DirectLight& scene, const VirtualLights* lights,
-                                 const VirtualLightSettings& settings, float share)
+                                 const VirtualLightSettings& settings, float share, double samples)
     : scene_(scene), lights_(lights), seed_(settings.seed), share_(share) {
     if (!scene.lights_surfaces())
         return;
     // Of so many fewer, the noise is the same part of all light.
     if (const double part = part_by_particles(scene, lights, share); part > kUnsharedLeft)
         particles_ = settings.photons == kAutomaticPhotons
-                         ? std::size_t(std::ceil(std::max(part, kLeastParticles) * kMostAutomaticPhotons))
+                         ? std::size_t(std::ceil(std::max(part, kLeastParticles) * most_automatic_photons(samples)))
                          : std::size_t(settings.photons);
     if (empty())
         return;

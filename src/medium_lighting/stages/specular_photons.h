@@ -25,9 +25,10 @@ namespace brisance {
 class SpecularPhotons {
 public:
     // Keeps references. `lights`: the virtual lights that hold the rest; null: none. `share`: of what they hold, the
-    // part that particles carry in their place, in [0, 1].
+    // part that particles carry in their place, in [0, 1]. `samples`: of surfaces, of the whole picture: automatic
+    // photons follow their number.
     SpecularPhotons(const DirectLight& scene, const VirtualLights* lights, const VirtualLightSettings& settings,
-                    float share = 0.0f);
+                    float share = 0.0f, double samples = 0.0);
 
     // Whether no surface reflects light that the virtual lights do not hold.
     bool empty() const { return particles_ == 0; }

@@ -128,7 +128,7 @@ void add_placement_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "virtual_lights.photons",
         "particles from fire and lamps, for flux gathered; 0: no virtual lights; auto: as many as lighting.error asks "
-        "of each light, a million at most",
+        "of each light, from one to eight million at most, by the size of the picture",
         or_word(whole_in(Ranges::photons), "auto", kAutomaticPhotons),
         [](Shot & s) -> auto& { return s.virtual_lights.photons; }));
     keys.push_back(make_key(

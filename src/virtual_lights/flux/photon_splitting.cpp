@@ -185,7 +185,7 @@ std::size_t photons_needed(const DirectLight& scene, const BoundingBall& ball, c
     const double wanted =
         std::min(each * lights, std::max(kArrivalsPerSample * samples, kLeastPhotons * lights));  // to arrive
     const double needed = wanted * double(kPilot) / double(std::max<std::uint64_t>(arrivals, 1));
-    return static_cast<std::size_t>(std::clamp(needed, double(kPilot), double(kMostAutomaticPhotons)));
+    return static_cast<std::size_t>(std::clamp(needed, double(kPilot), double(most_automatic_photons(samples))));
 }
 
 PhotonReport trace_photons(const DirectLight& scene, const BoundingBall& ball, const PartitionOfUnity& partition,
