@@ -39,7 +39,7 @@ public:
     int level() const { return level_; }
     const Medium& medium() const { return coarse_ ? *coarse_ : input_.medium; }  // on the lattice of the light
     const ExtinctionPyramid& pyramid() const { return pyramid_; }
-    const PointDepths& depths() const { return depths_; }  // of coarse rays toward lights seen from outside
+    const PointDepths& depths() const { return depths_; }  // of rays toward lights seen from outside
     const ThinMedium& thin_medium() const { return thin_medium_; }
     const Occluders* surfaces() const { return surfaces_.get(); }        // null: none
     const std::vector<std::uint8_t>& needed() const { return needed_; }  // per node: whether light is needed there
