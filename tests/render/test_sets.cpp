@@ -221,6 +221,48 @@ TEST(Sets, FewRaysLightPlainSurfacesAsAllDo) {
     EXPECT_LT(worst, 5.0 * few.lighting.error * rms);
 }
 
+// A fire in a ball of smoke, which is even in one half. The other half has as much of it in every other block of two
+// voxels, by chance: half more light comes through its gaps. Before a wall a screen hides one half or the other.
+TEST(Sets, AScreenHidesAsMuchAsThatPartOfAFireSends) {
+    const Medium medium = make_medium([] {
+        constexpr int kRadius = 20, kFire = 8;
+        Recipe r = glowing_ball(kRadius, 1.0f);
+        r.flame = [](const ivec3& n) { return ball(n, dvec3(0.0), kFire); };
+        r.density = [](const ivec3& n) {
+            const bool clumps = n.x >= 0 && ball(n, dvec3(0.0), kFire + 2) == 0.0f;
+            const float part = !clumps ? 1.0f : (testing::noise(n >> 1, 1) < 0.5f ? 0.0f : 2.0f);
+            return 5.0f * part * ball(n, dvec3(0.0), kRadius);
+        };
+        return r;
+    }());
+    std::vector<double> truths;
+    for (const float side : {-1.0f, 1.0f}) {
+        Scene scene;
+        scene.origin = medium.world_of_local(vec3(0.0f));
+        add_quad(scene, {-1, 3, -1}, {2, 0, 0}, {0, 0, 2}, lambert(0.6f));
+        add_quad(scene, {0, 1.2f, -3}, {side * 4, 0, 0}, {0, 0, 6}, lambert(0.0f));
+        const Surroundings set(std::move(scene), {});
+        const auto wall = [&](RenderMethod method) {
+            Shot shot = shot_of(method);
+            shot.camera.eye = {0.0, 1.5, 0.0};
+            shot.camera.target = {0.0, 3.0, 0.0};
+            shot.scattering.bounces = 1;
+            shot.virtual_lights.count = 0;
+            shot.tracing.samples = 256;
+            Progress silent;
+            return render_medium(shot, medium, silent, &set);
+        };
+        const RenderedFrame grid = wall(RenderMethod::LightingGrid), paths = wall(RenderMethod::Path);
+        const double ours = whole(grid.image.layer("SV")).sum, truth = whole(paths.image.layer("SV")).sum;
+        const double noise = std::abs(whole(paths.halves[0].layer("SV")).sum - whole(paths.halves[1].layer("SV")).sum);
+        std::printf("SV past the screen at %+.0f: %.5f, paths %.5f (%+.2f %%), halves apart %.2f %%\n", side, ours,
+                    truth, 100.0 * (ours / truth - 1.0), 100.0 * noise / truth);
+        EXPECT_NEAR(ours, truth, 0.03 * truth + noise);
+        truths.push_back(truth);
+    }
+    EXPECT_GT(truths[0], 1.3 * truths[1]) << "the halves were meant to differ";
+}
+
 // What the many-light methods cannot do is refused, not left out.
 TEST(Sets, RefuseWhatTheyCannotDo) {
     const Medium nothing;
