@@ -15,10 +15,11 @@ namespace brisance {
 
 namespace {
 
-// Level of the pyramid that rays march between the smoke and what sees it from outside. Which part of a fire sends how
-// much of what a doorway lets through depends on the gaps in its smoke: with voxels four times as wide, a wall behind
-// one was up to a quarter too bright.
-constexpr int kExteriorRayLevel = 0;
+// Level of the pyramid that rays out of the smoke march: how much of all light escapes needs no finer one.
+constexpr int kEscapeRayLevel = 2;
+// And rays from a surface to the parts of a fire. Which part sends how much of what a doorway lets through depends on
+// the gaps in the smoke: with voxels four times as wide, a wall behind one was up to a quarter too bright.
+constexpr int kPartsRayLevel = 0;
 // Levels above the medium's own on which light is gathered first.
 constexpr int kLitLevels = 3;
 
@@ -84,7 +85,8 @@ LitLattice::LitLattice(const MediumLightingInput& input, int level)
       coarse_(medium_on(input.medium, level)),
       pyramid_(medium(), ExtinctionPyramid::kMaxLevels),
       needed_(nodes_beside_extinction(medium())),
-      depths_(pyramid_, kExteriorRayLevel) {
+      depths_(pyramid_, kEscapeRayLevel),
+      depths_of_parts_(pyramid_, kPartsRayLevel) {
     if (input.surroundings && input.surroundings->has_surfaces()) {
         surfaces_ = std::make_unique<SurfaceOccluders>(input.surroundings->intersector(), input.medium.spacing);
         if (surfaces_reach_into(input.surroundings, medium()))

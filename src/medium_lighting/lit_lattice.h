@@ -39,7 +39,7 @@ public:
     int level() const { return level_; }
     const Medium& medium() const { return coarse_ ? *coarse_ : input_.medium; }  // on the lattice of the light
     const ExtinctionPyramid& pyramid() const { return pyramid_; }
-    const PointDepths& depths() const { return depths_; }  // of rays toward lights seen from outside
+    const PointDepths& depths_of_parts() const { return depths_of_parts_; }  // of rays from surfaces to voxels
     const ThinMedium& thin_medium() const { return thin_medium_; }
     const Occluders* surfaces() const { return surfaces_.get(); }        // null: none
     const std::vector<std::uint8_t>& needed() const { return needed_; }  // per node: whether light is needed there
@@ -88,7 +88,8 @@ private:
     mutable std::map<std::pair<const Medium*, int>, CornersSeen> corners_seen_;  // made when asked for
     ExtinctionPyramid pyramid_;
     std::vector<std::uint8_t> needed_;
-    PointDepths depths_;
+    PointDepths depths_;  // of rays out of the smoke
+    PointDepths depths_of_parts_;
     mutable NodeWeights likelihood_;  // of nodes that were asked for
     ThinMedium thin_medium_;
     float interpolation_error_ = 0.0f;

@@ -102,7 +102,7 @@ void ExteriorLights::part_thin_medium(float alpha) {
 
 void ExteriorLights::keep_for_exterior(float alpha) {
     const auto ratio_of = [&](const std::vector<Rgb>& intensity) {
-        return std::make_unique<VisibilityRatio>(lattice_.medium(), lattice_.depths(), intensity, escape_);
+        return std::make_unique<VisibilityRatio>(lattice_.medium(), lattice_.depths_of_parts(), intensity, escape_);
     };
     if (for_surfaces_)
         ratio_ = ratio_of(lights_.light.intensity);
