@@ -14,15 +14,16 @@ import argparse
 import pathlib
 import tempfile
 
-from measurement import Measurement, Paths, percent
+from measurement import Measurement, Paths
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
 
 def believed(grid):
     """Error that the frame believed of its picture, and over the certified one."""
-    error = grid.statistics["believed"]["picture"]["error"]
-    return f"{100.0 * error:.1f} % | {error / grid.error:.2f}"
+    picture = grid.statistics["believed_error"]["picture"]
+    ratio = "-" if grid.bounded else f"{picture['error'] / grid.error:.2f}"
+    return f"{100.0 * picture['error']:.1f} % | {ratio}"
 
 
 def row(arguments, shot, folder):
@@ -37,7 +38,7 @@ def row(arguments, shot, folder):
     paths = Paths(brisance, [*settings, *until], folder, "paths")
     needed = paths.cpu_to(grid.error)
     return (f"| `{shot.stem}` | {grid.text()} | {believed(grid)} | {paths.cpu:.0f} | "
-            f"{percent(paths.error, paths.interval)} | {needed:,.0f} | {needed / grid.cpu:.1f} |")
+            f"{paths.error_text()} | {needed:,.0f} | {needed / grid.cpu:.1f} |")
 
 
 def main():

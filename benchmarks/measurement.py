@@ -21,10 +21,6 @@ def stage(statistics, name):
     return next((s for s in statistics["stages"] if s["name"] == name), {"seconds": 0.0, "detail": {}})
 
 
-def percent(error, interval):
-    return f"{100.0 * error:.1f} % ({100.0 * interval[0]:.1f} to {100.0 * interval[1]:.1f})"
-
-
 class Measurement:
     """One method on one shot: cost without the certificate, error with it."""
 
@@ -34,10 +30,18 @@ class Measurement:
         run([*command, str(folder / f"{label}.certified.exr"), "--certify"])
         self.statistics = json.loads((folder / f"{label}.certified.stats.json").read_text())
         picture = self.statistics["certificate"]["picture"]
-        self.error, self.interval = picture["error"], picture["error_interval"]
+        self.interval = picture["error_interval"]
+        # Errors below the certificate's noise have an upper bound only.
+        self.bounded = picture["error"] is None
+        self.error = self.interval[1] if self.bounded else picture["error"]
+
+    def error_text(self):
+        if self.bounded:
+            return f"below {100.0 * self.error:.1f} %"
+        return "{:.1f} % ({:.1f} to {:.1f})".format(*(100.0 * x for x in (self.error, *self.interval)))
 
     def text(self):
-        return f"{self.cpu:.0f} | {self.memory / 2**30:.2f} GiB | {percent(self.error, self.interval)}"
+        return f"{self.cpu:.0f} | {self.memory / 2**30:.2f} GiB | {self.error_text()}"
 
 
 class Paths(Measurement):
