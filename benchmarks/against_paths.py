@@ -12,11 +12,8 @@ CPU seconds and memory are those of runs without the certificate, as the operati
 
 import argparse
 import pathlib
-import tempfile
 
-from measurement import Measurement, Paths
-
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+from measurement import ROOT, Measurement, Paths, add_options, print_table, set_keys, size_keys
 
 
 def believed(grid):
@@ -27,15 +24,11 @@ def believed(grid):
 
 
 def row(arguments, shot, folder):
-    brisance = str(arguments.build / "bin/brisance")
-    settings = [str(shot)]
-    if arguments.size:
-        width, height = arguments.size.split("x")
-        settings += ["--set", f"camera.width={width}", "--set", f"camera.height={height}"]
-    of_grid = ["--method", "lighting_grid"] + [option for key in arguments.grid for option in ("--set", key)]
-    grid = Measurement(brisance, [*settings, *of_grid], folder, "grid")
-    until = ["--set", "tracing.samples=none", "--set", f"tracing.seconds={arguments.seconds}"]
-    paths = Paths(brisance, [*settings, *until], folder, "paths")
+    settings = [str(shot), *set_keys(size_keys(arguments.size))]
+    grid = Measurement(arguments.build, [*settings, "--method", "lighting_grid", *set_keys(arguments.grid)], folder,
+                       "grid")
+    until = ["tracing.samples=none", f"tracing.seconds={arguments.seconds}"]
+    paths = Paths(arguments.build, [*settings, *set_keys(until)], folder, "paths")
     needed = paths.cpu_to(grid.error)
     return (f"| `{shot.stem}` | {grid.text()} | {believed(grid)} | {paths.cpu:.0f} | "
             f"{paths.error_text()} | {needed:,.0f} | {needed / grid.cpu:.1f} |")
@@ -46,17 +39,12 @@ def main():
     ours = [ROOT / "shots" / f"{name}.json" for name in ("explosion", "fire_room", "hall", "street")]
     parser.add_argument("shots", type=pathlib.Path, nargs="*", help="all that come with Brisance by default",
                         default=ours + sorted((ROOT / "shots/media").glob("*.json")))
-    parser.add_argument("--size", default="160x90", help="of the picture; empty: that of each shot")
     parser.add_argument("--seconds", type=float, default=30.0, help="of wall time for paths")
-    parser.add_argument("--grid", nargs="*", default=[], metavar="KEY=VALUE", help="of the lighting grid's shot")
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+    add_options(parser, "160x90")
     arguments = parser.parse_args()
-    print("| shot | grid: CPU s | memory | error | believed | over certified | paths: CPU s | error | "
-          "paths to the grid's error, CPU s | ratio |")
-    print("|" + " --- |" * 10, flush=True)
-    with tempfile.TemporaryDirectory() as folder:
-        for shot in arguments.shots:
-            print(row(arguments, shot, pathlib.Path(folder)), flush=True)
+    print_table(["shot", "grid: CPU s", "memory", "error", "believed", "over certified", "paths: CPU s", "error",
+                 "paths to the grid's error, CPU s", "ratio"],
+                arguments.shots, lambda shot, folder: row(arguments, shot, folder))
 
 
 if __name__ == "__main__":

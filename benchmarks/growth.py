@@ -13,28 +13,24 @@ CPU seconds and memory are those of runs without the certificate, as the operati
 """
 
 import argparse
+import math
 import pathlib
-import tempfile
 
-from measurement import Measurement, Paths, run, stage
-
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+from measurement import ROOT, Measurement, Paths, add_options, print_table, run, set_keys, size_keys, stage
 
 
 def row(arguments, factor, folder):
     volume = folder / f"refined{factor}.vdb"
     run([str(arguments.build / "benchmarks/brisance_refine"), str(arguments.volume), str(volume), str(factor)])
-    width, height = arguments.size.split("x")
-    settings = [str(arguments.shot), "--set", f"volume.file={volume}", "--set", f"camera.width={width}",
-                "--set", f"camera.height={height}"]
-    brisance = str(arguments.build / "bin/brisance")
-    of_grid = [option for setting in arguments.grid for option in ("--set", setting)]
-    grid = Measurement(brisance, [*settings, *of_grid], folder, f"grid{factor}")
-    paths = Paths(brisance, [*settings, "--set", f"tracing.samples={arguments.samples}"], folder, f"paths{factor}")
+    settings = [str(arguments.shot), *set_keys([f"volume.file={volume}", *size_keys(arguments.size)])]
+    grid = Measurement(arguments.build, [*settings, *set_keys(arguments.grid)], folder, f"grid{factor}")
+    paths = Paths(arguments.build, [*settings, "--set", f"tracing.samples={arguments.samples}"], folder,
+                  f"paths{factor}")
     voxels = stage(grid.statistics, "medium")["detail"]["absorbing_nodes"]
+    pixels = math.prod(int(side) for side in arguments.size.split("x"))
     needed = paths.cpu_to(grid.error)
     volume.unlink()
-    return (f"| {voxels:,} | {int(width) * int(height):,} | {grid.text()} | {paths.text()} | {needed:,.0f} | "
+    return (f"| {voxels:,} | {pixels:,} | {grid.text()} | {paths.text()} | {needed:,.0f} | "
             f"{needed / grid.cpu:.1f} |")
 
 
@@ -43,17 +39,12 @@ def main():
     parser.add_argument("--shot", type=pathlib.Path, default=ROOT / "shots/explosion.json")
     parser.add_argument("--volume", type=pathlib.Path, default=ROOT / "volumes/explosion.vdb", help="the shot's")
     parser.add_argument("--factors", type=int, nargs="+", default=[1, 2, 4])
-    parser.add_argument("--size", default="1280x720", help="of the picture")
     parser.add_argument("--samples", type=int, default=2, help="paths per pixel")
-    parser.add_argument("--grid", nargs="*", default=[], metavar="KEY=VALUE", help="of the lighting grid's shot")
-    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+    add_options(parser, "1280x720")
     arguments = parser.parse_args()
-    print("| active voxels | pixels | grid: CPU s | memory | error | paths: CPU s | memory | error | "
-          "paths to the grid's error, CPU s | ratio |")
-    print("|" + " --- |" * 10, flush=True)
-    with tempfile.TemporaryDirectory() as folder:
-        for factor in arguments.factors:
-            print(row(arguments, factor, pathlib.Path(folder)), flush=True)
+    print_table(["active voxels", "pixels", "grid: CPU s", "memory", "error", "paths: CPU s", "memory", "error",
+                 "paths to the grid's error, CPU s", "ratio"],
+                arguments.factors, lambda factor, folder: row(arguments, factor, folder))
 
 
 if __name__ == "__main__":

@@ -2,8 +2,38 @@
 
 import json
 import os
+import pathlib
 import subprocess
 import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+
+
+def add_options(parser, size):
+    """Those of every table of grid and paths. `size`: the default."""
+    parser.add_argument("--size", default=size, help="of the picture")
+    parser.add_argument("--grid", nargs="*", default=[], metavar="KEY=VALUE", help="of the lighting grid's shot")
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build/release")
+
+
+def set_keys(keys):
+    """Options of `brisance render` for KEY=VALUE."""
+    return [option for key in keys for option in ("--set", key)]
+
+
+def size_keys(size):
+    width, height = size.split("x")
+    return [f"camera.width={width}", f"camera.height={height}"]
+
+
+def print_table(columns, of, row):
+    """Markdown, row by row: row(one of `of`, a folder for its files)."""
+    print(f"| {' | '.join(columns)} |")
+    print("|" + " --- |" * len(columns), flush=True)
+    with tempfile.TemporaryDirectory() as folder:
+        for each in of:
+            print(row(each, pathlib.Path(folder)), flush=True)
 
 
 def run(command):
@@ -24,8 +54,8 @@ def stage(statistics, name):
 class Measurement:
     """One method on one shot: cost without the certificate, error with it."""
 
-    def __init__(self, brisance, settings, folder, label):
-        command = [brisance, "render", *settings, "--progress", "none", "-o"]
+    def __init__(self, build, settings, folder, label):
+        command = [str(build / "bin/brisance"), "render", *settings, "--progress", "none", "-o"]
         self.cpu, self.memory = run([*command, str(folder / f"{label}.exr")])
         run([*command, str(folder / f"{label}.certified.exr"), "--certify"])
         self.statistics = json.loads((folder / f"{label}.certified.stats.json").read_text())
@@ -47,8 +77,8 @@ class Measurement:
 class Paths(Measurement):
     """Traced until they have done something; what they would take to another error, by the law of large numbers."""
 
-    def __init__(self, brisance, settings, folder, label):
-        super().__init__(brisance, [*settings, "--method", "path"], folder, label)
+    def __init__(self, build, settings, folder, label):
+        super().__init__(build, [*settings, "--method", "path"], folder, label)
         self.tracing = stage(self.statistics, "path tracing")["detail"]["cpu_seconds"]
 
     def cpu_to(self, error):
