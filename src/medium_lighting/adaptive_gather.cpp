@@ -30,11 +30,17 @@ float scattered_radiance(const Gathered& g, std::size_t i, std::size_t n) {
 
 class Refinement {
 public:
-    Refinement(const LitLattice& lattice, const LatticeRequest& request, const LevelLights& lights)
-        : lattice_(lattice), request_(request), lights_(lights) {}
+    Refinement(const LitLattice& lattice, float share, const LatticeRequest& request, const LevelLights& lights)
+        : lattice_(lattice),
+          allowed_(kShare * lattice.interpolation_error(share) / share),
+          request_(request),
+          lights_(lights) {
+        if (allowed_ > 0.0f)
+            levels_ = &lattice.coarser_levels();
+    }
 
     AdaptiveLight run(nlohmann::ordered_json& detail) {
-        int level = static_cast<int>(lattice_.levels().size());
+        int level = levels_ ? static_cast<int>(levels_->size()) : 0;
         Gathered light = gather_all(level);
         auto counts = nlohmann::ordered_json::array({{{"level", level}, {"nodes", count(needed(level))}}});
         // Of the source functions, from the next coarser level to this one. Of the coarsest, all is new.
@@ -48,7 +54,7 @@ public:
     }
 
 private:
-    const LitLevel& at(int level) const { return lattice_.levels()[level - 1]; }
+    const LitLevel& at(int level) const { return (*levels_)[level - 1]; }
     const BrickLattice& nodes(int level) const {
         return level == 0 ? lattice_.medium().lattice : at(level).medium.lattice;
     }
@@ -101,7 +107,7 @@ private:
     std::vector<float> refinement_weights(int level, const Gathered& light, const std::vector<float>& change) const {
         const LitLevel& l = at(level);
         const std::vector<float> radiance = radiance_through_nodes(l, sources(level, light), lattice_.input().eye);
-        const float typical = brightness(l, radiance), share = kShare * lattice_.interpolation_error();
+        const float typical = brightness(l, radiance);
         std::vector<float> error = estimated_errors(l, light);
         for (std::size_t i = 0; i < error.size(); ++i)
             error[i] = std::max(error[i], kNextChange * change[i]);
@@ -110,7 +116,7 @@ private:
             weight.size(),
             [&](std::size_t i) {
                 // Between the pixel's own radiance and the picture's: dark parts count more than in the sum of squares.
-                const float allowed = share * std::sqrt(radiance[i] * typical);
+                const float allowed = allowed_ * std::sqrt(radiance[i] * typical);
                 if (!l.needed[i] || !(allowed > 0.0f))
                     return;
                 const float part = l.importance[i] * largest_around(l, error, i) / allowed;
@@ -327,6 +333,8 @@ private:
     }
 
     const LitLattice& lattice_;
+    float allowed_;                                  // error of a node's light, relative; 0: none is interpolated
+    const std::vector<LitLevel>* levels_ = nullptr;  // to gather on first; null: none
     LatticeRequest request_;
     const LevelLights& lights_;
     GatheredPart gathered_;  // at the level lit last, as of AdaptiveLight
@@ -335,9 +343,9 @@ private:
 
 }  // namespace
 
-AdaptiveLight gather_adaptively(const LitLattice& lattice, const LatticeRequest& request, const LevelLights& lights,
-                                nlohmann::ordered_json& detail) {
-    return Refinement(lattice, request, lights).run(detail);
+AdaptiveLight gather_adaptively(const LitLattice& lattice, float share, const LatticeRequest& request,
+                                const LevelLights& lights, nlohmann::ordered_json& detail) {
+    return Refinement(lattice, share, request, lights).run(detail);
 }
 
 }  // namespace brisance

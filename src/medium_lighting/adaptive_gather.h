@@ -17,9 +17,10 @@
 
 namespace brisance {
 
-// Light at the needed nodes of the lattice, as `request` says but for its nodes. Adds the number of nodes gathered at
+// Light at the needed nodes of the lattice, as `request` says but for its nodes. `share`: of this light in what is
+// shown; the rest lives on another lattice. A small part may err by as much more. Adds the number of nodes gathered at
 // each level to `detail`.
-AdaptiveLight gather_adaptively(const LitLattice& lattice, const LatticeRequest& request, const LevelLights& lights,
-                                nlohmann::ordered_json& detail);
+AdaptiveLight gather_adaptively(const LitLattice& lattice, float share, const LatticeRequest& request,
+                                const LevelLights& lights, nlohmann::ordered_json& detail);
 
 }  // namespace brisance

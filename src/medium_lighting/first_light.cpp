@@ -21,12 +21,12 @@ Gathered light_from_emitters(const LitLattice& lattice, Statistics& statistics, 
 
 }  // namespace
 
-FirstLight first_light(const LitLattice& lattice, Statistics& statistics, Progress& progress) {
+FirstLight first_light(const LitLattice& lattice, float share, Statistics& statistics, Progress& progress) {
     const MediumLightingInput& input = lattice.input();
     FirstLight out;
     Gathered first;
     if (input.fire) {
-        FireLight fire = light_from_fire(lattice, statistics, progress);
+        FireLight fire = light_from_fire(lattice, share, statistics, progress);
         first = std::move(fire.arriving);
         out.sources.single = std::move(fire.single);
         out.fire = std::move(fire.exterior);
@@ -34,7 +34,7 @@ FirstLight first_light(const LitLattice& lattice, Statistics& statistics, Progre
         first = lattice.dark();
     }
     if ((input.reflected.lights || input.reflected.cast) && input.surfaces_on_medium) {
-        const Gathered arriving = light_from_surfaces(lattice, statistics, progress);
+        const Gathered arriving = light_from_surfaces(lattice, share, statistics, progress);
         out.sources.from_surfaces = lattice.source_function(arriving, LightOrigin::Outside);
         first.add(arriving);
     }

@@ -17,6 +17,7 @@ struct FirstLight {
 };
 
 // Adds a stage to the statistics for each part of the work. What is returned refers to the lattice.
-FirstLight first_light(const LitLattice& lattice, Statistics& statistics, Progress& progress);
+// `share`: that of gather_adaptively().
+FirstLight first_light(const LitLattice& lattice, float share, Statistics& statistics, Progress& progress);
 
 }  // namespace brisance

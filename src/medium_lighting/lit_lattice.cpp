@@ -7,7 +7,6 @@
 #include "lighting_grid/voxel_lights.h"
 #include "medium/phase.h"
 #include "medium_lighting/levels/light_of_detail.h"
-#include "medium_lighting/levels/lighting_level.h"
 #include "medium_lighting/surface_occluders.h"
 #include "scattering/coarse_operator.h"
 
@@ -97,9 +96,14 @@ LitLattice::LitLattice(const MediumLightingInput& input, int level)
                                   pyramid_.occluders(), lit_by(input));
     if (!thin_medium_.empty())
         pyramid_.set_homogeneous_bricks(&thin_medium_.homogeneous_bricks());
-    interpolation_error_ = tolerated_interpolation(medium(), input.lighting);
-    if (interpolation_error_ > 0.0f)
-        levels_ = make_lit_levels(pyramid_, needed_, thin_medium_.rest(), {input.eye, input.pixel_angle}, kLitLevels);
+    interpolation_ = tolerated_interpolation(medium(), input.lighting);
+}
+
+const std::vector<LitLevel>& LitLattice::coarser_levels() const {
+    if (coarser_levels_.empty())
+        coarser_levels_ =
+            make_lit_levels(pyramid_, needed_, thin_medium_.rest(), {input_.eye, input_.pixel_angle}, kLitLevels);
+    return coarser_levels_;
 }
 
 LatticeRequest LitLattice::request() const {

@@ -12,6 +12,7 @@
 #include "lighting_grid/footprint.h"
 #include "medium_lighting/input.h"
 #include "medium_lighting/levels/coarse_lighting.h"
+#include "medium_lighting/levels/lighting_level.h"
 #include "medium_lighting/levels/lit_levels.h"
 #include "thin_media/thin_medium.h"
 
@@ -44,10 +45,12 @@ public:
     const Occluders* surfaces() const { return surfaces_.get(); }        // null: none
     const std::vector<std::uint8_t>& needed() const { return needed_; }  // per node: whether light is needed there
     std::size_t node_count() const { return needed_.size(); }
-    // Of the light that the picture shows, relative; 0: no node is interpolated.
-    float interpolation_error() const { return interpolation_error_; }
-    // Coarser lattices to gather on first, from level 1 on; empty: every node is lit by itself.
-    const std::vector<LitLevel>& levels() const { return levels_; }
+    // Of the light that the picture shows, relative; 0: no node is interpolated. `share`: of that light, what this
+    // lattice has.
+    float interpolation_error(float share) const { return interpolation_.of(share); }
+    // Coarser lattices to gather on first where nodes are interpolated, from level 1 on. Made by the first call; not
+    // for several threads.
+    const std::vector<LitLevel>& coarser_levels() const;
 
     // Of a flight after which light scatters on, with the moments that needs, and of the last one before the camera.
     LatticeRequest request() const;
@@ -92,8 +95,8 @@ private:
     PointDepths depths_of_parts_;
     mutable NodeWeights likelihood_;  // of nodes that were asked for
     ThinMedium thin_medium_;
-    float interpolation_error_ = 0.0f;
-    std::vector<LitLevel> levels_;
+    ToleratedInterpolation interpolation_;
+    mutable std::vector<LitLevel> coarser_levels_;
 };
 
 }  // namespace brisance

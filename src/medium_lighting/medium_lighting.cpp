@@ -90,7 +90,7 @@ private:
     void first(const ShareOfLevel& of, bool coarser) {
         Lattice on = lattice(of.level);
         Statistics costs;
-        FirstLight light = first_light(*on, costs, progress_);
+        FirstLight light = first_light(*on, of.share, costs, progress_);
         note(std::move(costs), coarser);
         for (auto field : {&NodeSources::single, &NodeSources::from_surfaces, &NodeSources::from_emitters})
             add(to_.nodes_.*field, std::move(light.sources.*field), of.share);
@@ -103,7 +103,7 @@ private:
         ScatteredLight once = scattered_once(of.level);
         Lattice on = lattice(of.level);
         Statistics costs;
-        SmokeLight light = light_from_smoke(*on, once, costs, progress_);
+        SmokeLight light = light_from_smoke(*on, of.share, once, costs, progress_);
         note(std::move(costs), coarser);
         add(to_.nodes_.multiple, std::move(light.multiple), of.share);
         to_.nodes_.orders.resize(std::max(to_.nodes_.orders.size(), light.orders.size()));

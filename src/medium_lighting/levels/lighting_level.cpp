@@ -205,12 +205,11 @@ LightingLevel between(int level, float error, float of_coarser, float allowed) {
     return {level, 1.0f - glm::smoothstep(1.0f, kNearlyAllowed, of_coarser / allowed), error, of_coarser};
 }
 
-float interpolation_of(LatticeErrors& errors, const LightingSettings& settings, int level) {
+ToleratedInterpolation interpolation_of(LatticeErrors& errors, const LightingSettings& settings, int level) {
     if (settings.interpolation >= 0.0f || !(settings.error > 0.0f))
-        return std::max(0.0f, settings.interpolation);
-    const float coarser =
-        (errors.of_first_without_detail(level + 1) - errors.of_first_without_detail(level)) / settings.error;
-    return kShareOfInterpolation * settings.error * (1.0f - glm::smoothstep(1.0f, kNearlyAllowed, coarser));
+        return {std::max(0.0f, settings.interpolation), 0.0f};
+    const float more = errors.of_first_without_detail(level + 1) - errors.of_first_without_detail(level);
+    return {kShareOfInterpolation * settings.error, more / settings.error};
 }
 
 LightingLevel level_of_first(LatticeErrors& errors, const LightingSettings& settings) {
@@ -290,7 +289,8 @@ LightingLevel level_of_smoke(LatticeErrors& errors, const LightingSettings& sett
 
 LightingLevels levels_by(LatticeErrors errors, const LightingSettings& settings) {
     const LightingLevel first = no_wider_than_smoke(errors, settings, level_of_first(errors, settings));
-    return {first, level_of_smoke(errors, settings, first), interpolation_of(errors, settings, first.level)};
+    return {first, level_of_smoke(errors, settings, first),
+            interpolation_of(errors, settings, first.level).of(1.0f - first.share_of_coarser)};
 }
 
 }  // namespace
@@ -307,7 +307,11 @@ LightingLevels lighting_levels(const Medium& medium, const LightingSettings& set
     return levels_by({medium, &surfaces, surroundings}, settings);
 }
 
-float tolerated_interpolation(const Medium& medium, const LightingSettings& settings) {
+float ToleratedInterpolation::of(float share) const {
+    return most * (1.0f - glm::smoothstep(1.0f, kNearlyAllowed, share * of_coarser));
+}
+
+ToleratedInterpolation tolerated_interpolation(const Medium& medium, const LightingSettings& settings) {
     LatticeErrors errors(medium, nullptr);
     return interpolation_of(errors, settings, 0);
 }

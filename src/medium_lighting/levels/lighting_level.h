@@ -29,7 +29,7 @@ struct LightingLevel {
 struct LightingLevels {
     LightingLevel first;         // of light that has not scattered yet
     LightingLevel smoke;         // of light that has; never finer
-    float interpolation = 0.0f;  // tolerated_interpolation() on the lattice of `first`
+    float interpolation = 0.0f;  // that is tolerated on the lattice of `first`
 };
 
 // As LightingSettings say, or by the errors; where an error of interpolation is stated, the medium's own lattice.
@@ -42,10 +42,19 @@ inline LightingLevels lighting_levels(const MediumLightingInput& input) {
     return lighting_levels(input.medium, input.lighting, input.surroundings);
 }
 
-// The error that interpolation between nodes of this medium may add to the picture: as stated, or a quarter of
+// The error that interpolation between nodes of a medium may add to the picture: as stated, or a quarter of
 // lighting.error where light on the lattice twice as coarse errs by no more than lighting.error, falling to 0 where it
-// errs by 1.5 times that. It depends on the smoke, the fire and the width of voxels, on no count of them.
-float tolerated_interpolation(const Medium& medium, const LightingSettings& settings);
+// errs by 1.5 times that. It depends on the smoke, the fire and the width of voxels, on no count of them. Where this
+// lattice has a share of the light only, that of the lattice twice as coarse adds as much less to the picture.
+struct ToleratedInterpolation {
+    float most = 0.0f;
+    float of_coarser = 0.0f;  // error of the lattice twice as coarse over lighting.error; 0: interpolation is stated
+
+    // `share`: of the picture's light, in (0, 1].
+    float of(float share) const;
+};
+
+ToleratedInterpolation tolerated_interpolation(const Medium& medium, const LightingSettings& settings);
 
 // Relative error of light gathered on voxels of this optical depth, as a collision meets it.
 float error_of_voxels(float depth);

@@ -27,14 +27,14 @@ HierarchyLights build_fire_lights(const LitLattice& lattice, Statistics& statist
     return lights;
 }
 
-AdaptiveLight gather_at_lattice(const LitLattice& lattice, const HierarchyLights& lights, Statistics& statistics,
-                                Progress& progress) {
+AdaptiveLight gather_at_lattice(const LitLattice& lattice, float share, const HierarchyLights& lights,
+                                Statistics& statistics, Progress& progress) {
     const Stopwatch watch;
     const LightingSettings& settings = lattice.input().lighting;
     StageCost stage{"light from the fire (MV)", 0.0, 0, {}};
     std::vector<LevelCost> costs;
     AdaptiveLight arriving = gather_adaptively(
-        lattice, lattice.request(), LevelLights(lattice, lights, settings.alpha, costs, progress), stage.detail);
+        lattice, share, lattice.request(), LevelLights(lattice, lights, settings.alpha, costs, progress), stage.detail);
     if (settings.energy_balance) {
         BounceBalance balance;
         balance.emitted = 1.0;
@@ -50,14 +50,14 @@ AdaptiveLight gather_at_lattice(const LitLattice& lattice, const HierarchyLights
 
 }  // namespace
 
-FireLight light_from_fire(const LitLattice& lattice, Statistics& statistics, Progress& progress) {
+FireLight light_from_fire(const LitLattice& lattice, float share, Statistics& statistics, Progress& progress) {
     FireLight out;
     const bool at_nodes = lattice.input().single;
     HierarchyLights lights = build_fire_lights(lattice, statistics, progress);
     progress.stage("light from the fire (MV)");
     AdaptiveLight arriving;
     if (at_nodes)
-        arriving = gather_at_lattice(lattice, lights, statistics, progress);
+        arriving = gather_at_lattice(lattice, share, lights, statistics, progress);
     const bool on_surfaces = lattice.input().fire_on_surfaces;
     if (lattice.lights_exterior(on_surfaces))
         out.exterior = std::make_unique<ExteriorLights>(lattice, std::move(lights), on_surfaces,

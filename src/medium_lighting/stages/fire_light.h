@@ -13,6 +13,7 @@ struct FireLight {
     std::unique_ptr<ExteriorLights> exterior;  // where LitLattice::lights_exterior(), or null
 };
 
-FireLight light_from_fire(const LitLattice& lattice, Statistics& statistics, Progress& progress);
+// `share`: that of gather_adaptively().
+FireLight light_from_fire(const LitLattice& lattice, float share, Statistics& statistics, Progress& progress);
 
 }  // namespace brisance

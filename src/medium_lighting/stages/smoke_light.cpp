@@ -106,7 +106,9 @@ FineBounces plan_fine_bounces(const LatticeChoice& series, float error, Scatteri
 // The flights on the light's own lattice. The last ends where the light is scattered toward the camera.
 class FineFlights {
 public:
-    FineFlights(const LitLattice& lattice, Progress& progress) : lattice_(lattice), progress_(progress) {}
+    // `share`: that of gather_adaptively().
+    FineFlights(const LitLattice& lattice, float share, Progress& progress)
+        : lattice_(lattice), share_(share), progress_(progress) {}
 
     HierarchyLights build(ScatteredLight order) const {
         order.sharpen(lattice_.medium().lattice);
@@ -184,7 +186,7 @@ private:
         request.least_coarsening = flight.scatters_on ? 1 : 0;
         const LevelLights of_levels(lattice_, lights, input.scattering.alpha, costs, progress_,
                                     keeps_maps_ ? &maps_ : nullptr);
-        AdaptiveLight light = gather_adaptively(lattice_, request, of_levels, detail_);
+        AdaptiveLight light = gather_adaptively(lattice_, share_, request, of_levels, detail_);
         if (!thin)
             return light;
         LightField of_thin = thin->lights.field(lattice_.pyramid(), input.scattering.alpha, input.lighting, nullptr);
@@ -197,6 +199,7 @@ private:
     }
 
     const LitLattice& lattice_;
+    float share_;
     Progress& progress_;
     Stopwatch watch_;
     ShadowMapCache maps_;
@@ -261,7 +264,7 @@ Gathered gather_apart(const LitLattice& lattice, std::vector<ScatteredLight> ord
 
 }  // namespace
 
-SmokeLight light_from_smoke(const LitLattice& lattice, const ScatteredLight& once, Statistics& statistics,
+SmokeLight light_from_smoke(const LitLattice& lattice, float share, const ScatteredLight& once, Statistics& statistics,
                             Progress& progress) {
     ScatteringSettings settings = lattice.input().scattering;
     const SeriesLattice series = lattice_of(lattice, once, settings);
@@ -269,7 +272,7 @@ SmokeLight light_from_smoke(const LitLattice& lattice, const ScatteredLight& onc
     std::vector<ScatteredLight> orders = orders_of_scattering(
         lattice, once, settings, series, bounces.count > 0 ? bounces.share : 0.0f, statistics, progress);
     progress.stage("light from the smoke (MM)");
-    FineFlights flights(lattice, progress);
+    FineFlights flights(lattice, share, progress);
     SmokeLight out;
     const Gathered sum =
         lattice.input().orders_apart

@@ -17,7 +17,8 @@ struct SmokeLight {
 };
 
 // `once`: light leaving the nodes after its first scattering, not sharpened.
-SmokeLight light_from_smoke(const LitLattice& lattice, const ScatteredLight& once, Statistics& statistics,
+// `share`: of the light on this lattice in what is shown.
+SmokeLight light_from_smoke(const LitLattice& lattice, float share, const ScatteredLight& once, Statistics& statistics,
                             Progress& progress);
 
 }  // namespace brisance

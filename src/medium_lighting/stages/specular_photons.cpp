@@ -25,6 +25,10 @@ constexpr double kLeastParticles = 0.25;
 constexpr float kPowerOfTrack = 1.0f / 1024.0f;
 // Particles from infinity start toward a ball around the smoke whose radius is so many times the smoke's.
 constexpr double kAround = 2.0;
+// A set of them has at least so many, of fire and of emitters.
+constexpr std::size_t kLeastOfSet = 1024;
+// Of the numbers of streams: more than particles of a set.
+constexpr int kBitsOfSet = 40;
 
 // Points of the smoke, in proportion to what a cube of it takes of the light that crosses it.
 CubeDirections points_of_smoke(const TrackingField& field) {
@@ -145,6 +149,11 @@ SpecularPhotons::SpecularPhotons(const DirectLight& scene, const VirtualLights* 
     around_smoke_ = ball_around_smoke(scene.field());
 }
 
+std::size_t SpecularPhotons::particles(float share) const {
+    const std::size_t least = std::min(particles_, kLeastOfSet);
+    return std::max(least, std::size_t(std::ceil(double(share) * double(particles_))));
+}
+
 // Roulette keeps the powers of tracks about equal, and far below those of particles, of which few send light to smoke.
 void SpecularPhotons::send(const Ray& ray, const Rgb& sent, const Rgb& arrived, Rng& rng, Tracks& tracks) const {
     const float part = std::min(1.0f, largest(sent) / (kPowerOfTrack * largest(arrived)));
@@ -179,25 +188,28 @@ void SpecularPhotons::cast(const RaySegment& segment, const Rgb& power, Rng& rng
         send(ray, power * value.value / float(density), power, rng, tracks);
 }
 
-void SpecularPhotons::follow(std::uint64_t index, const Particles& particles, Tracks& tracks) const {
-    Rng rng(Stream::SpecularPhotons, index, seed_), cast_rng(Stream::SpecularPhotonRoulette, index, seed_);
+void SpecularPhotons::follow(std::uint64_t index, std::uint64_t stream, const Particles& particles,
+                             Tracks& tracks) const {
+    Rng rng(Stream::SpecularPhotons, stream, seed_), cast_rng(Stream::SpecularPhotonRoulette, stream, seed_);
     FlightReport report;
     const std::optional<EmittedParticle> particle = particles.emit(index, rng);
     if (counts(particle, report))
-        walk_particle(scene_, *particle, index, {}, rng, [&](const ParticleFlight& flight) {
+        walk_particle(scene_, *particle, stream, {}, rng, [&](const ParticleFlight& flight) {
             if (flight.landing())
                 cast(flight.segment, flight.power, cast_rng, tracks);
             return true;
         });
 }
 
-Gathered SpecularPhotons::on(const Medium& medium, const LatticeRequest& request) const {
+Gathered SpecularPhotons::on(const Medium& medium, const LatticeRequest& request, float share, int set) const {
     const BoundingBall ball = ball_around(scene_);
-    const Particles particles(scene_, ball, particles_, around_smoke_);
+    const std::size_t count = particles(share);
+    const std::uint64_t first_stream = std::uint64_t(set) << kBitsOfSet;
+    const Particles particles(scene_, ball, count, around_smoke_);
     Tracks tracks(medium, request, emitted_power(scene_, ball));
-    parallel_blocks(particles_, kParticlesAtOnce, [&](std::size_t begin, std::size_t end) {
+    parallel_blocks(count, kParticlesAtOnce, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-            follow(i, particles, tracks);
+            follow(i, first_stream + i, particles, tracks);
     });
     return tracks.fluence();
 }

@@ -32,16 +32,19 @@ public:
 
     // Whether no surface reflects light that the virtual lights do not hold.
     bool empty() const { return particles_ == 0; }
-    std::size_t particles() const { return particles_; }
+    // That carry the light of on(), by its share.
+    std::size_t particles(float share = 1.0f) const;
 
     // Light at the needed nodes of the medium, planar over all nodes, as gather_at_nodes(). Sums are integers, and
     // so do not depend on the order. `medium`: the medium through which the light is traced, on the scene's own
     // lattice.
-    Gathered on(const Medium& medium, const LatticeRequest& request) const;
+    // `share`: of the particles, in (0, 1], which carry all light. Those of another `set` are others: means of sets by
+    // their shares have the noise of all particles.
+    Gathered on(const Medium& medium, const LatticeRequest& request, float share = 1.0f, int set = 0) const;
 
 private:
     class Tracks;
-    void follow(std::uint64_t index, const Particles& particles, Tracks& tracks) const;
+    void follow(std::uint64_t index, std::uint64_t stream, const Particles& particles, Tracks& tracks) const;
     void cast(const RaySegment& segment, const Rgb& power, Rng& rng, Tracks& tracks) const;
     void send(const Ray& ray, const Rgb& sent, const Rgb& arrived, Rng& rng, Tracks& tracks) const;
 

@@ -35,7 +35,7 @@ void add_virtual_lights(const PointsOfSides& sides, const LitLattice& lattice, G
 
 }  // namespace
 
-Gathered light_from_surfaces(const LitLattice& lattice, Statistics& statistics, Progress& progress) {
+Gathered light_from_surfaces(const LitLattice& lattice, float share, Statistics& statistics, Progress& progress) {
     progress.stage("light from surfaces (MS)");
     const Stopwatch watch;
     const ReflectedLight& reflected = lattice.input().reflected;
@@ -45,8 +45,8 @@ Gathered light_from_surfaces(const LitLattice& lattice, Statistics& statistics, 
         add_virtual_lights(*reflected.lights, lattice, arriving, stage, progress);
     if (reflected.cast) {
         const Stopwatch particles;
-        arriving.add(reflected.cast->on(lattice.medium(), lattice.request()));
-        stage.detail["particles"] = reflected.cast->particles();
+        arriving.add(reflected.cast->on(lattice.medium(), lattice.request(), share, lattice.level()));
+        stage.detail["particles"] = reflected.cast->particles(share);
         stage.detail["particle_seconds"] = particles.seconds();
     }
     prepare_interpolation(lattice.medium().lattice, lattice.needed(), arriving);

@@ -6,7 +6,8 @@
 
 namespace brisance {
 
-// Light at the nodes: of the virtual lights as points, and of particles for light that those do not hold.
-Gathered light_from_surfaces(const LitLattice& lattice, Statistics& statistics, Progress& progress);
+// Light at the nodes: of the virtual lights as points, and of particles for light that those do not hold. `share`:
+// of the lattice in what is shown, as of gather_adaptively().
+Gathered light_from_surfaces(const LitLattice& lattice, float share, Statistics& statistics, Progress& progress);
 
 }  // namespace brisance
