@@ -155,19 +155,23 @@ private:
 // The pools of the receivers of a neighbourhood that look alone, of which `first` is the first.
 class BaseLighting::Pools {
 public:
-    // Keeps references. `batches`, `most`: those of TargetPool.
+    // Keeps references. `at`: a sample of it with a surface. `batches`, `most`: those of TargetPool.
     Pools(const BaseLighting& lighting, const SurfaceReceiver& first, const BasePoint& at, std::size_t batches,
           std::size_t most)
         : lighting_(lighting), first_(first), at_(at), batches_(batches), most_(most) {}
 
     TargetPool& of(int light) {
         if (!pools_[light])
-            pools_[light].emplace(*lighting_.ratios_[light], first_, batches_, most_,
+            pools_[light].emplace(*lighting_.ratios_[light], first_, reaches(), batches_, most_,
                                   std::pair(at_.pixel | lighting_.seed_, at_.number * kLights + std::uint64_t(light)));
         return *pools_[light];
     }
 
 private:
+    TargetPool::Reaches reaches() const {
+        return [&](const vec3& point) { return !lighting_.passage(*at_.surface, point).blocked; };
+    }
+
     const BaseLighting& lighting_;
     const SurfaceReceiver& first_;
     const BasePoint& at_;
@@ -320,16 +324,19 @@ void BaseLighting::light_alone(const SurfaceReceiver& receiver, Pools& around, s
 void BaseLighting::light_alone(std::span<const std::uint32_t> which, std::size_t most_batches,
                                const SharedReceivers& receivers, const SamplesOfReceivers& samples,
                                std::span<const BasePoint> points, std::span<BaseLight> out) const {
-    if (which.empty())
-        return;
     std::size_t batches = 0, most = 0;
+    std::optional<std::pair<std::uint32_t, std::uint32_t>> first;  // receiver, and a sample of it
     for (const std::uint32_t r : which) {
         const std::size_t own = std::min(samples.of(r).size(), most_batches);
         batches += own;
         most = std::max(most, own);
+        for (const std::uint32_t i : samples.of(r))
+            if (!first && points[i].surface)
+                first.emplace(r, i);
     }
-    const std::uint32_t first = which.front();
-    Pools around(*this, receivers[first], points[samples.of(first)[0]], batches, most);
+    if (!first)
+        return;
+    Pools around(*this, receivers[first->first], points[first->second], batches, most);
     for (const std::uint32_t r : which)
         light_alone(receivers[r], around, most_batches, samples.of(r), points, out);
 }

@@ -17,9 +17,52 @@ constexpr Stream kPool = stream_of("base lighting, pool");
 // Receivers that may take a batch, on average.
 constexpr std::size_t kShare = 8;
 constexpr std::uint64_t kMostBatches = 1 << 12;
+// Candidates of a batch, in batches: so many at most, and half as many as receivers that take it.
+constexpr std::size_t kMostCandidates = 4, kTakersOfCandidate = 2;
+// Of the mean weight of candidates, what each has at least: others may see what the place itself cannot.
+constexpr float kLeastWeight = 0.02f;
 
 LitPoint lit_point(const SurfaceReceiver& receiver) {
     return {dvec3(receiver.local), dvec3(receiver.normal), LitPoint::Kind::Surface};
+}
+
+// Candidates for a batch on one side of what surfaces hide.
+class Candidates {
+public:
+    void add(const VisibilityRatio::Target& target, float weight) { all_.push_back({target, sum_ += weight, weight}); }
+    bool empty() const { return all_.empty(); }
+
+    // The i-th of n, each in proportion to its weight: systematic resampling with the offset u. Its power is such that
+    // n of them stand for all candidates.
+    VisibilityRatio::Target choose(std::size_t i, std::size_t n, float u) const {
+        const float at = (float(i) + u) / float(n) * sum_;
+        const auto found = std::upper_bound(all_.begin(), all_.end() - 1, at,
+                                            [](float value, const Candidate& c) { return value < c.passed; });
+        return {found->target.point, found->target.power * sum_ / (float(n) * found->weight)};
+    }
+
+private:
+    struct Candidate {
+        VisibilityRatio::Target target;
+        float passed, weight;  // `passed`: running sum of weights
+    };
+    std::vector<Candidate> all_;
+    float sum_ = 0.0f;
+};
+
+// Half a batch of each side, in turn, which stand for a batch of their `batches`.
+VisibilityRatio::Targets resampled(const Candidates& seen, const Candidates& hidden, std::size_t batches, Rng& rng) {
+    constexpr std::size_t kDraws = VisibilityRatio::kDraws;
+    const float u = rng.next();
+    VisibilityRatio::Targets out;
+    for (std::size_t k = 0; k < kDraws; ++k) {
+        if (seen.empty() || hidden.empty())
+            out[k] = (seen.empty() ? hidden : seen).choose(k, kDraws, u);
+        else
+            out[k] = (k % 2 == 0 ? seen : hidden).choose(k / 2, kDraws / 2, u);
+        out[k].power /= float(batches);
+    }
+    return out;
 }
 
 }  // namespace
@@ -37,25 +80,50 @@ const vec3& WeightedTargets::at(float u) const {
     return points_[std::size_t(found - passed_.begin())];
 }
 
-TargetPool::TargetPool(const VisibilityRatio& ratio, const SurfaceReceiver& first, std::size_t batches,
+TargetPool::TargetPool(const VisibilityRatio& ratio, const SurfaceReceiver& first, Reaches reaches, std::size_t batches,
                        std::size_t most, std::pair<std::uint64_t, std::uint64_t> seed)
     : ratio_(ratio),
       first_(lit_point(first)),
+      reaches_(std::move(reaches)),
       seed_(seed),
       batches_(std::min<std::size_t>(std::bit_ceil(std::max(most, batches / kShare)), kMostBatches)),
-      around_(ratio.around(first_, batches_.size() * VisibilityRatio::kDraws)) {}
+      candidates_(std::clamp<std::size_t>(batches / batches_.size() / kTakersOfCandidate, 1, kMostCandidates)),
+      around_(ratio.around(first_, batches_.size() * candidates_ * VisibilityRatio::kDraws)) {}
 
 // Steps of about the golden ratio of all: batches that follow each other lie far apart in their strata. Odd, so that
 // all are passed.
 const VisibilityRatio::Targets& TargetPool::batch(float start, std::size_t number) {
     const std::size_t count = batches_.size(), step = std::size_t(0.618 * double(count)) | 1,
                       at = (std::size_t(start * float(count)) + number * step) & (count - 1);
-    if (!batches_[at]) {
-        Rng rng(kPool, seed_.first, seed_.second * kMostBatches + at);
-        const double shift = (double(at) + rng.next_double()) / double(count);
-        batches_[at] = ratio_.choose(around_, first_, shift, rng);
-    }
+    if (!batches_[at])
+        batches_[at] = draw(at);
     return *batches_[at];
+}
+
+VisibilityRatio::Targets TargetPool::draw(std::size_t at) const {
+    constexpr std::size_t kDraws = VisibilityRatio::kDraws;
+    Rng rng(kPool, seed_.first, seed_.second * kMostBatches + at);
+    std::array<VisibilityRatio::Targets, kMostCandidates> targets;
+    std::array<std::array<VisibilityRatio::Draw, kDraws>, kMostCandidates> draws;
+    float sum = 0.0f;
+    for (std::size_t j = 0; j < candidates_; ++j) {
+        const double shift = (double(at * candidates_ + j) + rng.next_double()) / double(batches_.size() * candidates_);
+        targets[j] = ratio_.choose(around_, first_, shift, rng);
+        if (candidates_ == 1)
+            return targets[j];
+        ratio_.weigh(first_, targets[j], draws[j]);
+        for (const VisibilityRatio::Draw& d : draws[j])
+            sum += d.weight;
+    }
+    const float least = kLeastWeight * sum / float(candidates_ * kDraws);
+    if (!(least > 0.0f))
+        return targets[0];  // the place sees nothing, and others little
+    Candidates seen, hidden;
+    for (std::size_t j = 0; j < candidates_; ++j)
+        for (std::size_t k = 0; k < kDraws; ++k)
+            if (targets[j][k].power > 0.0f)
+                (reaches_(targets[j][k].point) ? seen : hidden).add(targets[j][k], std::max(draws[j][k].weight, least));
+    return resampled(seen, hidden, candidates_, rng);
 }
 
 Neighbourhoods::Neighbourhoods(const Medium& medium, const SharedReceivers& receivers,

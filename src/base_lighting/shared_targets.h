@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <utility>
@@ -35,24 +36,37 @@ private:
 
 // Points drawn for a place in batches, of which receivers around take some each, in an order of their own.
 //
-// All batches together are stratified, and so is each by itself. What receivers of one pool err in common falls with
-// the number of all its points.
+// The part of the light that arrives, f, has the least variance where half of the points are drawn, in proportion to
+// the light from each, from those that are hidden, and half from the others: the variance of a ratio of sums of w V and
+// w is the integral of w^2 (V - f)^2 over the density, least where that is in proportion to w |V - f|. A batch is
+// therefore resampled from more candidates, of which the place itself knows the transmittance and whether surfaces hide
+// them (J. Talbot, D. Cline and P. Egbert, Importance Resampling for Global Illumination, EGSR 2005). Where others see
+// what the place does not, their points count at most about twice as much as without. As candidates cost what points
+// cost, there are more of them only where several receivers take a batch.
+//
+// All batches together are stratified, and so are the candidates of each. What receivers of one pool err in common
+// falls with the number of all candidates.
 class TargetPool {
 public:
+    using Reaches = std::function<bool(const vec3& point)>;
     // For `receivers` that draw so many batches in all, and at most `most` each. Keeps a reference to the ratio. There
-    // must be voxels that glow. `seed`: of its numbers.
-    TargetPool(const VisibilityRatio& ratio, const SurfaceReceiver& first, std::size_t batches, std::size_t most,
-               std::pair<std::uint64_t, std::uint64_t> seed);
+    // must be voxels that glow. `reaches`: whether no surface is between a point and the place. `seed`: of its numbers.
+    TargetPool(const VisibilityRatio& ratio, const SurfaceReceiver& first, Reaches reaches, std::size_t batches,
+               std::size_t most, std::pair<std::uint64_t, std::uint64_t> seed);
 
     // The batch with this number in the order that begins at `start`, in [0, 1). It is drawn when it is first asked
     // for.
     const VisibilityRatio::Targets& batch(float start, std::size_t number);
 
 private:
+    VisibilityRatio::Targets draw(std::size_t at) const;
+
     const VisibilityRatio& ratio_;
     LitPoint first_;
+    Reaches reaches_;
     std::pair<std::uint64_t, std::uint64_t> seed_;
     std::vector<std::optional<VisibilityRatio::Targets>> batches_;  // a power of two
+    std::size_t candidates_;                                        // of a batch, in batches
     LightFront around_;
 };
 

@@ -41,6 +41,16 @@ RenderedFrame picture_on(const Medium& medium, int level) {
     return render_medium(shot, medium, silent);
 }
 
+// Of light that is a part of the picture's, the next coarser lattice adds as much less to the picture.
+TEST(LightingLevel, InterpolationIsToleratedByTheShareOfTheLight) {
+    const ToleratedInterpolation tolerated{0.005f, 2.4f}, stated{0.0025f, 0.0f};
+    EXPECT_EQ(tolerated.of(1.0f), 0.0f);
+    EXPECT_EQ(tolerated.of(0.625f), 0.0f);
+    EXPECT_FLOAT_EQ(tolerated.of(0.4f), 0.005f);
+    EXPECT_GT(tolerated.of(0.5f), tolerated.of(0.51f));
+    EXPECT_FLOAT_EQ(stated.of(1.0f), 0.0025f);
+}
+
 TEST(LightingLevel, LinearLightIsInterpolatedAsItIs) {
     const Medium fine = smooth_fire(1.0f);
     const auto light_at = [](const ivec3& node) {
