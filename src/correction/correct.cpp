@@ -122,13 +122,21 @@ CertifiedError CorrectedLayer::before() const {
     return out;
 }
 
-double CorrectedLayer::left(double samples) const {
-    double all = 0.0, left = 0.0;
-    for (const ResidualBand& band : bands) {
-        all += std::max(band.sum().residual, 0.0);
+double CorrectedLayer::found() const {
+    double sum = 0.0;
+    for (const ResidualBand& band : bands)
+        sum += std::max(band.sum().residual, 0.0);
+    return square > 0.0 ? std::sqrt(sum / square) : 0.0;
+}
+
+double CorrectedLayer::left(double error, double samples) const {
+    if (!(square > 0.0))
+        return error;
+    double left = 0.0;
+    for (const ResidualBand& band : bands)
         left += band.left(samples);
-    }
-    return all > 0.0 ? std::sqrt(std::min(left / all, 1.0)) : 1.0;
+    const double found_square = found() * found();
+    return std::sqrt(std::min(left / square, found_square) + std::max(error * error - found_square, 0.0));
 }
 
 const CorrectedLayer* Correction::of(const std::string& cell) const {

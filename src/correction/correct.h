@@ -34,8 +34,11 @@ struct CorrectedLayer {
     double square = 0.0;              // sum of its own squares before the correction
     // The error before the correction, as the samples measured it.
     CertifiedError before() const;
-    // Of the layer's error, what should be left, or would be with so many times the samples.
-    double left(double samples = 1.0) const;
+    // The part of it that is above zero in each band.
+    double found() const;
+    // What should be left of an error of the layer, relative to it, or would be with so many times the samples. What
+    // the samples have not found of it is detail below their noise, which stays.
+    double left(double error, double samples = 1.0) const;
 };
 
 struct Correction {

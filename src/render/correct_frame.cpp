@@ -22,25 +22,43 @@ constexpr double kAim = 0.95;
 // So many that sums over them are normally distributed.
 constexpr std::size_t kManyPixels = 1 << 16;
 
-// Parts of the picture's squared error, by the error model, that are those of the corrected layers. The first samples
+// A layer's error before the correction: what the model expects, and what the samples measured.
+ExpectedError before(ExpectedError error, const CorrectedLayer& layer) {
+    const CertifiedError found = layer.before();
+    const BelievedError measured = believed_error(error, &found);
+    if (error.spread > 0.0 && measured.interval.low > 0.0) {
+        error.error = measured.error;
+        error.spread = std::log(measured.interval.high / measured.interval.low) / (2.0 * half_width(kManyPixels));
+    }
+    return error;
+}
+
+// Of a corrected layer, by the error model: its error, and its part of the picture's squared error. The first samples
 // are too few to tell it better: where they have heavy tails, they find too little most of the time.
-std::vector<double> squared_errors(const Correction& correction, const RenderedFrame& frame, const DrawInput& input) {
-    std::vector<double> out;
+struct LayerError {
+    double error = 0.0, square_of_picture = 0.0;
+};
+
+std::vector<LayerError> layer_errors(const Correction& correction, const RenderedFrame& frame, const DrawInput& input) {
+    std::vector<LayerError> out;
     for (const CorrectedLayer& layer : correction.layers) {
-        const auto alone = [&](ExpectedError& e) { e.error *= e.cell == layer.name ? 1.0 : 0.0; };
+        double own = 0.0;
+        const auto alone = [&](ExpectedError& e) { e.error = e.cell == layer.name ? own = e.error : 0.0; };
         const double error =
             expected_errors(frame.image, {input.shot, input.medium, input.plan}, frame.statistics, alone)[0].error;
-        out.push_back(error * error);
+        out.push_back({own > 0.0 ? own : error, error * error});
     }
     return out;
 }
 
 // How many times the samples that there are leave no more than `wanted`; at most `most`.
-double samples_for(double wanted, const Correction& correction, const std::vector<double>& squares, double most) {
+double samples_for(double wanted, const Correction& correction, const std::vector<LayerError>& errors, double most) {
     const auto square_left = [&](double samples) {
         double sum = 0.0;
-        for (std::size_t k = 0; k < squares.size(); ++k)
-            sum += squares[k] * std::pow(correction.layers[k].left(samples), 2);
+        for (std::size_t k = 0; k < errors.size(); ++k)
+            if (errors[k].error > 0.0)
+                sum += errors[k].square_of_picture *
+                       std::pow(correction.layers[k].left(errors[k].error, samples) / errors[k].error, 2);
         return sum;
     };
     double enough = most, too_few = 1.0;
@@ -68,7 +86,7 @@ void sample(Corrector& corrector, const RenderedFrame& frame, const DrawInput& i
         return;
     corrector.sample(first, progress);
     const Correction first_look = corrector.measured();
-    const double times = samples_for(kAim * asked.lighting.error, first_look, squared_errors(first_look, frame, input),
+    const double times = samples_for(kAim * asked.lighting.error, first_look, layer_errors(first_look, frame, input),
                                      double(most) / double(first));
     if (const double more = (times - 1.0) * double(first); more >= 2.0)
         corrector.sample(static_cast<std::size_t>(more), progress);
@@ -80,7 +98,8 @@ void note(const Correction& correction, StageCost& cost) {
         nlohmann::ordered_json gains = nlohmann::ordered_json::array();
         for (const ResidualBand& band : layer.bands)
             gains.push_back(band.gain());
-        cost.detail[layer.name.empty() ? "picture" : layer.name] = {{"left", layer.left()}, {"gains", gains}};
+        cost.detail[layer.name.empty() ? "picture" : layer.name] = {
+            {"error_found", layer.found()}, {"left_of_that", layer.left(0.0)}, {"gains", gains}};
     }
 }
 
@@ -90,13 +109,8 @@ ExpectedError error_left(ExpectedError error, const Correction& correction) {
     const CorrectedLayer* const layer = correction.of(error.cell);
     if (!layer)
         return error;
-    const CertifiedError before = layer->before();
-    const BelievedError measured = believed_error(error, &before);
-    if (error.spread > 0.0 && measured.interval.low > 0.0) {
-        error.error = measured.error;
-        error.spread = std::log(measured.interval.high / measured.interval.low) / (2.0 * half_width(kManyPixels));
-    }
-    error.error *= layer->left();
+    error = before(error, *layer);
+    error.error = layer->left(error.error);
     return error;
 }
 

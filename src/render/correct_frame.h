@@ -16,7 +16,7 @@ bool may_be_corrected(const Shot& asked, const Plan& plan);
 Correction correct_frame(RenderedFrame& frame, const DrawInput& input, const Shot& asked, Progress& progress);
 
 // What is expected of a layer's error when the model expects `error` of the lights: what the correction's samples
-// measured, by Bayes' theorem (certificate/believed_error.h), and what it left of that.
+// measured, by Bayes' theorem (certificate/believed_error.h), and what they left of that.
 ExpectedError error_left(ExpectedError error, const Correction& correction);
 
 }  // namespace brisance

@@ -124,10 +124,20 @@ TEST(Corrector, SaysWhatItLeaves) {
     const double before = error(image, "MM");
     const Correction correction = correct(image, 80000);
     ASSERT_TRUE(correction.of("MM"));
-    const double left = correction.of("MM")->left();
-    EXPECT_GT(error(image, "MM"), 0.5 * left * before);
-    EXPECT_LT(error(image, "MM"), 2.0 * left * before);
-    EXPECT_LT(correction.of("MM")->left(4.0), left);
+    const CorrectedLayer& layer = *correction.of("MM");
+    const double left = layer.left(before);
+    EXPECT_GT(error(image, "MM"), 0.5 * left);
+    EXPECT_LT(error(image, "MM"), 2.0 * left);
+    EXPECT_LT(layer.left(before, 4.0), left);
+}
+
+// Detail below the noise of the samples is not found, and stays: an error is not small because nothing was found of it.
+TEST(Corrector, LeavesWhatItHasNotFound) {
+    Image image = spoiled();
+    const CorrectedLayer layer = *correct(image, 2000).of("MM");
+    EXPECT_GT(layer.found(), 0.0);
+    EXPECT_NEAR(std::pow(layer.left(0.5), 2.0) - std::pow(layer.left(0.4), 2.0), 0.09, 1e-6);
+    EXPECT_LT(layer.left(0.0), layer.found());
 }
 
 // Of a right picture there is nothing to say: what noise does to it is far less than a path-traced picture of as many

@@ -212,6 +212,26 @@ ToleratedInterpolation interpolation_of(LatticeErrors& errors, const LightingSet
     return {kShareOfInterpolation * settings.error, more / settings.error};
 }
 
+// Both as a level and a share of the next in one number.
+float position(const LightingLevel& level) {
+    return float(level.level) + level.share_of_coarser;
+}
+
+// A hundredth of the light is not worth a lattice of its own: both differ by some percent, so that this leaves steps of
+// less than a thousandth.
+float without_traces(float level) {
+    constexpr float kTrace = 0.01f;
+    const float nearest = std::round(level);
+    return std::abs(level - nearest) < kTrace ? nearest : level;
+}
+
+LightingLevel without_traces(const LightingLevel& light) {
+    const float at = without_traces(position(light));
+    if (at > position(light))
+        return {light.level + 1, 0.0f, light.error_of_coarser};
+    return {light.level, at - float(light.level), light.error, light.error_of_coarser};
+}
+
 LightingLevel level_of_first(LatticeErrors& errors, const LightingSettings& settings) {
     if (settings.lattice_level >= 0 || settings.interpolation >= 0.0f)
         return {std::max(0, settings.lattice_level)};
@@ -223,30 +243,17 @@ LightingLevel level_of_first(LatticeErrors& errors, const LightingSettings& sett
     for (;;) {
         const float next = errors.of_first(level + 1);
         if (next > allowed)
-            return between(level, error, next, allowed);
+            return without_traces(between(level, error, next, allowed));
         error = next;
         if (++level == errors.widest_of_first())
             return {level, 0.0f, error};
     }
 }
 
-// A hundredth of the light is not worth a lattice of its own: both differ by some percent, so that this leaves steps of
-// less than a thousandth.
-float without_traces(float level) {
-    constexpr float kTrace = 0.01f;
-    const float nearest = std::round(level);
-    return std::abs(level - nearest) < kTrace ? nearest : level;
-}
-
 // What the voxels of the smoke's light may add. Where more than usual is allowed, other errors grow, too.
 float allowed_of_smoke(float error) {
     constexpr float kUsual = 0.02f;
     return error <= kUsual ? error : std::sqrt(kUsual * error);
-}
-
-// Both as a level and a share of the next in one number.
-float position(const LightingLevel& level) {
-    return float(level.level) + level.share_of_coarser;
 }
 
 // The widest voxels that the error of the smoke's light allows, from a level on.
