@@ -29,25 +29,24 @@ LitPoint lit_point(const SurfaceReceiver& receiver) {
 // Candidates for a batch on one side of what surfaces hide.
 class Candidates {
 public:
-    void add(const VisibilityRatio::Target& target, float weight) { all_.push_back({target, sum_ += weight, weight}); }
-    bool empty() const { return all_.empty(); }
+    void add(const VisibilityRatio::Target& target, float weight) {
+        targets_.push_back(target);
+        weights_.push_back(weight);
+        numbers_.add(weight);
+    }
+    bool empty() const { return targets_.empty(); }
 
     // The i-th of n, each in proportion to its weight: systematic resampling with the offset u. Its power is such that
     // n of them stand for all candidates.
     VisibilityRatio::Target choose(std::size_t i, std::size_t n, float u) const {
-        const float at = (float(i) + u) / float(n) * sum_;
-        const auto found = std::upper_bound(all_.begin(), all_.end() - 1, at,
-                                            [](float value, const Candidate& c) { return value < c.passed; });
-        return {found->target.point, found->target.power * sum_ / (float(n) * found->weight)};
+        const std::size_t k = numbers_.at((float(i) + u) / float(n));
+        return {targets_[k].point, targets_[k].power * numbers_.sum() / (float(n) * weights_[k])};
     }
 
 private:
-    struct Candidate {
-        VisibilityRatio::Target target;
-        float passed, weight;  // `passed`: running sum of weights
-    };
-    std::vector<Candidate> all_;
-    float sum_ = 0.0f;
+    std::vector<VisibilityRatio::Target> targets_;
+    std::vector<float> weights_;
+    WeightedNumbers numbers_;
 };
 
 // Half a batch of each side, in turn, which stand for a batch of their `batches`.
@@ -67,17 +66,16 @@ VisibilityRatio::Targets resampled(const Candidates& seen, const Candidates& hid
 
 }  // namespace
 
+std::size_t WeightedNumbers::at(float u) const {
+    return std::size_t(std::upper_bound(passed_.begin(), passed_.end() - 1, u * sum_) - passed_.begin());
+}
+
 void WeightedTargets::add(std::span<const VisibilityRatio::Draw> draws) {
     for (const VisibilityRatio::Draw& d : draws)
         if (d.weight > 0.0f) {
             points_.push_back(d.point);
-            passed_.push_back(sum_ += d.weight);
+            numbers_.add(d.weight);
         }
-}
-
-const vec3& WeightedTargets::at(float u) const {
-    const auto found = std::upper_bound(passed_.begin(), passed_.end() - 1, u * sum_);
-    return points_[std::size_t(found - passed_.begin())];
 }
 
 TargetPool::TargetPool(const VisibilityRatio& ratio, const SurfaceReceiver& first, Reaches reaches, std::size_t batches,

@@ -21,17 +21,28 @@ namespace brisance {
 
 constexpr std::size_t kTargetsDrawn = 2 * VisibilityRatio::kDraws;
 
+// Numbers 0, 1, ... in proportion to their weights.
+class WeightedNumbers {
+public:
+    void add(float weight) { passed_.push_back(sum_ += weight); }
+    float sum() const { return sum_; }
+    std::size_t at(float u) const;  // u in [0, 1); the sum is above zero
+
+private:
+    std::vector<float> passed_;  // running sum
+    float sum_ = 0.0f;
+};
+
 // Points drawn for a place, to be chosen in proportion to the light from them.
 class WeightedTargets {
 public:
     void add(std::span<const VisibilityRatio::Draw> draws);
-    bool empty() const { return !(sum_ > 0.0f); }
-    const vec3& at(float u) const;  // u in [0, 1); not empty
+    bool empty() const { return points_.empty(); }
+    const vec3& at(float u) const { return points_[numbers_.at(u)]; }  // u in [0, 1); not empty
 
 private:
     std::vector<vec3> points_;
-    std::vector<float> passed_;  // running sum of weights
-    float sum_ = 0.0f;
+    WeightedNumbers numbers_;
 };
 
 // Points drawn for a place in batches, of which receivers around take some each, in an order of their own.

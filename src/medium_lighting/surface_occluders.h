@@ -15,6 +15,12 @@ namespace brisance {
 // shows.
 constexpr vec3 kBesidePlanes{0.0013f, 0.0017f, 0.0023f};  // of a voxel
 
+// What lies on a surface has to be so far above it [m] to be on the right side of it all the same: a light in a ceiling
+// would be moved through it.
+inline float clear_of_surfaces(float spacing) {
+    return 2.0f * glm::length(kBesidePlanes) * spacing;
+}
+
 class SurfaceOccluders : public Occluders {
 public:
     // `spacing`: of the volume's voxels [m].

@@ -236,7 +236,7 @@ void ManyLights::light_medium(const DrawInput& input, Statistics& statistics, Pr
         const float cast = plan.reflected_by_particles;
         const VirtualLights* const shining = cast < 1.0f ? virtual_lights_.get() : nullptr;
         if (shining)
-            reflecting_ = points_of_virtual_lights(*shining, 1.0f - cast);
+            reflecting_ = points_of_virtual_lights(*shining, 1.0f - cast, input.medium.spacing);
         cast_.emplace(paths_->direct(), shining, input.shot.virtual_lights, cast, samples_of(input.camera.settings()));
     }
     medium_ = std::make_unique<LitMedium>(input, plan, bounces, reflected(), input.shot.output.bounce_layers,

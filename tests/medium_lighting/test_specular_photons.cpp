@@ -167,7 +167,7 @@ TEST(SpecularPhotons, CarryTheShareThatVirtualLightsLeave) {
     }
     const auto power = [&](float share) {
         double sum = 0.0;
-        for (const PointLights& side : points_of_virtual_lights(lights, share))
+        for (const PointLights& side : points_of_virtual_lights(lights, share, 0.1f))
             for (const Rgb& intensity : side.intensity)
                 sum += luminance(intensity);
         return sum;

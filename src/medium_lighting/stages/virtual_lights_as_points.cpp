@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "medium/sh.h"
+#include "medium_lighting/surface_occluders.h"
 
 namespace brisance {
 
@@ -18,7 +19,8 @@ constexpr vec3 kAside(0.517f, 0.382f, 0.766f);
 
 }  // namespace
 
-PointsOfSides points_of_virtual_lights(const VirtualLights& lights, float share) {
+PointsOfSides points_of_virtual_lights(const VirtualLights& lights, float share, float spacing) {
+    const double clear = clear_of_surfaces(spacing);
     PointsOfSides sides;
     for (const VirtualLight& light : lights.lights()) {
         const Rgb flux = share * light.base_flux;
@@ -26,8 +28,8 @@ PointsOfSides points_of_virtual_lights(const VirtualLights& lights, float share)
             continue;
         const vec3 normal(light.frame.normal);
         PointLights& out = sides[glm::dot(normal, kAside) < 0.0f];
-        out.position.emplace_back(light.position +
-                                  std::max(kAboveSurface * light.radius, light.clearance) * light.frame.normal);
+        out.position.emplace_back(light.position + std::max({kAboveSurface * light.radius, light.clearance, clear}) *
+                                                       light.frame.normal);
         out.intensity.push_back(flux / (4.0f * std::numbers::pi_v<float>));
         out.normal.push_back(normal);
         const auto basis = sh_basis(normal);
