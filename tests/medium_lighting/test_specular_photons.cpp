@@ -8,6 +8,7 @@
 #include "fixtures/sets.h"
 #include "medium_lighting/stages/specular_photons.h"
 #include "medium_lighting/stages/virtual_lights_as_points.h"
+#include "medium_lighting/surface_occluders.h"
 
 namespace brisance {
 namespace {
@@ -174,6 +175,39 @@ TEST(SpecularPhotons, CarryTheShareThatVirtualLightsLeave) {
     };
     ASSERT_GT(power(1.0f), 0.0);
     EXPECT_NEAR(power(0.25f), 0.25 * power(1.0f), 1e-4 * power(1.0f));
+}
+
+// However many there are, and so however close to their walls: of a wall that faces down as of one that faces up. Those
+// within a thousandth of a voxel of another wall may be behind that one.
+TEST(VirtualLightsAsPoints, AreBeforeTheirWalls) {
+    const Medium medium = thin_cube();
+    Scene scene;
+    scene.origin = medium.world_of_local(vec3(0.0f));
+    add_box(scene, vec3(-2), vec3(2), lambert(0.5f), true);
+    LightSettings lamp;
+    lamp.position = medium.world_of_local(vec3(0.1f, 0.2f, -0.3f));
+    lamp.power = Rgb(1.0f);
+    const Surroundings surroundings(std::move(scene), {lamp});
+    const DirectLight direct(medium, {}, &surroundings);
+    VirtualLightSettings settings;
+    settings.count = 4000;
+    settings.photons = 20000;
+    const PixelCamera camera{16, 16, [](double x, double y) {
+                                 return Ray{dvec3(0.1, 0.2, 1.8), glm::normalize(dvec3(x - 8.0, y - 8.0, -6.0))};
+                             }};
+    const VirtualLights lights(direct, camera, settings);
+    for (const float spacing : {0.02f, 0.1f, 0.5f}) {
+        const SurfaceOccluders walls(surroundings.intersector(), spacing);
+        std::size_t all = 0, hidden = 0;
+        for (const PointLights& side : points_of_virtual_lights(lights, 1.0f, spacing))
+            for (const vec3& p : side.position) {
+                const float far = glm::length(p);
+                hidden += walls.first_hit(p, -p / far, far) < far;
+                ++all;
+            }
+        ASSERT_GT(all, 1000u);
+        EXPECT_LT(double(hidden), 0.01 * double(all)) << spacing;
+    }
 }
 
 TEST(SpecularPhotons, IsNotWantedWithoutSurfacesOrLight) {
