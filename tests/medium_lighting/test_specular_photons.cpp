@@ -133,25 +133,39 @@ TEST(SpecularPhotons, ARoughFloorSendsWhatItsBsdfSays) {
     }
 }
 
-// Of walls that virtual lights hold, particles carry the share that the points of the lights leave, and of other places
-// all.
-TEST(SpecularPhotons, CarryTheShareThatVirtualLightsLeave) {
-    const Medium medium = thin_cube();
+// Of 4 m, around a lamp.
+Surroundings matt_room(const Medium& medium, const vec3& lamp_at) {
     Scene scene;
     scene.origin = medium.world_of_local(vec3(0.0f));
     add_box(scene, vec3(-2), vec3(2), lambert(0.5f), true);
     LightSettings lamp;
-    lamp.position = medium.world_of_local(vec3(0.4f, -0.3f, 1.5f));
+    lamp.position = medium.world_of_local(lamp_at);
     lamp.power = Rgb(1.0f);
-    const Surroundings surroundings(std::move(scene), {lamp});
-    const DirectLight direct(medium, {}, &surroundings);
+    return Surroundings(std::move(scene), {lamp});
+}
+
+VirtualLightSettings some_lights(int count, int photons) {
     VirtualLightSettings settings;
-    settings.count = 200;
-    settings.photons = 100000;
-    const PixelCamera camera{16, 16, [](double x, double y) {
-                                 return Ray{dvec3(0.1, 0.2, 1.8), glm::normalize(dvec3(x - 8.0, y - 8.0, -6.0))};
-                             }};
-    const VirtualLights lights(direct, camera, settings);
+    settings.count = count;
+    settings.photons = photons;
+    return settings;
+}
+
+// From under its ceiling.
+PixelCamera looking_down() {
+    return {16, 16, [](double x, double y) {
+                return Ray{dvec3(0.1, 0.2, 1.8), glm::normalize(dvec3(x - 8.0, y - 8.0, -6.0))};
+            }};
+}
+
+// Of walls that virtual lights hold, particles carry the share that the points of the lights leave, and of other places
+// all.
+TEST(SpecularPhotons, CarryTheShareThatVirtualLightsLeave) {
+    const Medium medium = thin_cube();
+    const Surroundings surroundings = matt_room(medium, {0.4f, -0.3f, 1.5f});
+    const DirectLight direct(medium, {}, &surroundings);
+    const VirtualLightSettings settings = some_lights(200, 100000);
+    const VirtualLights lights(direct, looking_down(), settings);
     const std::vector<std::uint8_t> needed(medium.lattice.node_count(), 1);
     const auto fluence = [&](const SpecularPhotons& cast) {
         const Gathered g = cast.on(medium, {&needed, std::nullopt, false, 0.0f});
@@ -181,21 +195,10 @@ TEST(SpecularPhotons, CarryTheShareThatVirtualLightsLeave) {
 // within a thousandth of a voxel of another wall may be behind that one.
 TEST(VirtualLightsAsPoints, AreBeforeTheirWalls) {
     const Medium medium = thin_cube();
-    Scene scene;
-    scene.origin = medium.world_of_local(vec3(0.0f));
-    add_box(scene, vec3(-2), vec3(2), lambert(0.5f), true);
-    LightSettings lamp;
-    lamp.position = medium.world_of_local(vec3(0.1f, 0.2f, -0.3f));
-    lamp.power = Rgb(1.0f);
-    const Surroundings surroundings(std::move(scene), {lamp});
+    const Surroundings surroundings = matt_room(medium, {0.1f, 0.2f, -0.3f});
     const DirectLight direct(medium, {}, &surroundings);
-    VirtualLightSettings settings;
-    settings.count = 4000;
-    settings.photons = 20000;
-    const PixelCamera camera{16, 16, [](double x, double y) {
-                                 return Ray{dvec3(0.1, 0.2, 1.8), glm::normalize(dvec3(x - 8.0, y - 8.0, -6.0))};
-                             }};
-    const VirtualLights lights(direct, camera, settings);
+    const VirtualLightSettings settings = some_lights(4000, 20000);
+    const VirtualLights lights(direct, looking_down(), settings);
     for (const float spacing : {0.02f, 0.1f, 0.5f}) {
         const SurfaceOccluders walls(surroundings.intersector(), spacing);
         std::size_t all = 0, hidden = 0;
