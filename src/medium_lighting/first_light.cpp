@@ -34,7 +34,7 @@ FirstLight first_light(const LitLattice& lattice, float share, Statistics& stati
         first = lattice.dark();
     }
     if ((input.reflected.lights || input.reflected.cast) && input.surfaces_on_medium) {
-        const Gathered arriving = light_from_surfaces(lattice, share, statistics, progress);
+        const Gathered arriving = light_from_surfaces(lattice, first, share, statistics, progress);
         out.sources.from_surfaces = lattice.source_function(arriving, LightOrigin::Outside);
         first.add(arriving);
     }

@@ -1,6 +1,7 @@
 // Light that mirrors reflect onto smoke.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <numeric>
 
@@ -52,7 +53,7 @@ TEST(SpecularPhotons, AMirrorCastsTheLightOfAnotherLamp) {
     ASSERT_FALSE(cast.empty());
     const std::size_t nodes = medium.lattice.node_count();
     const std::vector<std::uint8_t> needed(nodes, 1);
-    const Gathered g = cast.on(medium, {&needed, std::nullopt, true, 0.0f});
+    const Gathered g = cast.on(medium, {&needed, std::nullopt, true, 0.0f}).light;
     double sum = 0.0, expected = 0.0;
     dvec3 heading(0.0), expected_heading(0.0);
     for (std::size_t i = 0; i < nodes; ++i) {
@@ -118,7 +119,8 @@ TEST(SpecularPhotons, ARoughFloorSendsWhatItsBsdfSays) {
         settings.photons = 400000;
         const std::size_t nodes = medium.lattice.node_count();
         const std::vector<std::uint8_t> needed(nodes, 1);
-        const Gathered g = SpecularPhotons(direct, nullptr, settings).on(medium, {&needed, std::nullopt, false, 0.0f});
+        const Gathered g =
+            SpecularPhotons(direct, nullptr, settings).on(medium, {&needed, std::nullopt, false, 0.0f}).light;
         for (const double side : {-1.0, 1.0}) {
             const auto counts = [&](const dvec3& node) { return side * node.x > 0.05 && node.z > floor + 0.2; };
             double sum = 0.0;
@@ -168,7 +170,7 @@ TEST(SpecularPhotons, CarryTheShareThatVirtualLightsLeave) {
     const VirtualLights lights(direct, looking_down(), settings);
     const std::vector<std::uint8_t> needed(medium.lattice.node_count(), 1);
     const auto fluence = [&](const SpecularPhotons& cast) {
-        const Gathered g = cast.on(medium, {&needed, std::nullopt, false, 0.0f});
+        const Gathered g = cast.on(medium, {&needed, std::nullopt, false, 0.0f}).light;
         return std::accumulate(g.fluence.begin(), g.fluence.end(), 0.0);
     };
     const double all = fluence(SpecularPhotons(direct, nullptr, settings));
@@ -189,6 +191,63 @@ TEST(SpecularPhotons, CarryTheShareThatVirtualLightsLeave) {
     };
     ASSERT_GT(power(1.0f), 0.0);
     EXPECT_NEAR(power(0.25f), 0.25 * power(1.0f), 1e-4 * power(1.0f));
+}
+
+// Rounds of particles: the difference that the last one made tells the error of all of them, and the first that is
+// enough is the last.
+TEST(SpecularPhotons, RoundsTellTheirError) {
+    const Medium medium = thin_cube();
+    const Surroundings surroundings = matt_room(medium, {0.4f, -0.3f, 1.5f});
+    const DirectLight direct(medium, {}, &surroundings);
+    const std::vector<std::uint8_t> needed(medium.lattice.node_count(), 1);
+    const SpecularPhotons cast(direct, nullptr, VirtualLightSettings());
+    const auto total = [](const std::vector<float>& fluence) {
+        return std::accumulate(fluence.begin(), fluence.end(), 0.0);
+    };
+    struct Totals {
+        std::size_t particles;
+        std::vector<double> by_all, differences;
+    };
+    // Of one set of particles, in at most so many rounds after the first.
+    const auto cast_rounds = [&](int set, std::size_t most) {
+        Totals out{};
+        const SpecularPhotons::Cast found = cast.on(
+            medium, {&needed, std::nullopt, false, 0.0f}, 1.0f / 32.0f, set, [&](const SpecularPhotons::Found& so_far) {
+                out.by_all.push_back(total(so_far.by_all));
+                out.differences.push_back(out.by_all.back() - total(so_far.by_half));
+                return out.by_all.size() == most;
+            });
+        out.particles = found.particles;
+        const std::size_t nodes = medium.lattice.node_count();
+        double luminances = 0.0;
+        for (std::size_t i = 0; i < nodes; ++i)
+            luminances += luminance(
+                Rgb(found.light.fluence[i], found.light.fluence[nodes + i], found.light.fluence[2 * nodes + i]));
+        if (out.by_all.size() == most) {
+            EXPECT_NEAR(luminances / out.by_all.back(), 1.0, 1e-4) << "what is judged is what is returned";
+        }
+        return out;
+    };
+    const Totals all = cast_rounds(0, 99);
+    ASSERT_EQ(all.by_all.size(), 3u);
+    for (std::size_t k = 0; k < all.by_all.size(); ++k)
+        EXPECT_NEAR(double(cast_rounds(0, k + 1).particles), std::ldexp(double(all.particles), int(k) - 3), 8.0) << k;
+    // With 32 sets, the root mean squares of both have standard errors of an eighth.
+    constexpr int kSets = 32;
+    std::vector<double> sums;
+    double told = 0.0;
+    for (int set = 1; set <= kSets; ++set) {
+        const Totals first = cast_rounds(set, 1);
+        sums.push_back(first.by_all[0]);
+        told += first.differences[0] * first.differences[0] / kSets;
+    }
+    const double mean = std::accumulate(sums.begin(), sums.end(), 0.0) / kSets;
+    double variance = 0.0;
+    for (const double sum : sums)
+        variance += (sum - mean) * (sum - mean) / (kSets - 1);
+    EXPECT_NEAR(std::sqrt(told / variance), 1.0, 0.6);
+    // A round counts by its particles: more rounds have the same mean.
+    EXPECT_NEAR(all.by_all.back(), mean, 4.0 * std::sqrt(variance * (1.0 / kSets + 1.0 / 4.0)));
 }
 
 // However many there are, and so however close to their walls: of a wall that faces down as of one that faces up. Those

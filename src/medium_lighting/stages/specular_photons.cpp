@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "core/fixed_sums.h"
 #include "core/parallel.h"
@@ -27,6 +28,8 @@ constexpr float kPowerOfTrack = 1.0f / 1024.0f;
 constexpr double kAround = 2.0;
 // A set of them has at least so many, of fire and of emitters.
 constexpr std::size_t kLeastOfSet = 1024;
+// The first round is this part of all particles, or a least set.
+constexpr std::size_t kFirstRound = 16;
 // Of the numbers of streams: more than particles of a set.
 constexpr int kBitsOfSet = 40;
 
@@ -77,6 +80,7 @@ double part_by_particles(const DirectLight& scene, const VirtualLights* lights, 
 // Deposits along tracks through the medium.
 class SpecularPhotons::Tracks {
 public:
+    // `power`: of all particles of a round [W].
     Tracks(const Medium& medium, const LatticeRequest& request, double power)
         : medium_(medium),
           request_(request),
@@ -84,11 +88,19 @@ public:
           kinds_(1 + (request.eye ? 1 : 0) + (request.moments ? kShMoments : 0)),
           sums_(kinds_ * medium.lattice.node_count(), power * medium.spacing) {}
 
+    // Particles of the next round carry all power, and count by their number.
+    void begin_round(std::size_t particles) {
+        if (of_first_round_ == 0)
+            of_first_round_ = particles;
+        weight_ = double(particles) / double(of_first_round_);
+        weights_ += weight_;
+    }
+
     void add(const Ray& ray, double end, const Rgb& power) {
         const auto basis = sh_basis(vec3(ray.direction));
         track_lengths_.along(ray, end, [&](std::int64_t node, float length) {
             if ((*request_.needed)[node])
-                add_to(node, power * length, vec3(ray.direction), basis);
+                add_to(node, power * (float(weight_) * length), vec3(ray.direction), basis);
         });
     }
 
@@ -99,7 +111,7 @@ public:
         const auto read = [&](std::vector<float>& values, std::size_t first, std::size_t count) {
             for (std::size_t k = 0; k < count; ++k)
                 for (std::size_t i = 0; i < nodes; ++i) {
-                    const dvec3 sum = sums_.read(i * kinds_ + first + k) / double(medium_.voxel_volume);
+                    const dvec3 sum = mean(i * kinds_ + first + k);
                     for (int c = 0; c < 3; ++c)
                         values[(3 * k + c) * nodes + i] = float(sum[c]);
                 }
@@ -112,7 +124,16 @@ public:
         return out;
     }
 
+    std::vector<float> luminance_of_fluence() const {
+        std::vector<float> out(medium_.lattice.node_count());
+        parallel_for(
+            out.size(), [&](std::size_t i) { out[i] = luminance(Rgb(mean(i * kinds_))); }, kParticlesAtOnce);
+        return out;
+    }
+
 private:
+    dvec3 mean(std::size_t sum) const { return sums_.read(sum) / (weights_ * double(medium_.voxel_volume)); }
+
     void add_to(std::int64_t node, const Rgb& track, const vec3& direction,
                 const std::array<float, kShMoments>& basis) {
         std::size_t sum = std::size_t(node) * kinds_;
@@ -129,8 +150,10 @@ private:
     const Medium& medium_;
     const LatticeRequest& request_;
     TrackLengths track_lengths_;
-    std::size_t kinds_;  // of sums at each node: fluence, toward the camera, moments
-    FixedSums sums_;     // [W m]
+    std::size_t kinds_;                    // of sums at each node: fluence, toward the camera, moments
+    FixedSums sums_;                       // [W m]
+    std::size_t of_first_round_ = 0;       // particles
+    double weight_ = 1.0, weights_ = 0.0;  // of the round, and of all
 };
 
 SpecularPhotons::SpecularPhotons(const DirectLight& scene, const VirtualLights* lights,
@@ -138,11 +161,11 @@ SpecularPhotons::SpecularPhotons(const DirectLight& scene, const VirtualLights* 
     : scene_(scene), lights_(lights), seed_(settings.seed), share_(share) {
     if (!scene.lights_surfaces())
         return;
+    open_ = settings.photons == kAutomaticPhotons;
     // Of so many fewer, the noise is the same part of all light.
     if (const double part = part_by_particles(scene, lights, share); part > kUnsharedLeft)
-        particles_ = settings.photons == kAutomaticPhotons
-                         ? std::size_t(std::ceil(std::max(part, kLeastParticles) * most_automatic_photons(samples)))
-                         : std::size_t(settings.photons);
+        particles_ = open_ ? std::size_t(std::ceil(std::max(part, kLeastParticles) * most_automatic_photons(samples)))
+                           : std::size_t(settings.photons);
     if (empty())
         return;
     smoke_ = points_of_smoke(scene.field());
@@ -201,17 +224,38 @@ void SpecularPhotons::follow(std::uint64_t index, std::uint64_t stream, const Pa
         });
 }
 
-Gathered SpecularPhotons::on(const Medium& medium, const LatticeRequest& request, float share, int set) const {
-    const BoundingBall ball = ball_around(scene_);
-    const std::size_t count = particles(share);
-    const std::uint64_t first_stream = std::uint64_t(set) << kBitsOfSet;
-    const Particles particles(scene_, ball, count, around_smoke_);
-    Tracks tracks(medium, request, emitted_power(scene_, ball));
+void SpecularPhotons::trace(std::size_t count, std::uint64_t first_stream, Tracks& tracks) const {
+    const Particles particles(scene_, ball_around(scene_), count, around_smoke_);
+    tracks.begin_round(count);
     parallel_blocks(count, kParticlesAtOnce, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             follow(i, first_stream + i, particles, tracks);
     });
-    return tracks.fluence();
+}
+
+SpecularPhotons::Cast SpecularPhotons::on(const Medium& medium, const LatticeRequest& request, float share, int set,
+                                          const Enough& enough) const {
+    const std::size_t all = particles(share);
+    const std::uint64_t first_stream = std::uint64_t(set) << kBitsOfSet;
+    Tracks tracks(medium, request, emitted_power(scene_, ball_around(scene_)));
+    std::size_t traced = 0;
+    const auto trace_up_to = [&](std::size_t count) {
+        trace(count - traced, first_stream + traced, tracks);
+        traced = count;
+    };
+    if (enough && open_) {
+        const std::size_t first = std::max(all / kFirstRound, std::min(all, kLeastOfSet));
+        trace_up_to(first);
+        for (Found found{tracks.luminance_of_fluence(), {}}; 2 * traced + first <= all;) {
+            trace_up_to(2 * traced);
+            found.by_half = std::exchange(found.by_all, tracks.luminance_of_fluence());
+            if (enough(found))
+                return {tracks.fluence(), traced};
+        }
+    }
+    if (traced < all)
+        trace_up_to(all);
+    return {tracks.fluence(), traced};
 }
 
 }  // namespace brisance
