@@ -20,30 +20,46 @@ float rounded(float x, float steps) {
     return std::round(x * steps) / steps;
 }
 
+// What is no metal scatters by its coat, whatever its base colour, and by its base in proportion to that: lights whose
+// materials differ in it alone share tables. Textures change the colour from light to light.
+bool is_coated_base(const SurfaceMaterial& m) {
+    return m.metallic == 0.0f;
+}
+
+SurfaceMaterial white(SurfaceMaterial m) {
+    m.base_colour = Rgb(1.0f);
+    return m;
+}
+
+// All but what is known of a white base.
+Lobes lobes_beside_base(const SurfaceMaterial& m) {
+    return is_coated_base(m) ? Lobes::Specular : Lobes::All;
+}
+
 // Base colours of metal in even steps of their square root: what is dark is scaled up again (LightSet::reflected).
 SurfaceMaterial rounded(SurfaceMaterial m) {
+    m.metallic = rounded(m.metallic, 32.0f);
     for (int c = 0; c < 3; ++c) {
         const float root = rounded(std::sqrt(m.base_colour[c]), 32.0f);
-        m.base_colour[c] = m.metallic == 1.0f ? std::max(root * root, 1e-3f) : rounded(m.base_colour[c], 64.0f);
+        if (!is_coated_base(m))
+            m.base_colour[c] = m.metallic == 1.0f ? std::max(root * root, 1e-3f) : rounded(m.base_colour[c], 64.0f);
         m.specular_colour[c] = rounded(m.specular_colour[c], 32.0f);
     }
-    m.metallic = rounded(m.metallic, 32.0f);
     m.roughness = rounded(m.roughness, 32.0f);
     m.specular = rounded(m.specular, 32.0f);
     return m;
 }
 
 std::array<float, 10> key_of(const SurfaceMaterial& m) {
-    return {m.base_colour.x,     m.base_colour.y,     m.base_colour.z,
-            m.specular_colour.x, m.specular_colour.y, m.specular_colour.z,
-            m.metallic,          m.roughness,         m.ior,
-            m.specular};
+    const Rgb base = is_coated_base(m) ? Rgb(0.0f) : m.base_colour;
+    return {base.x,     base.y,      base.z, m.specular_colour.x, m.specular_colour.y, m.specular_colour.z,
+            m.metallic, m.roughness, m.ior,  m.specular};
 }
 
 // Mean of the BSDF (without cosine) between texels, by one direction in each quarter of either.
 class Reflection {
 public:
-    Reflection(const SurfaceMaterial& material, int side) : bsdf_(material, {}), side_(side) {}
+    Reflection(const SurfaceMaterial& material, Lobes lobes, int side) : bsdf_(material, {}, lobes), side_(side) {}
 
     // For `in`, to all directions: with lobes that are narrower than texels scaled to the power that they reflect,
     // which points of texels may miss or hit by their peaks (at grazing angles 1.9 times of it at a roughness of 0.3).
@@ -107,23 +123,30 @@ private:
     int side_;
 };
 
-// E[f]^2 / E[f^2] of luminances, over directions in proportion to their cosine, for directions of each cosine.
-std::array<float, Profiles::kCosines> shares_of_photons(const SurfaceMaterial& material) {
+// Of luminances, over directions in proportion to their cosine, for directions of each cosine.
+Profiles::Moments moments_of_photons(const SurfaceMaterial& material) {
     constexpr int kSide = 16;
-    const Bsdf bsdf(material, {});
-    std::array<float, Profiles::kCosines> out{};
+    const Bsdf coat(material, {}, lobes_beside_base(material)), base(white(material), {}, Lobes::Base);
+    const double has_base = is_coated_base(material) ? 1.0 : 0.0;
+    Profiles::Moments out{};
     for (std::size_t i = 0; i < out.size(); ++i) {
         const double z = (double(i) + 0.5) / Profiles::kCosines;
         const dvec3 wo(std::sqrt(1.0 - z * z), 0.0, z);
-        double mean = 0.0, square = 0.0, weight = 0.0;
+        double weight = 0.0;
+        Profiles::MomentsOfCosine& sum = out[i];
         for (int t = 0; t < kSide * kSide; ++t) {
             const dvec3 wi = hemisphere_of_square((t % kSide + 0.5) / kSide, (t / kSide + 0.5) / kSide);
-            const double scattered = luminance(bsdf.evaluate(wo, wi));  // f times cosine
-            mean += scattered;
-            square += scattered * scattered / wi.z;
+            const double by_coat = luminance(coat.evaluate(wo, wi)),  // f times cosine
+                by_base = has_base * luminance(base.evaluate(wo, wi));
+            sum.coat += by_coat;
+            sum.base += by_base;
+            sum.coat_square += by_coat * by_coat / wi.z;
+            sum.base_square += by_base * by_base / wi.z;
+            sum.product += by_coat * by_base / wi.z;
             weight += wi.z;
         }
-        out[i] = square > 0.0 ? float(std::min(1.0, mean * mean / (square * weight))) : 1.0f;
+        for (double* const moment : {&sum.coat, &sum.base, &sum.coat_square, &sum.base_square, &sum.product})
+            *moment /= weight;
     }
     return out;
 }
@@ -131,13 +154,52 @@ std::array<float, Profiles::kCosines> shares_of_photons(const SurfaceMaterial& m
 using Group = std::vector<std::size_t>;  // lights of one material
 
 // All pairs, [in][out].
-std::vector<Rgb> table_of(const Reflection& reflection, std::size_t texels) {
+std::vector<Rgb> table_of(const Reflection& reflection, int side) {
+    const std::size_t texels = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
     std::vector<Rgb> table(texels * texels);
     parallel_for(texels, [&](std::size_t in) {
         reflection.from(in, [&](std::size_t out, const Rgb& f) { table[in * texels + out] = f; });
     });
     return table;
 }
+
+// What the materials of a group reflect.
+class GroupReflection {
+public:
+    GroupReflection(const SurfaceMaterial& m, int side, bool by_table)
+        : texels_(static_cast<std::size_t>(side) * static_cast<std::size_t>(side)),
+          coated_(is_coated_base(m)),
+          beside_base_(m, lobes_beside_base(m), side),
+          base_(white(m), Lobes::Base, side) {
+        if (!by_table)
+            return;
+        table_beside_base_ = table_of(beside_base_, side);
+        if (coated_)
+            table_of_base_ = table_of(base_, side);
+    }
+
+    // Adds to all texels what a material of the group reflects of light from the texel `in`.
+    void add(const SurfaceMaterial& m, std::size_t in, const Rgb& irradiance, Rgb* map) const {
+        add(beside_base_, table_beside_base_, in, irradiance, map);
+        if (coated_)
+            add(base_, table_of_base_, in, irradiance * m.base_colour, map);
+    }
+
+private:
+    void add(const Reflection& reflection, const std::vector<Rgb>& table, std::size_t in, const Rgb& irradiance,
+             Rgb* map) const {
+        const auto add_to = [&](std::size_t out, const Rgb& f) { map[out] += irradiance * f; };
+        if (table.empty())
+            return reflection.from(in, add_to);
+        for (std::size_t out = 0; out < texels_; ++out)
+            add_to(out, table[in * texels_ + out]);
+    }
+
+    std::size_t texels_;
+    bool coated_;
+    Reflection beside_base_, base_;                       // `base_` is white
+    std::vector<Rgb> table_beside_base_, table_of_base_;  // empty: lights are too few
+};
 
 }  // namespace
 
@@ -157,23 +219,16 @@ Profiles::Profiles(std::span<VirtualLight> lights, const LightAccounts& accounts
     for (const auto& [key, group] : groups) {
         for (const std::size_t i : group)
             arrived_[static_cast<std::size_t>(lights[i].profile)] = {accounts.photons(i), accounts.mean_weight(i),
-                                                                     shares_.size()};
-        shares_.push_back(shares_of_photons(lights[group.front()].material));
-        const Reflection reflection(lights[group.front()].material, resolution);
-        const bool by_table = group.size() >= kWorthTable;
-        const std::vector<Rgb> table = by_table ? table_of(reflection, texels) : std::vector<Rgb>{};
+                                                                     moments_.size()};
+        moments_.push_back(moments_of_photons(lights[group.front()].material));
+        const GroupReflection reflection(lights[group.front()].material, resolution, group.size() >= kWorthTable);
         parallel_for(group.size(), [&, &group = group](std::size_t g) {
             const VirtualLight& light = lights[group[g]];
             Rgb* const map = texels_.data() + static_cast<std::size_t>(light.profile) * texels;
             for (std::size_t in = 0; in < texels; ++in) {
                 const Rgb irradiance = accounts.texel(group[g], in) / float(light.area);
-                if (irradiance == Rgb(0.0f))
-                    continue;
-                if (by_table)
-                    for (std::size_t out = 0; out < texels; ++out)
-                        map[out] += irradiance * table[in * texels + out];
-                else
-                    reflection.from(in, [&](std::size_t out, const Rgb& f) { map[out] += irradiance * f; });
+                if (irradiance != Rgb(0.0f))
+                    reflection.add(light.material, in, irradiance, map);
             }
         });
     }
@@ -206,7 +261,10 @@ Rgb Profiles::radiance(const VirtualLight& light, const dvec3& toward) const {
 Profiles::Behind Profiles::photons_behind(const VirtualLight& light, double cosine) const {
     const Arrived& arrived = arrived_[static_cast<std::size_t>(light.profile)];
     const int step = std::clamp(static_cast<int>(cosine * kCosines), 0, kCosines - 1);
-    const double share = shares_[arrived.material][static_cast<std::size_t>(step)];
+    const MomentsOfCosine& m = moments_[arrived.material][static_cast<std::size_t>(step)];
+    const double colour = luminance(light.material.base_colour), mean = m.coat + colour * m.base,
+                 square = m.coat_square + colour * (2.0 * m.product + colour * m.base_square);
+    const double share = square > 0.0 ? std::min(1.0, mean * mean / square) : 1.0;
     return {arrived.photons * share, arrived.one * share};
 }
 

@@ -17,7 +17,7 @@ class Profiles {
 public:
     Profiles() = default;
     // Of the lights that have one (profile >= 0, numbered in order). Rounds their materials a little, so that lights of
-    // similar materials share one table of reflection.
+    // similar materials share tables of reflection; base colours of what is no metal stay as they are.
     Profiles(std::span<VirtualLight> lights, const LightAccounts& accounts, int resolution);
 
     // Between texels linear [W/(m^2 sr)]. `toward`: unit, world.
@@ -31,6 +31,12 @@ public:
         double photons = 0.0, one = 0.0;  // and what one photon of the light adds to them
     };
     Behind photons_behind(const VirtualLight& light, double cosine) const;
+
+    // Means of f and f^2: of the coat, of a white base beside it, and their product. A metal is all coat.
+    struct MomentsOfCosine {
+        double coat = 0.0, base = 0.0, coat_square = 0.0, base_square = 0.0, product = 0.0;
+    };
+    using Moments = std::array<MomentsOfCosine, kCosines>;  // by cosine, in even steps
 
     // Reflected power over area [W/m^2], and the largest radiance.
     Rgb exitance(const VirtualLight& light) const;
@@ -49,11 +55,10 @@ private:
 
     std::size_t side_ = 0;
     std::vector<Rgb> texels_;
-    using Shares = std::array<float, kCosines>;  // E[f]^2 / E[f^2] by cosine, in even steps
-    std::vector<Shares> shares_;                 // of materials
+    std::vector<Moments> moments_;  // of materials
     struct Arrived {
         double photons = 0.0, one = 0.0;
-        std::size_t material = 0;  // of shares_
+        std::size_t material = 0;  // of moments_
     };
     std::vector<Arrived> arrived_;  // by profile
 };
