@@ -1,6 +1,7 @@
 #include "medium_lighting/stages/surface_light.h"
 
 #include <cmath>
+#include <optional>
 
 #include "core/rng.h"
 #include "core/stopwatch.h"
@@ -136,10 +137,13 @@ Gathered light_from_surfaces(const LitLattice& lattice, const Gathered& first, f
         add_virtual_lights(*reflected.lights, lattice, arriving, stage, progress);
     if (reflected.cast) {
         const Stopwatch particles;
-        const CameraLines lines(lattice, first, arriving);
-        const SpecularPhotons::Cast cast =
-            reflected.cast->on(lattice.medium(), lattice.request(), share, lattice.level(),
-                               [&](const SpecularPhotons::Found& found) { return lines.hardly_err_by(found); });
+        std::optional<CameraLines> lines;  // drawn when they are asked
+        const SpecularPhotons::Cast cast = reflected.cast->on(
+            lattice.medium(), lattice.request(), share, lattice.level(), [&](const SpecularPhotons::Found& found) {
+                if (!lines)
+                    lines.emplace(lattice, first, arriving);
+                return lines->hardly_err_by(found);
+            });
         arriving.add(cast.light);
         stage.detail["particles"] = cast.particles;
         stage.detail["particle_seconds"] = particles.seconds();
