@@ -10,6 +10,7 @@
 #include "medium_lighting/stages/specular_photons.h"
 #include "medium_lighting/stages/virtual_lights_as_points.h"
 #include "medium_lighting/surface_occluders.h"
+#include "scattering/multiple_scattering.h"
 
 namespace brisance {
 namespace {
@@ -218,11 +219,9 @@ TEST(SpecularPhotons, RoundsTellTheirError) {
                 return out.by_all.size() == most;
             });
         out.particles = found.particles;
-        const std::size_t nodes = medium.lattice.node_count();
         double luminances = 0.0;
-        for (std::size_t i = 0; i < nodes; ++i)
-            luminances += luminance(
-                Rgb(found.light.fluence[i], found.light.fluence[nodes + i], found.light.fluence[2 * nodes + i]));
+        for (const Rgb& fluence : fluence_at_nodes(found.light, needed))
+            luminances += luminance(fluence);
         if (out.by_all.size() == most) {
             EXPECT_NEAR(luminances / out.by_all.back(), 1.0, 1e-4) << "what is judged is what is returned";
         }

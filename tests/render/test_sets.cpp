@@ -133,6 +133,44 @@ TEST(Sets, DoNotKnowHowManyThreadsThereAre) {
     EXPECT_EQ(one, pixels(8));
 }
 
+// Particles that bring light of surfaces to the smoke end sooner where more error is allowed, whatever the number of
+// threads. As many as a shot states are traced.
+TEST(Sets, DoNotKnowMoreOfLightOnSmokeThanIsAsked) {
+    Recipe recipe = glowing_ball(12, 3.0f);
+    recipe.settings.smoke.albedo = Rgb(0.8f);
+    const Medium medium = make_medium(recipe);
+    std::vector<LightSettings> bright = lamps();  // beside which the fire is weak
+    bright.front().power = Rgb(2000.0f);
+    const Surroundings surroundings(stage(medium), bright);
+    const auto draw = [&](double error, int photons, int threads) {
+        Shot shot = shot_of(RenderMethod::LightingGrid);
+        shot.camera.samples_per_axis = 1;
+        shot.virtual_lights.count = 0;  // particles bring all of it
+        shot.virtual_lights.photons = photons;
+        shot.lighting.error = float(error);
+        shot.correction.samples = 0;
+        const ThreadLimit limit(threads);
+        Progress silent;
+        return render_medium(shot, medium, silent, &surroundings);
+    };
+    const auto particles = [](const RenderedFrame& frame) {
+        for (const StageCost& stage : frame.statistics.stages)
+            if (stage.name == "light from surfaces (MS)")
+                return stage.detail["particles"].get<std::size_t>();
+        return std::size_t(0);
+    };
+    const RenderedFrame rough = draw(0.2, kAutomaticPhotons, 2), fine = draw(0.01, kAutomaticPhotons, 2);
+    const auto all = std::size_t(kManyPhotons);  // of so small a picture
+    std::printf("%zu and %zu particles of %zu\n", particles(rough), particles(fine), all);
+    EXPECT_LT(particles(rough), all / 4);
+    EXPECT_GT(particles(fine), 2 * particles(rough));
+    EXPECT_EQ(rough.image.layer("MS").pixels, draw(0.2, kAutomaticPhotons, 1).image.layer("MS").pixels);
+    EXPECT_EQ(particles(draw(0.2, 20000, 2)), 20000u);
+    const double ms = whole(fine.image.layer("MS")).sum;
+    ASSERT_GT(ms, 0.0);
+    EXPECT_NEAR(whole(rough.image.layer("MS")).sum, ms, 0.1 * ms);
+}
+
 // Without a volume nothing of one is planned or built, and without light nothing at all.
 TEST(Sets, WhatIsNotThereIsNotPlanned) {
     const Medium nothing;

@@ -1,9 +1,11 @@
 // Profiles of lights whose materials differ in their base colour.
 #include <gtest/gtest.h>
 
+#include <numbers>
 #include <vector>
 
 #include "virtual_lights/flux/octahedral_profiles.h"
+#include "virtual_lights/octahedral_map.h"
 
 namespace brisance {
 namespace {
@@ -17,9 +19,11 @@ SurfaceMaterial coated(const Rgb& base, float roughness) {
     return m;
 }
 
-// Lights of a square metre of these materials, on each of which the same light falls from two sides.
+// Lights of a square metre of these materials, on each of which one watt falls from each of these sides.
 struct Lit {
-    explicit Lit(const std::vector<SurfaceMaterial>& materials) {
+    explicit Lit(const std::vector<SurfaceMaterial>& materials,
+                 const std::vector<dvec3>& from = {glm::normalize(dvec3(0.3, 0.2, 0.9)),
+                                                   glm::normalize(dvec3(-0.9, 0.1, 0.3))}) {
         for (const SurfaceMaterial& m : materials) {
             VirtualLight light;
             light.material = m;
@@ -28,10 +32,9 @@ struct Lit {
             lights.push_back(light);
         }
         LightAccounts accounts(lights, kSide, 3.0 * double(lights.size()));
-        for (std::size_t i = 0; i < lights.size(); ++i) {
-            accounts.add(i, glm::normalize(dvec3(0.3, 0.2, 0.9)), 1.0, Rgb(1.0f, 0.5f, 0.25f));
-            accounts.add(i, glm::normalize(dvec3(-0.9, 0.1, 0.3)), 1.0, Rgb(0.2f, 0.4f, 0.8f));
-        }
+        for (std::size_t i = 0; i < lights.size(); ++i)
+            for (const dvec3& direction : from)
+                accounts.add(i, direction, 1.0, Rgb(1.0f));
         profiles = Profiles(lights, accounts, kSide);
     }
     std::vector<VirtualLight> lights;
@@ -57,6 +60,27 @@ TEST(Profiles, OfOneCoatFollowTheBaseColour) {
                 EXPECT_NEAR(all.profiles.photons_behind(all.lights[i], cosine).photons,
                             alone.profiles.photons_behind(alone.lights[0], cosine).photons, 1e-9);
         }
+    }
+}
+
+// Light that falls along the middle of a texel is reflected with the albedo that the BSDF has there, of all its lobes.
+TEST(Profiles, ReflectWhatTheBsdfSays) {
+    constexpr int kFine = 200;
+    for (const Rgb& base : {Rgb(0.9f, 0.3f, 0.02f), Rgb(0.0f)}) {
+        std::vector<SurfaceMaterial> materials(10, coated(base, 0.6f));
+        materials.back().base_colour = Rgb(0.5f);
+        const dvec3 in = hemisphere_of_square(4.5 / kSide, 3.5 / kSide);
+        const Lit lit(materials, {in});
+        const Bsdf bsdf(materials.front(), {});
+        Rgb albedo(0.0f);
+        for (int k = 0; k < kFine * kFine; ++k) {
+            const dvec3 out = hemisphere_of_square((k % kFine + 0.5) / kFine, (k / kFine + 0.5) / kFine);
+            albedo += bsdf.evaluate(out, in) * float(out.z / in.z * 2.0 * std::numbers::pi / (kFine * kFine));
+        }
+        const Rgb reflected = lit.profiles.exitance(lit.lights.front());  // of 1 W/m^2
+        // Directions around that of the texel, and 128 samples of the coat.
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(reflected[c], albedo[c], 0.03f * albedo[c]) << base.x << " " << c;
     }
 }
 

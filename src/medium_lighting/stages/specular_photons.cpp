@@ -168,6 +168,7 @@ SpecularPhotons::SpecularPhotons(const DirectLight& scene, const VirtualLights* 
                            : std::size_t(settings.photons);
     if (empty())
         return;
+    ball_ = ball_around(scene);
     smoke_ = points_of_smoke(scene.field());
     around_smoke_ = ball_around_smoke(scene.field());
 }
@@ -225,7 +226,7 @@ void SpecularPhotons::follow(std::uint64_t index, std::uint64_t stream, const Pa
 }
 
 void SpecularPhotons::trace(std::size_t count, std::uint64_t first_stream, Tracks& tracks) const {
-    const Particles particles(scene_, ball_around(scene_), count, around_smoke_);
+    const Particles particles(scene_, ball_, count, around_smoke_);
     tracks.begin_round(count);
     parallel_blocks(count, kParticlesAtOnce, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
@@ -237,7 +238,7 @@ SpecularPhotons::Cast SpecularPhotons::on(const Medium& medium, const LatticeReq
                                           const Enough& enough) const {
     const std::size_t all = particles(share);
     const std::uint64_t first_stream = std::uint64_t(set) << kBitsOfSet;
-    Tracks tracks(medium, request, emitted_power(scene_, ball_around(scene_)));
+    Tracks tracks(medium, request, emitted_power(scene_, ball_));
     std::size_t traced = 0;
     const auto trace_up_to = [&](std::size_t count) {
         trace(count - traced, first_stream + traced, tracks);

@@ -71,6 +71,7 @@ private:
     std::size_t particles_ = 0;  // that are worth while
     bool open_ = false;          // fewer may do
     CubeDirections smoke_;       // points that tracks are aimed at
+    BoundingBall ball_;          // around everything
     BoundingBall around_smoke_;  // toward which particles start from infinity
     std::uint32_t seed_;
     float share_;
