@@ -71,11 +71,12 @@ HWY_INLINE V blend(D d, const FarLights& l, V distance) {
     return hn::Min(hn::Max(b, hn::Zero(d)), hn::Set(d, 1.0f));
 }
 
-// Transmittance from a light's map toward unit direction w (light to receiver) at `distance`.
-HWY_INLINE V map_transmittance(D d, const ShadowMapLayout& layout, const std::uint16_t* map, V wx, V wy, V wz,
-                               V distance) {
-    const hn::RebindToSigned<D> di;
-    const hn::RebindToUnsigned<D> du;
+// Where a unit direction w lies in an octahedral map with a border.
+struct TexelPosition {
+    V s, t;
+};
+
+HWY_INLINE TexelPosition texel_position(D d, const ShadowMapLayout& layout, V wx, V wy, V wz) {
     const V one = hn::Set(d, 1.0f), zero = hn::Zero(d);
     // A receiver on the light itself has no direction. Its blend weight is zero, so any texel will do.
     const V sum = hn::Max(hn::Add(hn::Add(hn::Abs(wx), hn::Abs(wy)), hn::Abs(wz)), hn::Set(d, 1e-3f));
@@ -86,7 +87,16 @@ HWY_INLINE V map_transmittance(D d, const ShadowMapLayout& layout, const std::ui
     const V v = hn::IfThenElse(lower, hn::CopySign(hn::Sub(one, hn::Abs(px)), wy), py);
     // Texel centres are at half-integers of the interior; the border shifts them by one.
     const V half = hn::Set(d, 0.5f * layout.resolution), middle = hn::Set(d, 0.5f * layout.resolution + 0.5f);
-    const V s = hn::MulAdd(u, half, middle), t = hn::MulAdd(v, half, middle);
+    return {hn::MulAdd(u, half, middle), hn::MulAdd(v, half, middle)};
+}
+
+// Transmittance from a light's map toward unit direction w (light to receiver) at `distance`.
+HWY_INLINE V map_transmittance(D d, const ShadowMapLayout& layout, const std::uint16_t* map, V wx, V wy, V wz,
+                               V distance) {
+    const hn::RebindToSigned<D> di;
+    const hn::RebindToUnsigned<D> du;
+    const V zero = hn::Zero(d);
+    const auto [s, t] = texel_position(d, layout, wx, wy, wz);
     // Truncation equals the floor because all three coordinates are positive.
     const auto is = hn::ConvertTo(di, s), it = hn::ConvertTo(di, t);
     const V last = hn::Set(d, static_cast<float>(layout.distances - 1));
@@ -127,6 +137,25 @@ HWY_INLINE V map_transmittance(D d, const ShadowMapLayout& layout, const std::ui
         transmittance = hn::IfThenElse(hn::Lt(least, hn::Set(d, 0.5f)), transmittance, hn::Exp(d, between()));
     }
     return hn::Mul(transmittance, hn::Set(d, layout.range / 65535.0f));
+}
+
+// The same beyond the medium, of the map's end. Texels that lie beside each other are read in pairs.
+HWY_INLINE V end_transmittance(D d, const ShadowMapLayout& layout, const std::uint16_t* end, V wx, V wy, V wz) {
+    const hn::RebindToSigned<D> di;
+    const hn::RebindToUnsigned<D> du;
+    const auto [s, t] = texel_position(d, layout, wx, wy, wz);
+    const auto is = hn::ConvertTo(di, s), it = hn::ConvertTo(di, t);
+    const V as = hn::Sub(s, hn::ConvertTo(d, is)), at = hn::Sub(t, hn::ConvertTo(d, it));
+    const auto texel = hn::Add(hn::Mul(is, hn::Set(di, layout.side())), it);
+    V row[2];
+    for (int k = 0; k < 2; ++k) {
+        const auto offset = hn::Add(texel, hn::Set(di, k * layout.side()));
+        const auto pair = hn::GatherOffset(du, reinterpret_cast<const std::uint32_t*>(end), hn::ShiftLeft<1>(offset));
+        const V near = hn::ConvertTo(d, hn::BitCast(di, hn::And(pair, hn::Set(du, 0xffffu))));
+        const V far = hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<16>(pair)));
+        row[k] = hn::MulAdd(at, hn::Sub(far, near), near);
+    }
+    return hn::Mul(hn::MulAdd(as, hn::Sub(row[1], row[0]), row[0]), hn::Set(d, layout.range / 65535.0f));
 }
 
 // Numerical transmittance between the light and the receivers, from the distance `begin` to it on. `to_light` points
@@ -213,8 +242,8 @@ V radius_depth(D d, const FarLights& l, const Receivers& r, std::size_t at) {
     return hn::Mul(sample_extinction(d, *l.extinction, n[0], n[1], n[2]), hn::Set(d, l.ball));
 }
 
-// One light, one group of receivers.
-HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Receivers& r, std::size_t at,
+// One light, one group of receivers. `beyond`: all of them are reached by its map's end.
+HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, bool beyond, const Receivers& r, std::size_t at,
                             const FarOutput& out) {
     const vec3 p = l.position[i];
     const V to_light[3] = {hn::Sub(hn::Set(d, p.x), hn::LoadU(d, &r.x[at])),
@@ -232,7 +261,9 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Rece
     const V minus = hn::Neg(inverse);
     const V wx = hn::Mul(to_light[0], minus), wy = hn::Mul(to_light[1], minus), wz = hn::Mul(to_light[2], minus);
     const V surface = hn::Min(hn::Set(d, l.balls ? l.balls[i].radius : 0.0f), distance);  // where shadows begin
-    if (l.shadow == FarLights::Shadow::Maps) {
+    if (beyond) {
+        w = hn::Mul(w, end_transmittance(d, l.layout, l.end(i), wx, wy, wz));
+    } else if (l.shadow == FarLights::Shadow::Maps) {
         w = hn::Mul(w, map_transmittance(d, l.layout, l.map(i), wx, wy, wz, hn::Sub(distance, surface)));
     } else if (l.shadow == FarLights::Shadow::Exact) {
         V t = exact_transmittance(d, l, p, to_light, distance, surface);
@@ -278,13 +309,13 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, const Rece
     }
 }
 
-// The map of a light, which begins to arrive in the nearest cache. Of large maps a block reads a small part.
-HWY_INLINE void fetch_map(const FarLights& l, std::uint32_t i) {
+// The map of a light, or its end, which begins to arrive in the nearest cache. Of large maps a block reads a small part.
+HWY_INLINE void fetch_map(const FarLights& l, std::uint32_t i, bool ends) {
     constexpr std::size_t kLargest = 8192, kLine = 64;
-    const std::size_t bytes = l.layout.bytes_per_light();
+    const std::size_t bytes = (ends ? ends_of(l.layout) : l.layout).bytes_per_light();
     if (l.shadow != FarLights::Shadow::Maps || bytes > kLargest || !l.has_map(i))
         return;
-    const std::uint16_t* const map = l.map(i);
+    const std::uint16_t* const map = ends ? l.end(i) : l.map(i);
     for (std::size_t at = 0; at < bytes; at += kLine)
         hwy::Prefetch(map + at / sizeof(*map));
 }
@@ -294,18 +325,20 @@ std::uint64_t gather(const FarLights& l, const Receivers& r, const ReceiverBlock
     const D d;
     const std::size_t lanes = hn::Lanes(d);
     const LevelRange range(l);
+    const bool all_beyond = l.ends && l.are_outside(block.bounds);
     std::uint64_t evaluations = 0;
     for (std::size_t n = 0; n < l.list.size(); ++n) {
         const std::uint32_t i = l.list[n];
         if (n + 1 < l.list.size())
-            fetch_map(l, l.list[n + 1]);
+            fetch_map(l, l.list[n + 1], all_beyond);
         if (!l.has_map(i))  // no receiver needs it
             continue;
         for (std::size_t g = block.first_group; g < block.first_group + block.group_count; ++g) {
             if (!range.meets(r.group_bounds[g], l.position[i]))
                 continue;
+            const bool beyond = l.ends && l.are_outside(r.group_bounds[g]);
             for (std::size_t k = 0; k < Receivers::kGroup; k += lanes)
-                light_group(d, l, i, r, g * Receivers::kGroup + k, out);
+                light_group(d, l, i, beyond, r, g * Receivers::kGroup + k, out);
             evaluations += Receivers::kGroup;
         }
     }

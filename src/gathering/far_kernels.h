@@ -32,13 +32,22 @@ struct FarLights {
     static constexpr std::uint32_t kNoMap = ~0u;
     const std::uint32_t* map_of;  // of each light, its number among `maps` or kNoMap; null: as above
     ShadowMapLayout layout;
+    // Of each map the last distance alone, laid out as ends_of() says: transmittance to receivers outside of the box
+    // `medium` (local [m]). They are small enough to stay in the caches, where maps are not. Null: maps are read.
+    const std::uint16_t* ends;
+    Box medium;
     const PackedExtinction* extinction;  // level 0, for exact shadows
     mat3 index_from_local;
     float step_nodes;  // of exact shadows
 
     bool has_map(std::uint32_t light) const { return !map_of || map_of[light] != kNoMap; }
-    const std::uint16_t* map(std::uint32_t light) const {
-        return maps + (map_of ? map_of[light] : light - list_base) * layout.stride();
+    std::size_t number_of_map(std::uint32_t light) const { return map_of ? map_of[light] : light - list_base; }
+    const std::uint16_t* map(std::uint32_t light) const { return maps + number_of_map(light) * layout.stride(); }
+    bool are_outside(const Box& points) const {  // of the medium, all of them
+        return glm::any(glm::lessThan(points.high, medium.low)) || glm::any(glm::greaterThan(points.low, medium.high));
+    }
+    const std::uint16_t* end(std::uint32_t light) const {
+        return ends + number_of_map(light) * ends_of(layout).stride();
     }
 };
 

@@ -10,7 +10,9 @@
 #include "gathering/far_kernels.h"
 #include "gathering/map_layouts.h"
 #include "gathering/node_receivers.h"
+#include "medium/lattice/local_bounds.h"
 #include "medium/phase.h"
+#include "medium/voxel_size.h"
 #include "shadows/shadow_maps.h"
 
 namespace brisance {
@@ -58,6 +60,9 @@ public:
         : field_(field), sets_(std::move(sets)), mean_cosine_(mean_cosine), kind_(kind), progress_(progress) {
         std::erase_if(sets_, [](const ReceiverSet& s) { return s.receivers->size() == 0; });
         fine_ = field.pyramid->view(0);
+        const LocalBounds bounds = local_bounds(field.pyramid->medium());
+        const vec3 voxel(longest_diagonal(field.pyramid->medium()));  // smoke ends within one of its nodes
+        medium_ = {bounds.low - voxel, bounds.high + voxel};
     }
 
     // Gathers from the levels [first, last) of the field's grid.
@@ -110,11 +115,14 @@ private:
             else if (maps && !(keep && !made.maps.empty()))
                 build_shadow_maps(*field_.pyramid, level, *field_.weight, field_.escape, lights.layout, first, count,
                                   made.maps, field_.occluders);
+            use_ends(lights, made);
             cost.map_seconds += watch.seconds();
             watch = Stopwatch();
             cost.evaluations += gather_batch(level, lights, count, made);
             cost.gather_seconds += watch.seconds();
             progress_.fraction(double(first + count) / level.size());
+            if (!keep)
+                made.ends.clear();
         }
         if (on_demand)
             cost.map_bytes = cost.held_bytes = made.maps.size() * sizeof(std::uint16_t);
@@ -134,7 +142,9 @@ private:
             const std::size_t end = std::min(begin + batch, needed.size());
             watch = Stopwatch();
             made.maps.clear();
+            made.ends.clear();
             make_maps(level, lights, std::span(needed).subspan(begin, end - begin), made);
+            use_ends(lights, made);
             cost.map_seconds += watch.seconds();
             watch = Stopwatch();
             lights.list_base = needed[begin];
@@ -160,6 +170,7 @@ private:
                                                                       : FarLights::Shadow::Exact;
         lights.list_base = static_cast<std::uint32_t>(first);
         lights.layout = layout;
+        lights.medium = medium_;
         lights.extinction = &fine_;
         lights.index_from_local = field_.pyramid->medium().index_from_local;
         lights.step_nodes = 0.5f;
@@ -191,6 +202,37 @@ private:
             if (used[i])
                 list.push_back(i);
         return list;
+    }
+
+    // Whether what the coarsest level's maps hold for their last distance serves some receivers: nothing extinguishes
+    // light outside of the medium, and surfaces do not in these maps.
+    bool ends_serve(const FarLights& lights) const {
+        if (!lights.top || lights.shadow != FarLights::Shadow::Maps || field_.occluders || !field_.intensity)
+            return false;
+        return std::ranges::any_of(sets_, [&](const ReceiverSet& set) {
+            return std::ranges::any_of(set.receivers->group_bounds,
+                                       [&](const Box& group) { return lights.are_outside(group); });
+        });
+    }
+
+    // Makes lights use the ends of their maps, where that pays.
+    void use_ends(FarLights& lights, ShadowMapCache::Level& made) const {
+        if (!ends_serve(lights))
+            return;
+        const std::size_t from = lights.layout.stride(), to = ends_of(lights.layout).stride();
+        const auto texels = std::size_t(lights.layout.side()) * std::size_t(lights.layout.side());
+        const std::size_t before = made.ends.size() / to, count = made.maps.size() / from;
+        made.ends.resize(count * to);
+        parallel_for(
+            count - before,
+            [&](std::size_t k) {
+                const std::uint16_t* const map = made.maps.data() + (before + k) * from + (lights.layout.distances - 1);
+                std::uint16_t* const end = made.ends.data() + (before + k) * to;
+                for (std::size_t t = 0; t < texels; ++t)
+                    end[t] = map[t * std::size_t(lights.layout.distances)];
+            },
+            64);
+        lights.ends = made.ends.data();
     }
 
     // Adds the maps of the lights in `list`.
@@ -250,6 +292,7 @@ private:
     ReceiverKind kind_;
     Progress& progress_;
     PackedExtinction fine_;
+    Box medium_;
 };
 
 int wanted_coarsening(const LightField& field, const LatticeRequest& request, const GridLevel& level) {

@@ -37,6 +37,7 @@ struct ShadowMapCache {
     struct Level {
         std::vector<std::uint16_t> maps;    // empty until made
         std::vector<std::uint32_t> map_of;  // on demand: of each light, its number among the maps (far_kernels.h)
+        std::vector<std::uint16_t> ends;    // of each map, where receivers beyond the medium have asked for them
     };
     std::vector<Level> levels;
     // Makes maps only of lights that may reach some receiver. This pays for few receivers among many lights and changes

@@ -26,7 +26,8 @@ std::unique_ptr<VirtualLights> place_virtual_lights(const DrawInput& input, cons
     const Stopwatch watch;
     const Camera& camera = input.camera;
     const CameraSettings& c = camera.settings();
-    const PixelCamera pixels{c.width, c.height, [&](double x, double y) { return camera.ray(x, y); }, samples_of(c)};
+    const double samples = input.plan.needs(Cell::SS) ? samples_of(c) : 0.0;  // that see the lights
+    const PixelCamera pixels{c.width, c.height, [&](double x, double y) { return camera.ray(x, y); }, samples};
     VirtualLightSettings settings = settings_of_pass(input.shot.virtual_lights, pass);
     settings.picture_error = input.shot.lighting.error;
     auto lights = std::make_unique<VirtualLights>(scene, pixels, settings, input.light_positions);

@@ -49,6 +49,12 @@ struct ShadowMapLayout {
     std::size_t bytes_per_light() const { return stride() * 2; }
 };
 
+// The layout of the last distance of maps alone.
+inline ShadowMapLayout ends_of(ShadowMapLayout layout) {
+    layout.distances = 1;
+    return layout;
+}
+
 // The number of parallel rays for each texel of the maps of a level's lights. The variance of a sum of lights is least
 // for a given number of rays where that number is in proportion to what each light sends: most lights on the skin of
 // dense smoke send little. Without GridLevel::escaping, all have the same.

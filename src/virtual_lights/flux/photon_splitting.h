@@ -74,7 +74,8 @@ PhotonArrivals photon_arrivals(const DirectLight& scene, std::size_t paths, Stre
 // footprint half of settings.picture_error. A footprint holds at least kLightsOfFootprint lights: with N photons for
 // each light of `count`, on average, that noise is 1 / sqrt(N kLightsOfFootprint). A pilot tells how many photons
 // arrive. No more than four need arrive for each sample, whose noise hides that of photons, but for kLeastPhotons
-// for each light, and no more are traced than most_automatic_photons().
+// for each light: enough where smoke alone is lit by them, each part of it by many. No more are traced than
+// most_automatic_photons().
 inline constexpr double kLightsOfFootprint = 40.0, kLeastPhotons = 8.0;
 std::size_t photons_needed(const DirectLight& scene, const BoundingBall& ball, const PartitionOfUnity& partition,
                            const VirtualLightSettings& settings, std::size_t count, double samples);

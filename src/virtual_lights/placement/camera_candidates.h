@@ -15,7 +15,8 @@ namespace brisance {
 struct PixelCamera {
     int width = 0, height = 0;                                 // [pixels]
     std::function<Ray(double x, double y)> ray;                // local; x, y in pixels from the upper left corner
-    double samples = std::numeric_limits<double>::infinity();  // of the whole picture, as far as known
+    // Of the whole picture, as far as known, that are lit by what lies on surfaces.
+    double samples = std::numeric_limits<double>::infinity();
 };
 
 // No path can be sent through its picture.
