@@ -13,12 +13,16 @@ constexpr std::size_t kLeastPerAxis = 4;
 // In each row of four by four rays the column of the one that is shaded first: no two share a row or a column.
 constexpr std::size_t kColumns[] = {2, 0, 3, 1};
 
+// Of the variance of the few, what all rays leave.
+constexpr float kLeftByAll = 0.25f;
+// Of the variance that other light leaves: less is not worth a second round.
+constexpr float kBesideOther = 0.25f;
+
 constexpr std::uint32_t kNone = ~0u;
 
 }  // namespace
 
-SurfaceRounds::SurfaceRounds(std::span<const SurfaceSample> samples, int width, std::size_t rays, float tolerance,
-                             const MaySplit& may_split)
+SurfaceRounds::SurfaceRounds(std::span<const SurfaceSample> samples, int width, std::size_t rays, float tolerance)
     : samples_(samples),
       width_(static_cast<std::size_t>(width)),
       per_axis_(static_cast<std::size_t>(std::lround(std::sqrt(double(rays))))),
@@ -38,8 +42,7 @@ SurfaceRounds::SurfaceRounds(std::span<const SurfaceSample> samples, int width, 
             all += samples[i].share;
             few += among_few(i) ? samples[i].share : 0.0f;
         }
-        p.few = splits && p.end - p.begin == rays && few > 0.0f &&
-                (!may_split || may_split(samples.subspan(p.begin, rays)));
+        p.few = splits && p.end - p.begin == rays && few > 0.0f;
         p.scale = p.few ? all / few : 1.0f;
         for (std::size_t i = p.begin; i < p.end; ++i)
             if (!p.few || among_few(i))
@@ -71,8 +74,10 @@ void SurfaceRounds::measure(Pixel& p, std::span<const float> even, const Found& 
 }
 
 // By the pixels around, as far as the rows of this call reach.
-bool SurfaceRounds::wants_more(std::size_t number) const {
-    const Pixel& own = pixels_[number];
+void SurfaceRounds::decide(std::size_t number, float tolerated_beside) {
+    Pixel& own = pixels_[number];
+    if (!own.few)
+        return;
     const auto at = static_cast<int>(samples_[own.begin].pixel - origin_), width = static_cast<int>(width_);
     const int px = at % width, py = at / width, height = static_cast<int>(number_.size()) / width;
     float variance = 0.0f, estimates = 0.0f, shown = 0.0f, count = 0.0f;
@@ -89,12 +94,14 @@ bool SurfaceRounds::wants_more(std::size_t number) const {
             variance += p.variance;
             estimates += 1.0f;
         }
-    const float tolerated = tolerance_ * shown / count;
+    const float tolerated = tolerance_ * shown / count, found = std::max(own.variance, variance / estimates);
     // In this order what is not a number wants more.
-    return !(std::max(own.variance, variance / estimates) <= tolerated * tolerated);
+    own.refined = !(found <= std::max(tolerated * tolerated, tolerated_beside));
+    own.left = own.refined ? found * kLeftByAll : found;
 }
 
-std::vector<std::size_t> SurfaceRounds::second(std::span<const float> even, const Found& found) {
+std::vector<std::size_t> SurfaceRounds::second(std::span<const float> even, const Found& found,
+                                               const SurfaceRounds* other) {
     if (pixels_.empty())
         return {};
     const std::size_t rows = (samples_.back().pixel - origin_) / width_ + 1;
@@ -105,8 +112,8 @@ std::vector<std::size_t> SurfaceRounds::second(std::span<const float> even, cons
     }
     std::vector<std::size_t> second;
     for (std::size_t k = 0; k < pixels_.size(); ++k) {
+        decide(k, other ? kBesideOther * other->pixels_[k].left : 0.0f);
         Pixel& p = pixels_[k];
-        p.refined = p.few && wants_more(k);
         if (!p.refined)
             continue;
         p.scale = 1.0f;

@@ -8,11 +8,10 @@
 // those beside.
 //
 // Light of fire and smoke on bases, and what is sampled at each (reflections, emitters, light between surfaces), have
-// rounds of their own: a penumbra says nothing of reflections. An edge in a pixel would have a quarter of its shades,
-// so that bases are lit by few rays only where all of them meet one surface without textures (plain_pixel.h).
+// rounds of their own: a penumbra says nothing of reflections. Where the second round of one leaves a pixel noisy, the
+// other need not know its light any better.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -23,11 +22,8 @@ namespace brisance {
 class SurfaceRounds {
 public:
     // Keeps a reference. `width`: of the picture, in pixels. `rays`: of a pixel. `tolerance`: standard error of a
-    // pixel over its luminance; 0: all samples are shaded in the first round. `may_split`: pixels that may do with few,
-    // asked with all their samples; empty: all.
-    using MaySplit = std::function<bool(std::span<const SurfaceSample>)>;
-    SurfaceRounds(std::span<const SurfaceSample> samples, int width, std::size_t rays, float tolerance,
-                  const MaySplit& may_split = {});
+    // pixel over its luminance; 0: all samples are shaded in the first round.
+    SurfaceRounds(std::span<const SurfaceSample> samples, int width, std::size_t rays, float tolerance);
 
     const std::vector<std::size_t>& first() const { return first_; }
     // What shading found at samples of the first round, as luminance [W/(m^2 sr)].
@@ -35,8 +31,10 @@ public:
         std::vector<float> noisy;   // with the noise that it has in the pixel
         std::vector<float> shared;  // among pixels: it counts for what the pixel shows
     };
-    // The second round. `even`: luminance of each sample that is known of all [W/(m^2 sr)].
-    std::vector<std::size_t> second(std::span<const float> even, const Found& found);
+    // The second round. `even`: luminance of each sample that is known of all [W/(m^2 sr)]. `other`: the rounds of
+    // other light of the same samples, after its second one; null: there is none.
+    std::vector<std::size_t> second(std::span<const float> even, const Found& found,
+                                    const SurfaceRounds* other = nullptr);
     // For how many samples, by their shares, one stands, after second(); 0: it was not shaded.
     float stands_for(std::size_t sample) const;
 
@@ -48,10 +46,11 @@ private:
         float scale = 1.0f;      // of those few
         float shown = 0.0f;      // luminance [W/(m^2 sr)]
         float variance = 0.0f;   // of that for want of samples
+        float left = 0.0f;       // of the variance, after the second round
     };
     bool among_few(std::size_t sample) const;
     void measure(Pixel& pixel, std::span<const float> even, const Found& found) const;
-    bool wants_more(std::size_t at) const;
+    void decide(std::size_t at, float tolerated_beside);
 
     std::span<const SurfaceSample> samples_;
     std::size_t width_, per_axis_;

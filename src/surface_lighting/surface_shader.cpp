@@ -8,7 +8,6 @@
 #include "core/cpu_clock.h"
 #include "core/parallel.h"
 #include "pixel_sharing/shown_area.h"
-#include "surface_lighting/plain_pixel.h"
 #include "surface_lighting/shaded_point.h"
 
 namespace brisance {
@@ -104,49 +103,45 @@ std::vector<BaseLight> SurfaceShader::light_bases(const Samples& samples, const 
     return (lighting.*how)(bases, receivers);
 }
 
-// Lights bases by the medium: of all samples, or of a few that stand for the others of their pixel.
-SurfaceRounds SurfaceShader::bases_in_rounds(const Samples& samples, Points& points, Light& light) {
-    SurfaceRounds rounds(samples, input_.width, std::size_t(input_.samples), input_.tolerance,
-                         [&](auto pixel) { return shows_plain_surface(surroundings_.scene(), pixel); });
+// Light of the medium on bases is known of all samples, or of a few that stand for the others of their pixel; so is what
+// is sampled. Bases come second: they need not be better known than what is sampled there.
+void SurfaceShader::shade(const Samples& samples, Light& light) {
     const std::vector<float> none(samples.size());
-    SurfaceRounds::Found known{none, none};
+    Points points(samples.size());
+    Light found(samples.size());  // but on bases
+    SurfaceRounds bases(samples, input_.width, std::size_t(input_.samples), input_.tolerance), others = bases;
+    SurfaceRounds::Found on_bases{none, none}, of_others{none, none};
     const auto light_some = [&](const Some& some, LightBases how) {
-        prepare(samples, some, points, light);
-        const std::vector<BaseLight> bases = light_bases(samples, some, points, how);
+        prepare(samples, some, points, found);
+        const std::vector<BaseLight> lit = light_bases(samples, some, points, how);
         for (std::size_t k = 0; k < some.size(); ++k) {
             const std::size_t i = some[k];
             if (!points[i].seen.lost)
-                add_base(bases[k], points[i], light[i]);
-            known.noisy[i] = luminance(light[i]);
+                add_base(lit[k], points[i], light[i]);
+            on_bases.noisy[i] = luminance(light[i]);
         }
     };
-    light_some(rounds.first(), &BaseLighting::light);
-    light_some(rounds.second(none, known), &BaseLighting::light_penumbrae);
-    return rounds;
-}
-
-void SurfaceShader::shade(const Samples& samples, Light& light) {
-    Points points(samples.size());
-    const SurfaceRounds bases = bases_in_rounds(samples, points, light);
-    std::vector<float> even(samples.size());
+    const auto shade = [&](const Some& some) {
+        prepare(samples, some, points, found);
+        shade_some(samples, some, points, found);
+        tell(samples, some, points, found, of_others);
+    };
+    // What one kind of light shows, as the other's rounds take it.
+    const auto even = [&](const SurfaceRounds& rounds, const SurfaceRounds::Found& shown) {
+        std::vector<float> out(samples.size());
+        for (std::size_t i = 0; i < samples.size(); ++i)
+            out[i] = rounds.stands_for(i) * (shown.noisy[i] + shown.shared[i]);
+        return out;
+    };
+    light_some(bases.first(), &BaseLighting::light);
+    shade(others.first());
+    shade(others.second(even(bases, on_bases), of_others));
+    light_some(bases.second(even(others, of_others), on_bases, &others), &BaseLighting::light_penumbrae);
     for (std::size_t i = 0; i < samples.size(); ++i) {
         if (const float scale = bases.stands_for(i); scale != 1.0f)
             for (Rgb& cell : light[i])
                 cell *= scale;
-        even[i] = luminance(light[i]);
-    }
-    SurfaceRounds::Found known{std::vector<float>(samples.size()), std::vector<float>(samples.size())};
-    Light found(samples.size());
-    const auto shade = [&](const Some& some) {
-        prepare(samples, some, points, light);
-        shade_some(samples, some, points, found);
-        tell(samples, some, points, found, known);
-    };
-    SurfaceRounds rounds(samples, input_.width, std::size_t(input_.samples), input_.tolerance);
-    shade(rounds.first());
-    shade(rounds.second(even, known));
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        const float scale = rounds.stands_for(i);
+        const float scale = others.stands_for(i);
         if (!(scale > 0.0f))
             continue;
         points[i].stands_for = scale;

@@ -88,7 +88,6 @@ private:
     using LightBases = std::vector<BaseLight> (BaseLighting::*)(std::span<const BasePoint>,
                                                                 const SharedReceivers&) const;
     std::vector<BaseLight> light_bases(const Samples& samples, const Some& some, const Points& points, LightBases how);
-    SurfaceRounds bases_in_rounds(const Samples& samples, Points& points, Light& light);
     void add_base(const BaseLight& base, const ShadedPoint& at, CellSum& light) const;
     void tell(const Samples& samples, const Some& some, const Points& points, const Light& found,
               SurfaceRounds::Found& known) const;
