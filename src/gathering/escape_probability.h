@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "gathering/point_depths.h"
 #include "lighting_grid/footprint.h"
+#include "optical_depths/point_depths.h"
 
 namespace brisance {
 

@@ -309,7 +309,8 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, bool beyon
     }
 }
 
-// The map of a light, or its end, which begins to arrive in the nearest cache. Of large maps a block reads a small part.
+// The map of a light, or its end, which begins to arrive in the nearest cache. Of large maps a block reads a small
+// part.
 HWY_INLINE void fetch_map(const FarLights& l, std::uint32_t i, bool ends) {
     constexpr std::size_t kLargest = 8192, kLine = 64;
     const std::size_t bytes = (ends ? ends_of(l.layout) : l.layout).bytes_per_light();

@@ -8,12 +8,12 @@
 #include <vector>
 
 #include "gathering/gather.h"
-#include "gathering/point_depths.h"
 #include "lighting_grid/footprint.h"
 #include "medium_lighting/input.h"
 #include "medium_lighting/levels/coarse_lighting.h"
 #include "medium_lighting/levels/lighting_level.h"
 #include "medium_lighting/levels/lit_levels.h"
+#include "optical_depths/point_depths.h"
 #include "thin_media/thin_medium.h"
 
 namespace brisance {

@@ -103,8 +103,8 @@ std::vector<BaseLight> SurfaceShader::light_bases(const Samples& samples, const 
     return (lighting.*how)(bases, receivers);
 }
 
-// Light of the medium on bases is known of all samples, or of a few that stand for the others of their pixel; so is what
-// is sampled. Bases come second: they need not be better known than what is sampled there.
+// Light of the medium on bases is known of all samples, or of a few that stand for the others of their pixel; so is
+// what is sampled. Bases come second: they need not be better known than what is sampled there.
 void SurfaceShader::shade(const Samples& samples, Light& light) {
     const std::vector<float> none(samples.size());
     Points points(samples.size());

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "gathering/point_depths.h"
+#include "optical_depths/point_depths.h"
 
 namespace brisance {
 

@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "gathering/gather.h"
-#include "gathering/point_depths.h"
 #include "medium/lattice/homogeneous_bricks.h"
+#include "optical_depths/point_depths.h"
 #include "thin_media/smoke_in_brick.h"
 
 namespace brisance {

@@ -181,6 +181,40 @@ TEST(Agreement, NoMapIsMadeForABoxAroundFarReceivers) {
         EXPECT_EQ(cost.map_bytes > 0, &cost == &costs.back()) << cost.level;
 }
 
+// Points outside of the medium read what the maps hold for their last distance; beside a point inside of it they read
+// the distances themselves. Both are the same transmittance, give or take the interpolation between distances.
+TEST(Agreement, OutsideOfTheMediumLightIsWhatTheMapsEndWith) {
+    const Lit lit(make_medium(fireball(2.0f)));
+    std::vector<vec3> outside, with_the_middle = {vec3(0.0f)};
+    for (int i = 0; i < 15; ++i) {  // before a face of the medium, nearer than its far corners
+        const vec3 p(1.9f + noise(ivec3(i), 1), 2.0f * noise(ivec3(i), 2) - 1.0f, 2.0f * noise(ivec3(i), 3) - 1.0f);
+        outside.push_back(p);
+        with_the_middle.push_back(p);
+    }
+    const auto gathered = [&](const std::vector<vec3>& points, bool& keeps_ends) {
+        LightField field = field_of(lit, lighting(ShadowMethod::Maps));
+        ShadowMapCache cache;
+        field.cache = &cache;
+        Receivers receivers;
+        receivers.add_block(points, {});
+        std::vector<LevelCost> costs;
+        Progress silent;
+        std::vector<float> fluence =
+            gather_at_points(field, bottom_level(field), receivers, 0.0f, costs, silent).fluence;
+        keeps_ends = !cache.levels.back().ends.empty();
+        fluence.resize(points.size());  // the first channel
+        return fluence;
+    };
+    bool ends_alone = false, ends_together = false;
+    const std::vector<float> by_ends = gathered(outside, ends_alone);
+    std::vector<float> by_distances = gathered(with_the_middle, ends_together);
+    by_distances.erase(by_distances.begin());
+    EXPECT_TRUE(ends_alone);
+    EXPECT_FALSE(ends_together);
+    EXPECT_GT(*std::ranges::min_element(by_ends), 0.0f);
+    EXPECT_LT(difference(by_ends, by_distances).rms, 2e-3);
+}
+
 TEST(Agreement, TheNumberOfThreadsDoesNotShow) {
     const Medium medium = make_medium(fireball(2.0f));
     std::vector<std::vector<float>> nodes, points;

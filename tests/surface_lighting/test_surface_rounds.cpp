@@ -120,15 +120,21 @@ TEST(SurfaceRounds, EdgesAndNoToleranceHaveAllRaysAtOnce) {
         }
 }
 
-// Whoever knows of an edge in a pixel keeps all its rays.
-TEST(SurfaceRounds, PixelsThatMayNotSplitHaveAllRaysAtOnce) {
-    const Band band([](int, int, int) { return 1.0f; });
-    const auto may_split = [](std::span<const SurfaceSample> pixel) {
-        EXPECT_EQ(pixel.size(), kRaysOfPixel);
-        return pixel.front().pixel % kAcross != 3;
+// Light of the medium is a little noisy. Alone it wants all its rays; not beside reflections that stay noisier than
+// that with all of theirs; beside steady ones it does.
+TEST(SurfaceRounds, LightBesideNoiseNeedNotBeBetterKnown) {
+    const auto noise_of = [](float height) {
+        return [height](int x, int y, int k) { return 1.0f + height * Rng(Stream::Surface, x + 100 * y, k).next(); };
     };
-    const SurfaceRounds rounds(band.samples, kAcross, kRaysOfPixel, kTolerance, may_split);
-    EXPECT_EQ(rounds.first().size(), std::size_t(kDown) * ((kAcross - 1) * kRaysOfPixel / 4 + kRaysOfPixel));
+    const Band little(noise_of(0.3f)), much(noise_of(3.0f)), none([](int, int, int) { return 1.0f; });
+    const std::size_t all_others = little.samples.size() * 3 / 4;
+    EXPECT_EQ(little.rounds().second(little.even, little.found()).size(), all_others);
+    SurfaceRounds noisy = much.rounds(), beside_noisy = little.rounds();
+    EXPECT_EQ(noisy.second(much.even, much.found()).size(), all_others);
+    EXPECT_TRUE(beside_noisy.second(little.even, little.found(), &noisy).empty());
+    SurfaceRounds steady = none.rounds(), beside_steady = little.rounds();
+    EXPECT_TRUE(steady.second(none.even, none.found()).empty());
+    EXPECT_EQ(beside_steady.second(little.even, little.found(), &steady).size(), all_others);
 }
 
 TEST(SurfaceRounds, AreNoneWithoutSamples) {

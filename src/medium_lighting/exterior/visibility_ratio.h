@@ -12,9 +12,9 @@
 
 #include "core/rng.h"
 #include "emitters/light_front.h"
-#include "gathering/point_depths.h"
 #include "lighting_grid/footprint.h"
 #include "medium/medium.h"
+#include "optical_depths/point_depths.h"
 
 namespace brisance {
 

@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "gathering/point_depths.h"
 #include "lighting_grid/voxel_lights.h"
 #include "medium/voxel_size.h"
 #include "medium_lighting/levels/coarse_lighting.h"
+#include "optical_depths/point_depths.h"
 #include "shadows/shadow_kernels.h"
 
 namespace brisance {

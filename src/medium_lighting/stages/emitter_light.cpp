@@ -6,12 +6,12 @@
 #include <numbers>
 
 #include "core/parallel.h"
-#include "gathering/cone_depths.h"
 #include "medium/lattice/local_bounds.h"
 #include "medium/phase.h"
 #include "medium/sh.h"
 #include "medium_lighting/stages/lamp_in_voxel.h"
 #include "medium_lighting/surface_occluders.h"
+#include "optical_depths/cone_depths.h"
 
 namespace brisance {
 

@@ -10,7 +10,7 @@ namespace brisance {
 // have the same error of about a tenth; independent noise is averaged along the camera rays. Point lights and suns
 // without a disc take one ray each, and are exact except for the ray march, by half a voxel. Before a narrow sun smoke
 // is the same for all of its disc, and takes one ray, too. A sample of an extended light stands for a cone of it, in
-// which the smoke is averaged (gathering/cone_depths.h).
+// which the smoke is averaged (optical_depths/cone_depths.h).
 //
 // Nodes that smoke hides from `eye` take fewer points. `seen`: the share of the nodes' light that the camera sees; the
 // rest only scatters on.

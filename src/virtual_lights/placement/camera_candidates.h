@@ -13,8 +13,8 @@ namespace brisance {
 
 // A camera as the module needs it.
 struct PixelCamera {
-    int width = 0, height = 0;                                 // [pixels]
-    std::function<Ray(double x, double y)> ray;                // local; x, y in pixels from the upper left corner
+    int width = 0, height = 0;                   // [pixels]
+    std::function<Ray(double x, double y)> ray;  // local; x, y in pixels from the upper left corner
     // Of the whole picture, as far as known, that are lit by what lies on surfaces.
     double samples = std::numeric_limits<double>::infinity();
 };

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "fixtures/media.h"
-#include "gathering/point_depths.h"
+#include "optical_depths/point_depths.h"
 
 namespace brisance {
 namespace {

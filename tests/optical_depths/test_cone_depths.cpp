@@ -7,7 +7,7 @@
 
 #include "core/rng.h"
 #include "fixtures/media.h"
-#include "gathering/cone_depths.h"
+#include "optical_depths/cone_depths.h"
 
 namespace brisance {
 namespace {

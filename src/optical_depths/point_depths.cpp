@@ -1,10 +1,10 @@
-#include "gathering/point_depths.h"
+#include "optical_depths/point_depths.h"
 
 #include <algorithm>
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "gathering/point_depths.cpp"
+#define HWY_TARGET_INCLUDE "optical_depths/point_depths.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
 #include <hwy/highway.h>

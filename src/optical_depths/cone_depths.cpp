@@ -1,10 +1,10 @@
-#include "gathering/cone_depths.h"
+#include "optical_depths/cone_depths.h"
 
 #include <algorithm>
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "gathering/cone_depths.cpp"
+#define HWY_TARGET_INCLUDE "optical_depths/cone_depths.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
 #include <hwy/highway.h>
