@@ -74,7 +74,7 @@ void SurfaceRounds::measure(Pixel& p, std::span<const float> even, const Found& 
 }
 
 // By the pixels around, as far as the rows of this call reach.
-void SurfaceRounds::decide(std::size_t number, float tolerated_beside) {
+void SurfaceRounds::decide(std::size_t number, float beside) {
     Pixel& own = pixels_[number];
     if (!own.few)
         return;
@@ -96,7 +96,7 @@ void SurfaceRounds::decide(std::size_t number, float tolerated_beside) {
         }
     const float tolerated = tolerance_ * shown / count, found = std::max(own.variance, variance / estimates);
     // In this order what is not a number wants more.
-    own.refined = !(found <= std::max(tolerated * tolerated, tolerated_beside));
+    own.refined = !(found <= std::max(tolerated * tolerated, beside));
     own.left = own.refined ? found * kLeftByAll : found;
 }
 

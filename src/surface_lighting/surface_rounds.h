@@ -35,7 +35,7 @@ public:
     // other light of the same samples, after its second one; null: there is none.
     std::vector<std::size_t> second(std::span<const float> even, const Found& found,
                                     const SurfaceRounds* other = nullptr);
-    // For how many samples, by their shares, one stands, after second(); 0: it was not shaded.
+    // For how many samples, by their shares, one stands, after the rounds that were asked for; 0: it was not shaded.
     float stands_for(std::size_t sample) const;
 
 private:
@@ -50,7 +50,8 @@ private:
     };
     bool among_few(std::size_t sample) const;
     void measure(Pixel& pixel, std::span<const float> even, const Found& found) const;
-    void decide(std::size_t at, float tolerated_beside);
+    // `beside`: variance that is tolerated beside other light.
+    void decide(std::size_t at, float beside);
 
     std::span<const SurfaceSample> samples_;
     std::size_t width_, per_axis_;
