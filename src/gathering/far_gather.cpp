@@ -100,19 +100,19 @@ void FarGather::gather_batches(const GridLevel& level, FarLights lights, bool ma
         const std::size_t count = std::min(batch, level.size() - first);
         lights.list_base = static_cast<std::uint32_t>(first);
         Stopwatch watch;
-        if (on_demand)
+        if (on_demand) {
             make_needed_maps(level, lights, made);
-        else if (maps && !(keep && !made.maps.empty()))
+        } else if (maps && !(keep && !made.maps.empty())) {
+            made.ends.clear();
             build_shadow_maps(*field_.pyramid, level, *field_.weight, field_.escape, lights.layout, first, count,
                               made.maps, field_.occluders);
+        }
         use_ends(lights, made);
         cost.map_seconds += watch.seconds();
         watch = Stopwatch();
         cost.evaluations += gather_batch(level, lights, count, made);
         cost.gather_seconds += watch.seconds();
         progress_.fraction(double(first + count) / level.size());
-        if (!keep)
-            made.ends.clear();
     }
     if (on_demand)
         cost.map_bytes = cost.held_bytes = made.maps.size() * sizeof(std::uint16_t);

@@ -137,6 +137,13 @@ void SurfaceShader::shade(const Samples& samples, Light& light) {
     shade(others.first());
     shade(others.second(even(bases, on_bases), of_others));
     light_some(bases.second(even(others, of_others), on_bases, &others), &BaseLighting::light_penumbrae);
+    add_up(samples, bases, others, points, found, light);
+    hand_over(samples, points, light);
+}
+
+// What the rounds have found, as each sample stands for others: `light` on bases, and `found` besides, which is added.
+void SurfaceShader::add_up(const Samples& samples, const SurfaceRounds& bases, const SurfaceRounds& others,
+                           Points& points, const Light& found, Light& light) const {
     for (std::size_t i = 0; i < samples.size(); ++i) {
         if (const float scale = bases.stands_for(i); scale != 1.0f)
             for (Rgb& cell : light[i])
@@ -149,7 +156,6 @@ void SurfaceShader::shade(const Samples& samples, Light& light) {
         if (input_.lengths)
             input_.lengths->add(samples[i].pixel, points[i].vertices);
     }
-    hand_over(samples, points, light);
 }
 
 // What shading found at some samples, of which all pixels share a part. What that leaves of its noise is told of the

@@ -88,6 +88,8 @@ private:
     using LightBases = std::vector<BaseLight> (BaseLighting::*)(std::span<const BasePoint>,
                                                                 const SharedReceivers&) const;
     std::vector<BaseLight> light_bases(const Samples& samples, const Some& some, const Points& points, LightBases how);
+    void add_up(const Samples& samples, const SurfaceRounds& bases, const SurfaceRounds& others, Points& points,
+                const Light& found, Light& light) const;
     void add_base(const BaseLight& base, const ShadedPoint& at, CellSum& light) const;
     void tell(const Samples& samples, const Some& some, const Points& points, const Light& found,
               SurfaceRounds::Found& known) const;
