@@ -24,7 +24,7 @@
 
 #include "diffusion/multigrid.h"
 #include "diffusion/settings.h"
-#include "gathering/receivers.h"
+#include "receivers/receivers.h"
 #include "medium/lattice/extinction_pyramid.h"
 
 namespace brisance {

@@ -15,6 +15,7 @@
 #include "medium/lattice/extinction_sampler-inl.h"
 #include "medium/phase-inl.h"
 #include "medium/sh.h"
+#include "receivers/lanes-inl.h"
 
 #ifndef BRISANCE_GATHERING_LEVEL_RANGE_
 #define BRISANCE_GATHERING_LEVEL_RANGE_
@@ -49,18 +50,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using D = hn::CappedTag<float, 16>;
 using V = hn::Vec<D>;
-
-// The processor's estimate refined by one Newton step reaches single precision to a bit or two and costs far less than
-// a division.
-HWY_INLINE V reciprocal(D d, V x) {
-    const V r = hn::ApproximateReciprocal(x);
-    return hn::Mul(r, hn::NegMulAdd(x, r, hn::Set(d, 2.0f)));
-}
-
-HWY_INLINE V reciprocal_sqrt(D d, V x) {
-    const V r = hn::ApproximateReciprocalSqrt(x);
-    return hn::Mul(r, hn::NegMulAdd(hn::Mul(hn::Set(d, 0.5f), x), hn::Mul(r, r), hn::Set(d, 1.5f)));
-}
 
 // The blend of [1] for a light of this level at distance d: rises over [r/2, r], falls over [r, 2r].
 HWY_INLINE V blend(D d, const FarLights& l, V distance) {
@@ -210,25 +199,6 @@ V ball_transmittance(D d, float a, V distance, V transmittance, V depth_of_radiu
     return hn::IfThenElse(hn::Lt(distance, hn::Set(d, a)), inside, transmittance);
 }
 
-struct Basis {
-    V y[kShMoments];
-};
-
-HWY_INLINE Basis basis_lanes(D d, V x, V y, V z) {
-    const auto c = [&](float v) { return hn::Set(d, v); };
-    return {{hn::Mul(c(kSh1), y), hn::Mul(c(kSh1), z), hn::Mul(c(kSh1), x), hn::Mul(c(kSh2a), hn::Mul(x, y)),
-             hn::Mul(c(kSh2a), hn::Mul(y, z)), hn::MulAdd(c(3.0f * kSh2b), hn::Mul(z, z), c(-kSh2b)),
-             hn::Mul(c(kSh2a), hn::Mul(x, z)), hn::Mul(c(kSh2c), hn::Sub(hn::Mul(x, x), hn::Mul(y, y)))}};
-}
-
-HWY_INLINE void accumulate(D d, float* to, V value) {
-    hn::StoreU(hn::Add(hn::LoadU(d, to), value), d, to);
-}
-
-HWY_INLINE V dot(V ax, V ay, V az, V bx, V by, V bz) {
-    return hn::MulAdd(ax, bx, hn::MulAdd(ay, by, hn::Mul(az, bz)));
-}
-
 HWY_INLINE V dot(D d, V x, V y, V z, const vec3& v) {
     return dot(x, y, z, hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z));
 }
@@ -276,7 +246,7 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, bool beyon
                                       hn::Set(d, l.balls[i].escape)));
 
     const bool moments = out.moments || (l.directional && !(l.lobes && l.lobes[i].share == 1.0f));
-    const Basis basis = moments ? basis_lanes(d, wx, wy, wz) : Basis{};
+    const auto basis = moments ? basis_lanes(d, wx, wy, wz) : BasisLanes<D>{};
     V phase = hn::Zero(d);
     if (out.scattered) {
         const V cosine =

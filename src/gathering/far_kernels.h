@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "gathering/receivers.h"
+#include "receivers/receivers.h"
 #include "lighting_grid/lighting_grid.h"
 #include "medium/lattice/extinction_pyramid.h"
 #include "shadows/shadow_maps.h"

@@ -7,6 +7,7 @@
 #include "core/stopwatch.h"
 #include "gathering/far_gather.h"
 #include "gathering/node_receivers.h"
+#include "near_field/first_level.h"
 
 namespace brisance {
 
@@ -16,6 +17,13 @@ int wanted_coarsening(const LightField& field, const LatticeRequest& request, co
     if (!request.interpolates_far_light)
         return 0;
     return std::max(request.least_coarsening, coarsening_of(field, level));
+}
+
+// Whether a level's lights stand beside even nodes of the medium's own lattice, and no surface parts them from receivers.
+bool gathers_by_separations(const LightField& field, const GridLevel& level) {
+    return field.settings.shadows == ShadowMethod::Maps && field.bottom == 0 && field.intensity && level.level == 1 &&
+           level.size() > 0 && &level != &field.grid->levels.back() && !field.occluders &&
+           FirstLevel::is_small(field.pyramid->medium().local_from_index, field.alpha * level.spacing);
 }
 
 // Adds the light of all levels of the grid to the requested nodes, from near to far: each at the nodes of a lattice and
@@ -32,7 +40,7 @@ public:
         std::size_t last = first;
         while (last < levels.size() && wanted_coarsening(field_, request_, levels[last]) <= coarsening)
             ++last;
-        asked_.push_back({&at, &out});
+        asked_.push_back({&at, &out, coarsening});
         gather(first, last);
         asked_.pop_back();
         if (last == levels.size())
@@ -43,7 +51,7 @@ public:
         }
         const NodesBesideSurfaces parts =
             part_beside_surfaces(field_.pyramid->medium(), request_, at, coarsening, *field_.occluders);
-        asked_.push_back({&parts.beside, &out});
+        asked_.push_back({&parts.beside, &out, coarsening});
         run_between(parts.in_the_open, last, coarsening, out);
         asked_.pop_back();
     }
@@ -52,6 +60,7 @@ private:
     struct Asked {
         const NodeReceivers* nodes;
         Gathered* light;  // planar over nodes
+        int coarsening;
     };
 
     // At the nodes of a lattice, from the coarser ones below it.
@@ -65,6 +74,9 @@ private:
 
     // Of the levels from `first` to `last`.
     void gather(std::size_t first, std::size_t last) {
+        if (first < last && gathers_by_separations(field_, field_.grid->levels[first]) &&
+            std::ranges::all_of(asked_, [](const Asked& a) { return a.coarsening <= 1; }))
+            gather_by_separations(field_.grid->levels[first++]);
         if (last == first)
             return;
         std::vector<Gathered> light(asked_.size());
@@ -76,6 +88,23 @@ private:
         FarGather(field_, std::move(sets), request_.mean_cosine, progress_).run_levels(first, last, costs_);
         for (std::size_t i = 0; i < asked_.size(); ++i)
             add_at_nodes(*asked_[i].nodes, light[i], *asked_[i].light);
+    }
+
+    // Of the first level above the lattice's own nodes, without maps.
+    void gather_by_separations(const GridLevel& level) {
+        const Stopwatch watch;
+        const Medium& medium = field_.pyramid->medium();
+        const FirstLevel first(medium.local_from_index, field_.alpha * level.spacing);
+        LevelCost cost;
+        cost.level = level.level;
+        cost.lights = level.size();
+        for (const Asked& asked : asked_)
+            cost.evaluations += first.gather({&medium.lattice, &medium.extinction, &level, request_.eye,
+                                              medium.local_of_node(ivec3(0)), request_.mean_cosine},
+                                             {&asked.nodes->lattice, &asked.nodes->needed, asked.coarsening == 1},
+                                             *asked.light);
+        cost.gather_seconds = watch.seconds();
+        costs_.push_back(cost);
     }
 
     const LightField& field_;

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "core/progress.h"
-#include "gathering/near_field.h"
-#include "gathering/receivers.h"
+#include "near_field/near_field.h"
+#include "receivers/receivers.h"
 #include "gathering/settings.h"
 #include "lighting_grid/lighting_grid.h"
 #include "medium/lattice/extinction_pyramid.h"

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "gathering/receivers.h"
+#include "receivers/receivers.h"
 #include "medium_lighting/lit_lattice.h"
 #include "scattering/multiple_scattering.h"
 

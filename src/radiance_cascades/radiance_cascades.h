@@ -21,7 +21,7 @@
 #include <span>
 #include <vector>
 
-#include "gathering/receivers.h"
+#include "receivers/receivers.h"
 #include "medium/lattice/extinction_pyramid.h"
 #include "radiance_cascades/cascade.h"
 #include "radiance_cascades/cascade_directions.h"

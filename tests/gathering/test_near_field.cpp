@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "gather_fixture.h"
-#include "gathering/near_field.h"
+#include "near_field/near_field.h"
 
 namespace brisance {
 namespace {

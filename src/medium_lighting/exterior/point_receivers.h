@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "gathering/receivers.h"
+#include "receivers/receivers.h"
 #include "medium/medium.h"
 
 namespace brisance {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/parallel.h"
-#include "gathering/near_field.h"
+#include "near_field/near_field.h"
 #include "medium/coarse_medium.h"
 #include "medium/phase.h"
 #include "medium_lighting/levels/coarse_lighting.h"

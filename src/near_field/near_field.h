@@ -3,9 +3,8 @@
 //
 // Receivers and lights are nodes of one lattice, so their separation takes a few hundred values and everything but the
 // extinction is known in advance. For each separation o:
-//  - The optical depth between node x and node x + o is a fixed linear combination of the extinction at nearby nodes.
-//    It is the exact line integral of the trilinear interpolant, which is piecewise cubic along the line: a 2-point
-//    Gauss rule per piece integrates it without error.
+//  - The optical depth between node x and node x + o is a fixed linear combination of the extinction at nearby nodes
+//    (separation_depth.h).
 //  - The kernel is the singular 1/d^2 itself. It leaves out the node's own light, which the self term adds:
 //      kappa(s) = (1/V) integral exp(-s r) / r^2 dV - sum over o != 0 of exp(-s |o|) / |o|^2,
 //    This correction makes the punctured lattice sum exact for smooth light in a homogeneous medium, and makes such a
@@ -20,7 +19,7 @@
 #include <span>
 #include <vector>
 
-#include "gathering/receivers.h"
+#include "receivers/receivers.h"
 #include "medium/lattice/brick_lattice.h"
 
 namespace brisance {

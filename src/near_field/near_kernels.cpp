@@ -1,10 +1,10 @@
-#include "gathering/near_kernels.h"
+#include "near_field/near_kernels.h"
 
 #include <algorithm>
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "gathering/near_kernels.cpp"
+#define HWY_TARGET_INCLUDE "near_field/near_kernels.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
 
 #include <hwy/contrib/math/math-inl.h>

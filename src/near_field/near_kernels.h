@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "gathering/near_field.h"
+#include "near_field/near_field.h"
 
 namespace brisance {
 

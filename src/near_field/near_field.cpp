@@ -1,12 +1,11 @@
-#include "gathering/near_field.h"
+#include "near_field/near_field.h"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <tuple>
 
 #include "core/parallel.h"
-#include "gathering/near_kernels.h"
+#include "near_field/near_kernels.h"
+#include "near_field/separation_depth.h"
 #include "medium/phase.h"
 #include "medium/sh.h"
 
@@ -17,42 +16,11 @@ namespace {
 constexpr int kMaxMargin = 24;  // nodes; without it, a lattice of needles would need an endless stencil
 constexpr int kSelfEntries = 129;
 
-struct NodeOrder {
-    bool operator()(const ivec3& a, const ivec3& b) const { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
-};
-
-void add_trilinear(std::map<ivec3, double, NodeOrder>& taps, const dvec3& p, double weight) {
-    const dvec3 base = glm::floor(p);
-    const dvec3 f = p - base;
-    for (int k = 0; k < 8; ++k) {
-        const ivec3 d(k >> 2, k >> 1 & 1, k & 1);
-        const double w = (d.x ? f.x : 1 - f.x) * (d.y ? f.y : 1 - f.y) * (d.z ? f.z : 1 - f.z);
-        if (w > 1e-12)
-            taps[ivec3(base) + d] += w * weight;
-    }
-}
-
 // Returns the line integral from node 0 to node o as coefficients of the nodes' values.
 std::vector<NearField::Tap> line_taps(const ivec3& o, double metres) {
-    std::vector<double> cuts{0.0, 1.0};
-    for (int a = 0; a < 3; ++a)
-        for (int k = 1; k < std::abs(o[a]); ++k)
-            cuts.push_back(double(k) / std::abs(o[a]));
-    std::sort(cuts.begin(), cuts.end());
-    std::map<ivec3, double, NodeOrder> taps;
-    const double gauss = 0.5 / std::sqrt(3.0);
-    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-        const double length = cuts[i + 1] - cuts[i];
-        if (length < 1e-12)
-            continue;
-        const double middle = 0.5 * (cuts[i] + cuts[i + 1]);
-        for (double t : {middle - gauss * length, middle + gauss * length})
-            add_trilinear(taps, dvec3(o) * t, 0.5 * length * metres);
-    }
     std::vector<NearField::Tap> list;
-    list.reserve(taps.size());
-    for (const auto& [node, weight] : taps)
-        list.push_back({node, static_cast<float>(weight)});
+    for (const auto& [node, share] : line_shares(dvec3(o)))
+        list.push_back({node, static_cast<float>(share * metres)});
     return list;
 }
 

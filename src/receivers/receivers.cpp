@@ -1,4 +1,4 @@
-#include "gathering/receivers.h"
+#include "receivers/receivers.h"
 
 #include "core/parallel.h"
 

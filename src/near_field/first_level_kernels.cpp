@@ -1,0 +1,185 @@
+#include "near_field/first_level_kernels.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "near_field/first_level_kernels.cpp"
+#include <hwy/foreach_target.h>  // IWYU pragma: keep
+
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#include "medium/phase-inl.h"
+#include "medium/sh.h"
+#include "receivers/lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace brisance {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::CappedTag<float, 8>;  // a row is eight cells
+using V = hn::Vec<D>;
+
+// Taps are loaded once for so many rows.
+constexpr int kRowsAtOnce = 2;
+
+// What one light after another sends to the receivers of a row.
+struct RowLight {
+    V shift[3];
+    V to_light[3];  // from receivers [m]
+    V inverse;      // of distances [1/m]
+    V weight;       // blend / distance^2 [1/m^2]
+    bool dark;
+};
+
+HWY_INLINE V blend(D d, float radius, V distance) {
+    const V t = hn::Mul(distance, hn::Set(d, 1.0f / radius));
+    const V rising = hn::Sub(hn::Add(t, t), hn::Set(d, 1.0f)), falling = hn::Sub(hn::Set(d, 2.0f), t);
+    return hn::Min(hn::Max(hn::Min(rising, falling), hn::Zero(d)), hn::Set(d, 1.0f));
+}
+
+HWY_INLINE RowLight row_light(D d, const FirstLevelBlock& b, const FlatSeparations::Separation& s, int at) {
+    RowLight row;
+    const float* const light = b.light + at + s.offset;
+    const V any = hn::Or(hn::LoadU(d, light),
+                         hn::Or(hn::LoadU(d, light + b.plane), hn::LoadU(d, light + 2 * b.plane)));
+    row.dark = hn::AllTrue(d, hn::Eq(any, hn::Zero(d)));
+    if (row.dark)
+        return row;
+    for (int a = 0; a < 3; ++a) {
+        row.shift[a] = hn::LoadU(d, light + (3 + a) * b.plane);
+        row.to_light[a] = hn::Add(hn::Set(d, s.to_vertex[a]), row.shift[a]);
+    }
+    const V square =
+        hn::Max(dot(row.to_light[0], row.to_light[1], row.to_light[2], row.to_light[0], row.to_light[1],
+                    row.to_light[2]),
+                hn::Set(d, 1e-30f));
+    row.inverse = reciprocal_sqrt(d, square);
+    const V share = blend(d, b.radius, hn::Mul(square, row.inverse));
+    row.dark = hn::AllTrue(d, hn::Eq(share, hn::Zero(d)));
+    row.weight = hn::Mul(share, hn::Mul(row.inverse, row.inverse));
+    return row;
+}
+
+// Multiplies the weights by transmittances.
+template <int kRows>
+HWY_INLINE void extinguish(D d, const FlatSeparations& all, const FlatSeparations::Separation& s,
+                           const FirstLevelBlock& b, const int* at, RowLight* rows) {
+    V depth[kRows], change[kRows][3];
+    for (int r = 0; r < kRows; ++r)
+        depth[r] = change[r][0] = change[r][1] = change[r][2] = hn::Zero(d);
+    const FlatSeparations::Tap* const last = all.taps.data() + s.last_tap;
+    for (const FlatSeparations::Tap* tap = all.taps.data() + s.first_tap; tap != last; ++tap) {
+        const V length = hn::Set(d, tap->length);
+        const V x = hn::Set(d, tap->change[0]), y = hn::Set(d, tap->change[1]), z = hn::Set(d, tap->change[2]);
+        for (int r = 0; r < kRows; ++r) {
+            const V extinction = hn::LoadU(d, b.extinction + at[r] + tap->offset);
+            depth[r] = hn::MulAdd(length, extinction, depth[r]);
+            change[r][0] = hn::MulAdd(x, extinction, change[r][0]);
+            change[r][1] = hn::MulAdd(y, extinction, change[r][1]);
+            change[r][2] = hn::MulAdd(z, extinction, change[r][2]);
+        }
+    }
+    for (int r = 0; r < kRows; ++r) {
+        const V shifted = hn::Add(depth[r], dot(change[r][0], change[r][1], change[r][2], rows[r].shift[0],
+                                                rows[r].shift[1], rows[r].shift[2]));
+        const V positive = hn::Min(hn::Max(shifted, hn::Zero(d)), hn::Set(d, 80.0f));
+        rows[r].weight = hn::Mul(rows[r].weight, hn::Exp(d, hn::Neg(positive)));
+    }
+}
+
+// Adds what arrives at a row, whose first cell is `in_block`.
+HWY_INLINE void add_row(D d, const FirstLevelBlock& b, const RowLight& row, int light, int in_block) {
+    const V minus = hn::Neg(row.inverse);
+    const V x = hn::Mul(row.to_light[0], minus), y = hn::Mul(row.to_light[1], minus),
+            z = hn::Mul(row.to_light[2], minus);
+    V phase = hn::Zero(d);
+    if (b.scattered) {
+        const float* const camera = b.toward_camera + in_block;
+        phase = henyey_greenstein_lanes(d, b.mean_cosine,
+                                        dot(x, y, z, hn::LoadU(d, camera), hn::LoadU(d, camera + b.kCells),
+                                            hn::LoadU(d, camera + 2 * b.kCells)));
+    }
+    const auto basis = b.moments || b.directional ? basis_lanes(d, x, y, z) : BasisLanes<D>{};
+    for (int c = 0; c < 3; ++c) {
+        V intensity = hn::LoadU(d, b.light + c * b.plane + light);
+        if (b.directional)
+            for (int m = 0; m < kShMoments; ++m)
+                intensity = hn::MulAdd(basis.y[m], hn::LoadU(d, b.directional + (3 * m + c) * b.plane + light),
+                                       intensity);
+        const V arriving = hn::Mul(intensity, row.weight);
+        accumulate(d, b.fluence + c * b.kCells + in_block, arriving);
+        if (b.scattered)
+            accumulate(d, b.scattered + c * b.kCells + in_block, hn::Mul(arriving, phase));
+        if (b.moments)
+            for (int m = 0; m < kShMoments; ++m)
+                accumulate(d, b.moments + (3 * m + c) * b.kCells + in_block, hn::Mul(arriving, basis.y[m]));
+    }
+}
+
+std::uint64_t first_level(const FlatSeparations& all, const FirstLevelBlock& b) {
+    const D d;
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    std::uint64_t evaluations = 0;
+    RowLight rows[kRowsAtOnce];
+    int at[kRowsAtOnce] = {}, in_block[kRowsAtOnce] = {};
+    for (const FlatSeparations::Separation& s : all.separations) {
+        int waiting = 0;
+        const auto finish = [&] {
+            if (waiting == kRowsAtOnce)
+                extinguish<kRowsAtOnce>(d, all, s, b, at, rows);
+            else
+                extinguish<1>(d, all, s, b, at, rows);
+            for (int r = 0; r < waiting; ++r)
+                add_row(d, b, rows[r], at[r] + s.offset, in_block[r]);
+            evaluations += std::uint64_t(waiting) * std::uint64_t(lanes);
+            waiting = 0;
+        };
+        for (const FirstLevelBlock::Row& row : b.rows)
+            for (int z = 0; z < BrickLattice::kSize; z += lanes) {
+                rows[waiting] = row_light(d, b, s, row.in_box + z);
+                if (rows[waiting].dark)
+                    continue;
+                at[waiting] = row.in_box + z;
+                in_block[waiting] = row.in_block + z;
+                if (++waiting == kRowsAtOnce)
+                    finish();
+            }
+        if (waiting > 0)
+            finish();
+    }
+    return evaluations;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace brisance
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace brisance {
+
+HWY_EXPORT(first_level);
+
+FlatSeparations flatten(const FirstLevel& level, int parity, int wide) {
+    const auto flat = [&](const ivec3& cell) { return (cell.x * wide + cell.y) * wide + cell.z; };
+    const int plane = wide * wide * wide;
+    const ivec3 own = FirstLevel::parity(parity);
+    FlatSeparations out;
+    for (const FirstLevel::Separation& s : level.separations(parity)) {
+        const auto first = static_cast<int>(out.taps.size());
+        for (const ShiftedTap& t : s.taps) {
+            const ivec3 node = own + t.node, odd = node & 1;
+            out.taps.push_back({(odd.x << 2 | odd.y << 1 | odd.z) * plane + flat((node - odd) >> 1),
+                                t.length,
+                                {t.change.x, t.change.y, t.change.z}});
+        }
+        out.separations.push_back({flat(s.vertex), s.to_vertex, first, static_cast<int>(out.taps.size())});
+    }
+    return out;
+}
+
+std::uint64_t gather_first_level(const FlatSeparations& separations, const FirstLevelBlock& block) {
+    return HWY_DYNAMIC_DISPATCH(first_level)(separations, block);
+}
+
+}  // namespace brisance
+#endif
