@@ -24,8 +24,8 @@
 
 #include "diffusion/multigrid.h"
 #include "diffusion/settings.h"
-#include "receivers/receivers.h"
 #include "medium/lattice/extinction_pyramid.h"
+#include "receivers/receivers.h"
 
 namespace brisance {
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <span>
 
-#include "receivers/receivers.h"
 #include "lighting_grid/lighting_grid.h"
 #include "medium/lattice/extinction_pyramid.h"
+#include "receivers/receivers.h"
 #include "shadows/shadow_maps.h"
 
 namespace brisance {

@@ -7,6 +7,7 @@
 #include "core/stopwatch.h"
 #include "gathering/far_gather.h"
 #include "gathering/node_receivers.h"
+#include "gathering/separations.h"
 #include "near_field/first_level.h"
 
 namespace brisance {
@@ -17,13 +18,6 @@ int wanted_coarsening(const LightField& field, const LatticeRequest& request, co
     if (!request.interpolates_far_light)
         return 0;
     return std::max(request.least_coarsening, coarsening_of(field, level));
-}
-
-// Whether a level's lights stand beside even nodes of the medium's own lattice, and no surface parts them from receivers.
-bool gathers_by_separations(const LightField& field, const GridLevel& level) {
-    return field.settings.shadows == ShadowMethod::Maps && field.bottom == 0 && field.intensity && level.level == 1 &&
-           level.size() > 0 && &level != &field.grid->levels.back() && !field.occluders &&
-           FirstLevel::is_small(field.pyramid->medium().local_from_index, field.alpha * level.spacing);
 }
 
 // Adds the light of all levels of the grid to the requested nodes, from near to far: each at the nodes of a lattice and
@@ -74,37 +68,65 @@ private:
 
     // Of the levels from `first` to `last`.
     void gather(std::size_t first, std::size_t last) {
-        if (first < last && gathers_by_separations(field_, field_.grid->levels[first]) &&
-            std::ranges::all_of(asked_, [](const Asked& a) { return a.coarsening <= 1; }))
-            gather_by_separations(field_.grid->levels[first++]);
-        if (last == first)
-            return;
-        std::vector<Gathered> light(asked_.size());
-        std::vector<ReceiverSet> sets;
-        for (std::size_t i = 0; i < asked_.size(); ++i) {
-            light[i].resize(asked_[i].nodes->receivers.size(), request_.eye.has_value(), request_.moments);
-            sets.push_back({&asked_[i].nodes->receivers, &light[i]});
-        }
-        FarGather(field_, std::move(sets), request_.mean_cosine, progress_).run_levels(first, last, costs_);
-        for (std::size_t i = 0; i < asked_.size(); ++i)
-            add_at_nodes(*asked_[i].nodes, light[i], *asked_[i].light);
+        const auto by_separations = [&](const GridLevel& level) {
+            return std::ranges::all_of(
+                asked_, [&](const Asked& a) { return gathers_by_separations(field_, level, a.coarsening); });
+        };
+        while (first < last && by_separations(field_.grid->levels[first]))
+            gather_by_separations(first++);
+        if (first < last)
+            gather_by_maps(field_, asked_, first, last);
     }
 
-    // Of the first level above the lattice's own nodes, without maps.
-    void gather_by_separations(const GridLevel& level) {
+    void gather_by_maps(const LightField& field, const std::vector<Asked>& asked, std::size_t first, std::size_t last) {
+        std::vector<Gathered> light(asked.size());
+        std::vector<ReceiverSet> sets;
+        for (std::size_t i = 0; i < asked.size(); ++i) {
+            light[i].resize(asked[i].nodes->receivers.size(), request_.eye.has_value(), request_.moments);
+            sets.push_back({&asked[i].nodes->receivers, &light[i]});
+        }
+        FarGather(field, std::move(sets), request_.mean_cosine, progress_).run_levels(first, last, costs_);
+        for (std::size_t i = 0; i < asked.size(); ++i)
+            add_at_nodes(*asked[i].nodes, light[i], *asked[i].light);
+    }
+
+    // By separations alone where no surface is as near as the level's light reaches, elsewhere by maps.
+    void gather_by_separations(std::size_t index) {
         const Stopwatch watch;
+        const GridLevel& level = field_.grid->levels[index];
         const Medium& medium = field_.pyramid->medium();
-        const FirstLevel first(medium.local_from_index, field_.alpha * level.spacing);
+        const FirstLevel by_separations(first_level_lattice(field_, level), field_.alpha * level.spacing);
         LevelCost cost;
         cost.level = level.level;
         cost.lights = level.size();
-        for (const Asked& asked : asked_)
-            cost.evaluations += first.gather({&medium.lattice, &medium.extinction, &level, request_.eye,
-                                              medium.local_of_node(ivec3(0)), request_.mean_cosine},
-                                             {&asked.nodes->lattice, &asked.nodes->needed, asked.coarsening == 1},
-                                             *asked.light);
+        std::vector<NodesBesideSurfaces> parts;
+        parts.reserve(asked_.size());
+        for (const Asked& asked : asked_) {
+            const NodeReceivers* open = asked.nodes;
+            if (field_.occluders) {
+                parts.push_back(part_within_reach(medium, request_, *asked.nodes, asked.coarsening,
+                                                  by_separations.longest_reach(), *field_.occluders));
+                open = &parts.back().in_the_open;
+            }
+            cost.evaluations += by_separations.gather(
+                {&field_.pyramid->lattice(level.level - 1), &field_.pyramid->nodes(level.level - 1), &level,
+                 request_.eye, medium.local_of_node(ivec3(0)), request_.mean_cosine},
+                {&open->lattice, &open->needed, asked.coarsening == level.level}, *asked.light);
+        }
         cost.gather_seconds = watch.seconds();
         costs_.push_back(cost);
+        if (!field_.occluders)
+            return;
+        std::vector<Asked> beside;
+        for (std::size_t i = 0; i < asked_.size(); ++i)
+            beside.push_back({&parts[i].beside, asked_[i].light, asked_[i].coarsening});
+        ShadowMapCache own;
+        auto& maps = (field_.cache ? field_.cache : &own)->beside_surfaces;
+        if (!maps)
+            maps = std::make_unique<ShadowMapCache>(ShadowMapCache{{}, true});
+        LightField field = field_;
+        field.cache = maps.get();
+        gather_by_maps(field, beside, index, index + 1);
     }
 
     const LightField& field_;
@@ -115,6 +137,14 @@ private:
 };
 
 }  // namespace
+
+std::uint64_t ShadowMapCache::bytes() const {
+    std::uint64_t sum = beside_surfaces ? beside_surfaces->bytes() : 0;
+    for (const Level& level : levels)
+        sum += (level.maps.size() + level.ends.size()) * sizeof(std::uint16_t) +
+               level.map_of.size() * sizeof(std::uint32_t);
+    return sum;
+}
 
 GridLevel bottom_level(const LightField& field) {
     const Medium& medium = field.pyramid->medium();

@@ -6,16 +6,17 @@
 // [r_0, 2 r_0]. Level l fades in over [r_l / 2, r_l] and out over [r_l, 2 r_l]. The top level never fades out.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/progress.h"
-#include "near_field/near_field.h"
-#include "receivers/receivers.h"
 #include "gathering/settings.h"
 #include "lighting_grid/lighting_grid.h"
 #include "medium/lattice/extinction_pyramid.h"
+#include "near_field/near_field.h"
+#include "receivers/receivers.h"
 
 namespace brisance {
 
@@ -43,6 +44,10 @@ struct ShadowMapCache {
     // Makes maps only of lights that may reach some receiver. This pays for few receivers among many lights and changes
     // no bit of the result.
     bool on_demand = false;
+    // Such maps beside surfaces, of levels that need none in the open (separations.h); null until made.
+    std::unique_ptr<ShadowMapCache> beside_surfaces = nullptr;
+
+    std::uint64_t bytes() const;
 };
 
 // Lights of all levels in one medium.

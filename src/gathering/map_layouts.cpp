@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gathering/node_receivers.h"
+#include "gathering/separations.h"
 #include "medium/lattice/local_bounds.h"
 
 namespace brisance {
@@ -83,7 +85,8 @@ ShadowMapLayout map_layout(const LightField& field, const GridLevel& level, bool
 std::uint64_t map_bytes(const LightField& field) {
     std::uint64_t sum = 0;
     for (const GridLevel& level : field.grid->levels)
-        if (level.size() > 0 && field.settings.shadows == ShadowMethod::Maps)
+        if (level.size() > 0 && field.settings.shadows == ShadowMethod::Maps &&
+            !gathers_by_separations(field, level, coarsening_of(field, level)))
             sum += level.size() * map_layout(field, level, &level == &field.grid->levels.back()).bytes_per_light();
     return sum;
 }

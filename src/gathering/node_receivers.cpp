@@ -7,15 +7,17 @@
 #include "core/parallel.h"
 #include "medium/coarse_medium.h"
 #include "medium/lattice/corners_seen.h"
+#include "medium/voxel_size.h"
 
 namespace brisance {
 
 namespace {
 
-// The distance between the nodes at which a level's light is gathered, over its blending radius. An interpolant errs as
-// the square of that distance where light is smooth, and by more at the rims of dense smoke, where it has kinks: below
-// the usual error the distance falls faster than as the square root.
-constexpr float kShareOfRadius = 0.125f, kErrorOfShare = 0.02f;
+// The distance between the nodes at which a level's light is gathered, over its blending radius. Between them light is
+// interpolated as its eighth root: an interpolant errs as the square of that distance where light is smooth, and by
+// more at the rims of dense smoke, where it has kinks. Below the usual error the distance falls faster than as the
+// square root.
+constexpr float kShareOfRadius = 0.25f, kErrorOfShare = 0.02f;
 
 // `error`: over the usual one.
 float power_of_share(float error) {
@@ -31,6 +33,11 @@ ivec3 node_in_sub_blocks(int k) {
 std::size_t needed_in_brick(const NodeReceivers& nodes, std::size_t brick) {
     const auto first = nodes.needed.begin() + std::ptrdiff_t(brick * BrickLattice::kNodes);
     return std::size_t(std::count_if(first, first + BrickLattice::kNodes, [](std::uint8_t n) { return n != 0; }));
+}
+
+bool any_needed(const NodeReceivers& nodes, std::size_t brick) {
+    const auto first = nodes.needed.begin() + std::ptrdiff_t(brick * BrickLattice::kNodes);
+    return std::any_of(first, first + BrickLattice::kNodes, [](std::uint8_t n) { return n != 0; });
 }
 
 // Fills in block `block` of the receivers from the needed nodes of a brick.
@@ -71,15 +78,32 @@ void place_receivers(const Medium& medium, const LatticeRequest& request, int co
 // Coarse nodes around one brick of the fine lattice: it reaches from the first node's to beyond the last one's.
 constexpr int kParents = BrickLattice::kSize / 2 + 1;
 
+using ParentBox = std::array<float, kParents * kParents * kParents>;
+
 // Value at node `p` of a brick whose parents' values are in `box`.
-float between_parents(const float* box, const ivec3& p) {
+float between_parents(const ParentBox& box, const ivec3& p) {
     const ivec3 low = p >> 1, high = (p + 1) >> 1;
     const auto along_z = [&](int x, int y) {
-        const float* row = box + (x * kParents + y) * kParents;
+        const float* row = box.data() + (x * kParents + y) * kParents;
         return 0.5f * (row[low.z] + row[high.z]);
     };
     const auto along_y = [&](int x) { return 0.5f * (along_z(x, low.y) + along_z(x, high.y)); };
     return 0.5f * (along_y(low.x) + along_y(high.x));
+}
+
+float eighth_power(float x) {
+    x *= x;
+    x *= x;
+    return x * x;
+}
+
+// Replaces values by what is interpolated between them. Returns whether that is their eighth roots.
+bool take_roots(ParentBox& box) {
+    if (std::ranges::any_of(box, [](float v) { return v < 0.0f; }))
+        return false;
+    for (float& v : box)
+        v = std::sqrt(std::sqrt(std::sqrt(v)));
+    return true;
 }
 
 }  // namespace
@@ -117,6 +141,35 @@ NodesBesideSurfaces part_beside_surfaces(const Medium& medium, const LatticeRequ
     return out;
 }
 
+NodesBesideSurfaces part_within_reach(const Medium& medium, const LatticeRequest& request, const NodeReceivers& nodes,
+                                      int coarsening, float reach, const Occluders& occluders) {
+    NodesBesideSurfaces out{{nodes.lattice, nodes.needed, {}, {}}, {nodes.lattice, {}, {}, {}}};
+    out.beside.needed.resize(nodes.needed.size(), 0);
+    const auto near_surface = [&](const ivec3& first, int size) {
+        const vec3 middle = vec3(first) + 0.5f * float(size - 1);
+        const float half = 0.5f * float((size - 1) << coarsening) * longest_diagonal(medium);
+        return occluders.any_within(
+            medium.local_from_index * (middle * float(1 << coarsening) - vec3(medium.reference_node)), half + reach);
+    };
+    constexpr int kPart = BrickLattice::kSize / 2;  // of a brick, tested alone
+    parallel_for(nodes.lattice.brick_count(), [&](std::size_t b) {
+        const ivec3 first = nodes.lattice.first_node(b);
+        if (!any_needed(nodes, b) || !near_surface(first, BrickLattice::kSize))
+            return;
+        std::array<bool, 8> near;
+        for (int k = 0; k < 8; ++k)
+            near[k] = near_surface(first + kPart * ivec3(k >> 2, k >> 1 & 1, k & 1), kPart);
+        for (int n = 0; n < BrickLattice::kNodes; ++n) {
+            const ivec3 part = BrickLattice::node_in_brick(n) / kPart;
+            const std::size_t i = b * BrickLattice::kNodes + n;
+            if (near[part.x << 2 | part.y << 1 | part.z])
+                std::swap(out.in_the_open.needed[i], out.beside.needed[i]);
+        }
+    });
+    place_receivers(medium, request, coarsening, out.beside);
+    return out;
+}
+
 int coarsening_of(const LightField& field, const GridLevel& level) {
     // Without maps nothing is smoothed. Light of the finest level comes from within a voxel.
     if (field.settings.shadows != ShadowMethod::Maps || level.level == field.bottom)
@@ -146,20 +199,25 @@ void add_at_nodes(const NodeReceivers& from, const Gathered& values, Gathered& o
 void add_interpolated(const NodeReceivers& from, const Gathered& values, const NodeReceivers& to, Gathered& out) {
     const auto source = values.planes();
     const auto sum = out.planes();
+    const std::size_t rooted =
+        (values.fluence.size() + values.scattered.size()) / std::max<std::size_t>(1, from.needed.size());
     parallel_for(
         to.lattice.brick_count(),
         [&](std::size_t b) {
-            const auto needed = to.needed.begin() + std::ptrdiff_t(b * BrickLattice::kNodes);
-            if (std::none_of(needed, needed + BrickLattice::kNodes, [](std::uint8_t n) { return n != 0; }))
+            if (!any_needed(to, b))
                 return;
-            std::array<float, kParents * kParents * kParents> box;
+            const auto needed = to.needed.begin() + std::ptrdiff_t(b * BrickLattice::kNodes);
+            ParentBox box;
             const ivec3 low = to.lattice.first_node(b) >> 1;
             for (std::size_t c = 0; c < source.size(); ++c) {
                 copy_box(from.lattice, source[c], 1, low, ivec3(kParents), box);
+                const bool roots = c < rooted && take_roots(box);
                 float* const node = &sum[c][b * BrickLattice::kNodes];
                 for (int k = 0; k < BrickLattice::kNodes; ++k)
-                    if (needed[k])
-                        node[k] += between_parents(box.data(), BrickLattice::node_in_brick(k));
+                    if (needed[k]) {
+                        const float between = between_parents(box, BrickLattice::node_in_brick(k));
+                        node[k] += roots ? eighth_power(between) : between;
+                    }
             }
         },
         16);

@@ -8,8 +8,8 @@
 
 #include <vector>
 
-#include "receivers/receivers.h"
 #include "medium_lighting/lit_lattice.h"
+#include "receivers/receivers.h"
 #include "scattering/multiple_scattering.h"
 
 namespace brisance {

@@ -29,7 +29,8 @@ ivec3 reach_of(const mat3& local_from_index, float radius) {
 float longest_shift(const mat3& local_from_index) {
     float longest = 0.0f;
     for (int k = 0; k < 4; ++k)
-        longest = std::max(longest, glm::length(local_from_index * vec3(1.0f, k & 1 ? 1.0f : -1.0f, k & 2 ? 1.0f : -1.0f)));
+        longest =
+            std::max(longest, glm::length(local_from_index * vec3(1.0f, k & 1 ? 1.0f : -1.0f, k & 2 ? 1.0f : -1.0f)));
     return longest;
 }
 
@@ -40,10 +41,14 @@ bool FirstLevel::is_small(const mat3& local_from_index, float radius) {
     return std::max({reach.x, reach.y, reach.z}) <= kLongestReach;
 }
 
+float FirstLevel::longest_reach() const {
+    return 2.0f * radius_ + longest_shift(local_from_index_);
+}
+
 FirstLevel::FirstLevel(const mat3& local_from_index, float radius)
     : local_from_index_(local_from_index), radius_(radius) {
     const ivec3 reach = reach_of(local_from_index, radius), cells = (reach + 1) / 2 + 1;
-    const float shift = longest_shift(local_from_index);
+    const float shift = longest_shift(local_from_index), longest = longest_reach();
     parallel_for(kParities, [&](std::size_t p) {
         for (int x = -cells.x; x <= cells.x; ++x)
             for (int y = -cells.y; y <= cells.y; ++y)
@@ -51,7 +56,7 @@ FirstLevel::FirstLevel(const mat3& local_from_index, float radius)
                     const ivec3 vertex(x, y, z), node = 2 * vertex - parity(int(p));
                     const vec3 to_vertex = local_from_index * vec3(node);
                     const float d = glm::length(to_vertex);
-                    if (node != ivec3(0) && d < 2.0f * radius + shift && d > 0.5f * radius - shift)
+                    if (node != ivec3(0) && d < longest && d > 0.5f * radius - shift)
                         separations_[p].push_back({vertex, to_vertex, {}});
                 }
     });
@@ -136,9 +141,8 @@ private:
             if (std::any_of(first, first + BrickLattice::kNodes, [](std::uint8_t n) { return n != 0; }))
                 blocks.push_back(targets_.every_second ? targets_.lattice->brick(b) : targets_.lattice->brick(b) >> 1);
         }
-        std::sort(blocks.begin(), blocks.end(), [](const ivec3& a, const ivec3& b) {
-            return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
-        });
+        std::sort(blocks.begin(), blocks.end(),
+                  [](const ivec3& a, const ivec3& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); });
         blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
         return blocks;
     }
@@ -148,8 +152,7 @@ private:
     void for_each_target(const ivec3& block, int parity, const Take& take) const {
         for (int cell = 0; cell < kCells; ++cell) {
             const ivec3 at = block * kSize + BrickLattice::node_in_brick(cell);
-            const std::int64_t node =
-                targets_.lattice->find_node(nodes_per_cell() * at + FirstLevel::parity(parity));
+            const std::int64_t node = targets_.lattice->find_node(nodes_per_cell() * at + FirstLevel::parity(parity));
             if (node >= 0 && (*targets_.needed)[std::size_t(node)])
                 take(cell, std::size_t(node));
         }
@@ -161,8 +164,7 @@ private:
         std::vector<FirstLevelBlock::Row> rows;
         for (int k = 0; k < kSize * kSize; ++k)
             if (needed[std::size_t(k)])
-                rows.push_back(
-                    {((k / kSize + margin_) * wide_ + k % kSize + margin_) * wide_ + margin_, k * kSize});
+                rows.push_back({((k / kSize + margin_) * wide_ + k % kSize + margin_) * wide_ + margin_, k * kSize});
         return rows;
     }
 
@@ -171,7 +173,8 @@ private:
         const ivec3 low = block * kSize - margin_;
         m.light.resize(plane_ * 6);
         copy_box(in_.lights->lattice, light_, 6, low, ivec3(wide_), m.light);
-        if (std::all_of(m.light.begin(), m.light.begin() + std::ptrdiff_t(3 * plane_), [](float v) { return v == 0.0f; }))
+        if (std::all_of(m.light.begin(), m.light.begin() + std::ptrdiff_t(3 * plane_),
+                        [](float v) { return v == 0.0f; }))
             return 0;
         part_extinction(low, m);
         if (!directional_.empty()) {
@@ -193,8 +196,8 @@ private:
         const float* from = m.nodes.data();
         for (int x = 0; x < nodes; ++x)
             for (int y = 0; y < nodes; ++y) {
-                float* const even =
-                    &m.extinction[((x & 1) << 2 | (y & 1) << 1) * plane_ + ((x >> 1) * wide_ + (y >> 1)) * std::size_t(wide_)];
+                float* const even = &m.extinction[((x & 1) << 2 | (y & 1) << 1) * plane_ +
+                                                  ((x >> 1) * wide_ + (y >> 1)) * std::size_t(wide_)];
                 for (int z = 0; z < wide_; ++z) {
                     even[z] = *from++;
                     even[plane_ + z] = *from++;
@@ -231,8 +234,7 @@ private:
     const float* directions(const ivec3& block, int parity, Memory& m) const {
         m.toward_camera.resize(3 * kCells);
         for (int cell = 0; cell < kCells; ++cell) {
-            const ivec3 node =
-                2 * (block * kSize + BrickLattice::node_in_brick(cell)) + FirstLevel::parity(parity);
+            const ivec3 node = 2 * (block * kSize + BrickLattice::node_in_brick(cell)) + FirstLevel::parity(parity);
             const vec3 toward = direction_toward(*in_.eye, in_.first_node + local_from_index_ * vec3(node));
             for (int a = 0; a < 3; ++a)
                 m.toward_camera[std::size_t(a * kCells + cell)] = toward[a];

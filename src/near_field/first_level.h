@@ -51,8 +51,8 @@ public:
     std::uint64_t gather(const Input& input, const Targets& targets, Gathered& out) const;
 
     struct Separation {
-        ivec3 vertex;      // of the light from the receiver's cell of two nodes, in cells
-        vec3 to_vertex;    // from the receiver [m]
+        ivec3 vertex;    // of the light from the receiver's cell of two nodes, in cells
+        vec3 to_vertex;  // from the receiver [m]
         std::vector<ShiftedTap> taps;
     };
     // `parity`: of a receiver at node 2 c + parity, c being its cell.
@@ -60,6 +60,7 @@ public:
     static ivec3 parity(int p) { return {p >> 2, p >> 1 & 1, p & 1}; }
     int margin() const { return margin_; }  // of cells around a receiver's cell that count
     float radius() const { return radius_; }
+    float longest_reach() const;  // from a receiver to a light [m]
 
 private:
     mat3 local_from_index_;

@@ -40,8 +40,7 @@ HWY_INLINE V blend(D d, float radius, V distance) {
 HWY_INLINE RowLight row_light(D d, const FirstLevelBlock& b, const FlatSeparations::Separation& s, int at) {
     RowLight row;
     const float* const light = b.light + at + s.offset;
-    const V any = hn::Or(hn::LoadU(d, light),
-                         hn::Or(hn::LoadU(d, light + b.plane), hn::LoadU(d, light + 2 * b.plane)));
+    const V any = hn::Or(hn::LoadU(d, light), hn::Or(hn::LoadU(d, light + b.plane), hn::LoadU(d, light + 2 * b.plane)));
     row.dark = hn::AllTrue(d, hn::Eq(any, hn::Zero(d)));
     if (row.dark)
         return row;
@@ -49,10 +48,9 @@ HWY_INLINE RowLight row_light(D d, const FirstLevelBlock& b, const FlatSeparatio
         row.shift[a] = hn::LoadU(d, light + (3 + a) * b.plane);
         row.to_light[a] = hn::Add(hn::Set(d, s.to_vertex[a]), row.shift[a]);
     }
-    const V square =
-        hn::Max(dot(row.to_light[0], row.to_light[1], row.to_light[2], row.to_light[0], row.to_light[1],
-                    row.to_light[2]),
-                hn::Set(d, 1e-30f));
+    const V square = hn::Max(
+        dot(row.to_light[0], row.to_light[1], row.to_light[2], row.to_light[0], row.to_light[1], row.to_light[2]),
+        hn::Set(d, 1e-30f));
     row.inverse = reciprocal_sqrt(d, square);
     const V share = blend(d, b.radius, hn::Mul(square, row.inverse));
     row.dark = hn::AllTrue(d, hn::Eq(share, hn::Zero(d)));
@@ -95,17 +93,17 @@ HWY_INLINE void add_row(D d, const FirstLevelBlock& b, const RowLight& row, int 
     V phase = hn::Zero(d);
     if (b.scattered) {
         const float* const camera = b.toward_camera + in_block;
-        phase = henyey_greenstein_lanes(d, b.mean_cosine,
-                                        dot(x, y, z, hn::LoadU(d, camera), hn::LoadU(d, camera + b.kCells),
-                                            hn::LoadU(d, camera + 2 * b.kCells)));
+        phase = henyey_greenstein_lanes(
+            d, b.mean_cosine,
+            dot(x, y, z, hn::LoadU(d, camera), hn::LoadU(d, camera + b.kCells), hn::LoadU(d, camera + 2 * b.kCells)));
     }
     const auto basis = b.moments || b.directional ? basis_lanes(d, x, y, z) : BasisLanes<D>{};
     for (int c = 0; c < 3; ++c) {
         V intensity = hn::LoadU(d, b.light + c * b.plane + light);
         if (b.directional)
             for (int m = 0; m < kShMoments; ++m)
-                intensity = hn::MulAdd(basis.y[m], hn::LoadU(d, b.directional + (3 * m + c) * b.plane + light),
-                                       intensity);
+                intensity =
+                    hn::MulAdd(basis.y[m], hn::LoadU(d, b.directional + (3 * m + c) * b.plane + light), intensity);
         const V arriving = hn::Mul(intensity, row.weight);
         accumulate(d, b.fluence + c * b.kCells + in_block, arriving);
         if (b.scattered)

@@ -29,10 +29,10 @@ struct FirstLevelBlock {
     static constexpr int kCells = BrickLattice::kNodes;
 
     std::size_t plane;
-    const float* extinction;    // 8 planes, of the nodes of each parity
-    const float* light;         // 6 planes: intensity, and shift from the vertex [m]
-    const float* directional;   // 24 planes or null
-    const float* toward_camera; // 3 planes of kCells for this parity, or null
+    const float* extinction;     // 8 planes, of the nodes of each parity
+    const float* light;          // 6 planes: intensity, and shift from the vertex [m]
+    const float* directional;    // 24 planes or null
+    const float* toward_camera;  // 3 planes of kCells for this parity, or null
     float radius, mean_cosine;
     // Of this parity, planes of kCells; null: not asked for.
     float* fluence;

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "near_field/near_kernels.h"
-#include "near_field/separation_depth.h"
 #include "medium/phase.h"
 #include "medium/sh.h"
+#include "near_field/near_kernels.h"
+#include "near_field/separation_depth.h"
 
 namespace brisance {
 

@@ -19,8 +19,8 @@
 #include <span>
 #include <vector>
 
-#include "receivers/receivers.h"
 #include "medium/lattice/brick_lattice.h"
+#include "receivers/receivers.h"
 
 namespace brisance {
 

@@ -85,8 +85,8 @@ std::vector<LineShare> line_shares(const dvec3& p) {
 }
 
 std::vector<ShiftedTap> shifted_taps(const ivec3& node, const mat3& local_from_index) {
-    constexpr double kShift = 0.5;     // [nodes]
-    constexpr double kLeast = 1e-5;    // taps of a smaller part of a node's spacing do not count
+    constexpr double kShift = 0.5;                              // [nodes]
+    constexpr double kLeastLength = 0.01, kLeastChange = 0.03;  // of taps, over the spacing and over a shift by it
     NodeSums sums(glm::min(node, ivec3(0)) - 1, glm::max(node, ivec3(0)) + 2, 4);
     const dmat3 metres(local_from_index);
     add_line(sums, 0, dvec3(node), glm::length(metres * dvec3(node)));
@@ -101,7 +101,7 @@ std::vector<ShiftedTap> shifted_taps(const ivec3& node, const mat3& local_from_i
     std::vector<ShiftedTap> taps;
     sums.for_each([&](const ivec3& at, const double* of) {
         const dvec3 change(of[1], of[2], of[3]);
-        if (of[0] > kLeast * spacing || glm::length(change) > kLeast * spacing)
+        if (of[0] > kLeastLength * spacing || glm::length(change) > kLeastChange * spacing)
             taps.push_back({at, static_cast<float>(of[0]), vec3(change * per_metre)});
     });
     return taps;

@@ -21,11 +21,11 @@
 #include <span>
 #include <vector>
 
-#include "receivers/receivers.h"
 #include "medium/lattice/extinction_pyramid.h"
 #include "radiance_cascades/cascade.h"
 #include "radiance_cascades/cascade_directions.h"
 #include "radiance_cascades/settings.h"
+#include "receivers/receivers.h"
 
 namespace brisance {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "receivers/receivers.h"
 #include "medium/medium.h"
+#include "receivers/receivers.h"
 
 namespace brisance {
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "core/parallel.h"
-#include "near_field/near_field.h"
 #include "medium/coarse_medium.h"
 #include "medium/phase.h"
 #include "medium_lighting/levels/coarse_lighting.h"
+#include "near_field/near_field.h"
 
 namespace brisance {
 

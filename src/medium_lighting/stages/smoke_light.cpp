@@ -138,10 +138,7 @@ public:
 
     StageCost cost(const Gathered& sum) const {
         StageCost stage{"light from the smoke (MM)", watch_.seconds(), 0, {}};
-        std::uint64_t kept = 0;
-        for (const ShadowMapCache::Level& level : maps_.levels)
-            kept += level.maps.size() * sizeof(std::uint16_t);
-        stage.bytes = std::max(kept, most_held(levels_)) + (sum.fluence.size() + sum.scattered.size()) * 4;
+        stage.bytes = std::max(maps_.bytes(), most_held(levels_)) + (sum.fluence.size() + sum.scattered.size()) * 4;
         stage.detail = detail_;
         if (!levels_of_bounce_.empty())
             stage.detail["levels_of_fine_bounce"] = level_table(levels_of_bounce_);

@@ -1,0 +1,22 @@
+#include "gathering/separations.h"
+
+#include <algorithm>
+
+#include "near_field/first_level.h"
+
+namespace brisance {
+
+mat3 first_level_lattice(const LightField& field, const GridLevel& level) {
+    return field.pyramid->medium().local_from_index * float(1 << (level.level - 1));
+}
+
+bool gathers_by_separations(const LightField& field, const GridLevel& level, int coarsening) {
+    const bool stands_at_nodes = field.bottom == 0 && field.intensity && level.lobe.empty() && level.ball.empty();
+    const bool receivers_at_nodes = coarsening == level.level - 1 || coarsening == level.level;
+    return field.settings.shadows == ShadowMethod::Maps && stands_at_nodes && receivers_at_nodes && level.level >= 1 &&
+           level.level <= std::min(kHighestBySeparations, field.pyramid->level_count()) && level.size() > 0 &&
+           &level != &field.grid->levels.back() &&
+           FirstLevel::is_small(first_level_lattice(field, level), field.alpha * level.spacing);
+}
+
+}  // namespace brisance
