@@ -7,8 +7,8 @@
 #include "core/parallel.h"
 #include "fires.h"
 #include "gathering/far_kernels.h"
-#include "gathering/near_field.h"
 #include "medium/phase.h"
+#include "near_field/near_field.h"
 #include "peaks.h"
 
 namespace brisance::benchmarks {

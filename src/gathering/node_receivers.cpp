@@ -17,7 +17,7 @@ namespace {
 // interpolated as its eighth root: an interpolant errs as the square of that distance where light is smooth, and by
 // more at the rims of dense smoke, where it has kinks. Below the usual error the distance falls faster than as the
 // square root.
-constexpr float kShareOfRadius = 0.25f, kErrorOfShare = 0.02f;
+constexpr float kShareOfRadius = 0.125f, kErrorOfShare = 0.02f;
 
 // `error`: over the usual one.
 float power_of_share(float error) {
