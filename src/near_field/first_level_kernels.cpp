@@ -1,5 +1,7 @@
 #include "near_field/first_level_kernels.h"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "near_field/first_level_kernels.cpp"
 #include <hwy/foreach_target.h>  // IWYU pragma: keep
@@ -20,7 +22,7 @@ using D = hn::CappedTag<float, 8>;  // a row is eight cells
 using V = hn::Vec<D>;
 
 // Taps are loaded once for so many rows.
-constexpr int kRowsAtOnce = 2;
+constexpr std::size_t kRowsAtOnce = 2;
 
 // What one light after another sends to the receivers of a row.
 struct RowLight {
@@ -85,8 +87,25 @@ HWY_INLINE void extinguish(D d, const FlatSeparations& all, const FlatSeparation
     }
 }
 
+// What arrives at a row, side by side: planes of a block lie so far apart that they would share few lines of a cache.
+struct alignas(64) RowSums {
+    static constexpr int kLanes = BrickLattice::kSize;
+    float fluence[3][kLanes] = {}, scattered[3][kLanes] = {}, moments[3 * kShMoments][kLanes] = {};
+
+    void add_to(const FirstLevelBlock& b, int in_block, int lanes) const {
+        const auto add = [&](const auto& planes, float* to) {
+            for (std::size_t c = 0; to && c < std::size(planes); ++c)
+                for (int i = 0; i < lanes; ++i)
+                    to[c * b.kCells + std::size_t(in_block + i)] += planes[c][i];
+        };
+        add(fluence, b.fluence);
+        add(scattered, b.scattered);
+        add(moments, b.moments);
+    }
+};
+
 // Adds what arrives at a row, whose first cell is `in_block`.
-HWY_INLINE void add_row(D d, const FirstLevelBlock& b, const RowLight& row, int light, int in_block) {
+HWY_INLINE void add_row(D d, const FirstLevelBlock& b, const RowLight& row, int light, int in_block, RowSums& sums) {
     const V minus = hn::Neg(row.inverse);
     const V x = hn::Mul(row.to_light[0], minus), y = hn::Mul(row.to_light[1], minus),
             z = hn::Mul(row.to_light[2], minus);
@@ -105,47 +124,51 @@ HWY_INLINE void add_row(D d, const FirstLevelBlock& b, const RowLight& row, int 
                 intensity =
                     hn::MulAdd(basis.y[m], hn::LoadU(d, b.directional + (3 * m + c) * b.plane + light), intensity);
         const V arriving = hn::Mul(intensity, row.weight);
-        accumulate(d, b.fluence + c * b.kCells + in_block, arriving);
+        accumulate(d, sums.fluence[c], arriving);
         if (b.scattered)
-            accumulate(d, b.scattered + c * b.kCells + in_block, hn::Mul(arriving, phase));
+            accumulate(d, sums.scattered[c], hn::Mul(arriving, phase));
         if (b.moments)
             for (int m = 0; m < kShMoments; ++m)
-                accumulate(d, b.moments + (3 * m + c) * b.kCells + in_block, hn::Mul(arriving, basis.y[m]));
+                accumulate(d, sums.moments[3 * m + c], hn::Mul(arriving, basis.y[m]));
     }
+}
+
+// Lights up to kRowsAtOnce rows, a vector from their cell z on.
+std::uint64_t light_rows(D d, const FlatSeparations& all, const FirstLevelBlock& b,
+                         std::span<const FirstLevelBlock::Row> rows, int z) {
+    RowSums sums[kRowsAtOnce];
+    std::uint64_t reached = 0;
+    for (const FlatSeparations::Separation& s : all.separations) {
+        RowLight lit[kRowsAtOnce];
+        int at[kRowsAtOnce] = {}, count = 0;
+        std::size_t row[kRowsAtOnce] = {};
+        for (std::size_t r = 0; r < rows.size(); ++r) {
+            at[count] = rows[r].in_box + z;
+            row[count] = r;
+            lit[count] = row_light(d, b, s, at[count]);
+            count += !lit[count].dark;
+        }
+        if (count == int(kRowsAtOnce))
+            extinguish<int(kRowsAtOnce)>(d, all, s, b, at, lit);
+        else if (count == 1)
+            extinguish<1>(d, all, s, b, at, lit);
+        for (int k = 0; k < count; ++k)
+            add_row(d, b, lit[k], at[k] + s.offset, rows[row[k]].in_block + z, sums[row[k]]);
+        reached += std::uint64_t(count);
+    }
+    for (std::size_t r = 0; r < rows.size(); ++r)
+        sums[r].add_to(b, rows[r].in_block + z, static_cast<int>(hn::Lanes(d)));
+    return reached;
 }
 
 std::uint64_t first_level(const FlatSeparations& all, const FirstLevelBlock& b) {
     const D d;
     const int lanes = static_cast<int>(hn::Lanes(d));
-    std::uint64_t evaluations = 0;
-    RowLight rows[kRowsAtOnce];
-    int at[kRowsAtOnce] = {}, in_block[kRowsAtOnce] = {};
-    for (const FlatSeparations::Separation& s : all.separations) {
-        int waiting = 0;
-        const auto finish = [&] {
-            if (waiting == kRowsAtOnce)
-                extinguish<kRowsAtOnce>(d, all, s, b, at, rows);
-            else
-                extinguish<1>(d, all, s, b, at, rows);
-            for (int r = 0; r < waiting; ++r)
-                add_row(d, b, rows[r], at[r] + s.offset, in_block[r]);
-            evaluations += std::uint64_t(waiting) * std::uint64_t(lanes);
-            waiting = 0;
-        };
-        for (const FirstLevelBlock::Row& row : b.rows)
-            for (int z = 0; z < BrickLattice::kSize; z += lanes) {
-                rows[waiting] = row_light(d, b, s, row.in_box + z);
-                if (rows[waiting].dark)
-                    continue;
-                at[waiting] = row.in_box + z;
-                in_block[waiting] = row.in_block + z;
-                if (++waiting == kRowsAtOnce)
-                    finish();
-            }
-        if (waiting > 0)
-            finish();
-    }
-    return evaluations;
+    std::uint64_t reached = 0;
+    for (std::size_t i = 0; i < b.rows.size(); i += kRowsAtOnce)
+        for (int z = 0; z < BrickLattice::kSize; z += lanes)
+            reached += light_rows(d, all, b, b.rows.subspan(i, std::min<std::size_t>(kRowsAtOnce, b.rows.size() - i)), z);
+    return reached * std::uint64_t(lanes);
 }
 
 }  // namespace HWY_NAMESPACE

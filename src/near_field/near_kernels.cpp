@@ -21,8 +21,10 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<float, 8>;  // a brick's row is eight nodes
 using V = hn::Vec<D>;
 
+// Moments lie side by side: planes of nodes lie so far apart that they would share few lines of a cache.
 struct Sums {
     V fluence[3], scattered[3];
+    alignas(64) float moments[3 * kShMoments][8] = {};
 };
 
 HWY_INLINE bool row_is_dark(D d, const NearBrick& b, const float* light) {
@@ -33,7 +35,7 @@ HWY_INLINE bool row_is_dark(D d, const NearBrick& b, const float* light) {
 
 // One separation's contribution to one row of receivers starting at box index `at`.
 HWY_INLINE void add_separation(D d, const FlatStencil& stencil, const FlatSeparation& s, const NearBrick& b, int at,
-                               const V camera[3], Sums& sums, float* moments) {
+                               const V camera[3], Sums& sums) {
     const float* light = b.intensity + at + s.offset;
     if (row_is_dark(d, b, light))
         return;
@@ -63,7 +65,7 @@ HWY_INLINE void add_separation(D d, const FlatStencil& stencil, const FlatSepara
             sums.scattered[c] = hn::MulAdd(arriving, phase, sums.scattered[c]);
         if (b.moments)
             for (int m = 0; m < kShMoments; ++m) {
-                float* to = moments + (3 * m + c) * b.out_plane;
+                float* const to = sums.moments[3 * m + c];
                 hn::StoreU(hn::MulAdd(arriving, hn::Set(d, s.basis[m]), hn::LoadU(d, to)), d, to);
             }
     }
@@ -156,7 +158,7 @@ void near_brick(const NearField& field, const FlatStencil& stencil, const NearBr
                 for (int c = 0; c < 3; ++c)
                     sums.fluence[c] = sums.scattered[c] = hn::Zero(d);
                 for (const FlatSeparation& s : stencil.separations)
-                    add_separation(d, stencil, s, b, row + z, camera, sums, b.moments ? b.moments + node : nullptr);
+                    add_separation(d, stencil, s, b, row + z, camera, sums);
                 for (int c = 0; c < 3; ++c) {
                     float* to = b.fluence + c * b.out_plane + node;
                     hn::StoreU(hn::Add(hn::LoadU(d, to), sums.fluence[c]), d, to);
@@ -164,6 +166,10 @@ void near_brick(const NearField& field, const FlatStencil& stencil, const NearBr
                         continue;
                     to = b.scattered + c * b.out_plane + node;
                     hn::StoreU(hn::Add(hn::LoadU(d, to), sums.scattered[c]), d, to);
+                }
+                for (int m = 0; b.moments && m < 3 * kShMoments; ++m) {
+                    float* const to = b.moments + m * b.out_plane + node;
+                    hn::StoreU(hn::Add(hn::LoadU(d, to), hn::LoadU(d, sums.moments[m])), d, to);
                 }
             }
             for (int z = 0; z < 8; ++z)
