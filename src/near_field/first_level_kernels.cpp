@@ -167,7 +167,8 @@ std::uint64_t first_level(const FlatSeparations& all, const FirstLevelBlock& b) 
     std::uint64_t reached = 0;
     for (std::size_t i = 0; i < b.rows.size(); i += kRowsAtOnce)
         for (int z = 0; z < BrickLattice::kSize; z += lanes)
-            reached += light_rows(d, all, b, b.rows.subspan(i, std::min<std::size_t>(kRowsAtOnce, b.rows.size() - i)), z);
+            reached +=
+                light_rows(d, all, b, b.rows.subspan(i, std::min<std::size_t>(kRowsAtOnce, b.rows.size() - i)), z);
     return reached * std::uint64_t(lanes);
 }
 

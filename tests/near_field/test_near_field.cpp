@@ -1,7 +1,7 @@
 // The lattice's own near field: lines through voxels, and the light of a node on itself.
 #include <gtest/gtest.h>
 
-#include "gather_fixture.h"
+#include "gathering/gather_fixture.h"
 #include "near_field/near_field.h"
 
 namespace brisance {
