@@ -13,10 +13,9 @@ namespace brisance {
 
 namespace {
 
-// The distance between the nodes at which a level's light is gathered, over its blending radius. Between them light is
-// interpolated as its eighth root: an interpolant errs as the square of that distance where light is smooth, and by
-// more at the rims of dense smoke, where it has kinks. Below the usual error the distance falls faster than as the
-// square root.
+// The distance between the nodes at which a level's light is gathered, over its blending radius. An interpolant errs as
+// the square of that distance where light is smooth, and by more at the rims of dense smoke, where it has kinks: below
+// the usual error the distance falls faster than as the square root.
 constexpr float kShareOfRadius = 0.125f, kErrorOfShare = 0.02f;
 
 // `error`: over the usual one.
@@ -78,32 +77,15 @@ void place_receivers(const Medium& medium, const LatticeRequest& request, int co
 // Coarse nodes around one brick of the fine lattice: it reaches from the first node's to beyond the last one's.
 constexpr int kParents = BrickLattice::kSize / 2 + 1;
 
-using ParentBox = std::array<float, kParents * kParents * kParents>;
-
 // Value at node `p` of a brick whose parents' values are in `box`.
-float between_parents(const ParentBox& box, const ivec3& p) {
+float between_parents(const float* box, const ivec3& p) {
     const ivec3 low = p >> 1, high = (p + 1) >> 1;
     const auto along_z = [&](int x, int y) {
-        const float* row = box.data() + (x * kParents + y) * kParents;
+        const float* row = box + (x * kParents + y) * kParents;
         return 0.5f * (row[low.z] + row[high.z]);
     };
     const auto along_y = [&](int x) { return 0.5f * (along_z(x, low.y) + along_z(x, high.y)); };
     return 0.5f * (along_y(low.x) + along_y(high.x));
-}
-
-float eighth_power(float x) {
-    x *= x;
-    x *= x;
-    return x * x;
-}
-
-// Replaces values by what is interpolated between them. Returns whether that is their eighth roots.
-bool take_roots(ParentBox& box) {
-    if (std::ranges::any_of(box, [](float v) { return v < 0.0f; }))
-        return false;
-    for (float& v : box)
-        v = std::sqrt(std::sqrt(std::sqrt(v)));
-    return true;
 }
 
 }  // namespace
@@ -199,25 +181,20 @@ void add_at_nodes(const NodeReceivers& from, const Gathered& values, Gathered& o
 void add_interpolated(const NodeReceivers& from, const Gathered& values, const NodeReceivers& to, Gathered& out) {
     const auto source = values.planes();
     const auto sum = out.planes();
-    const std::size_t rooted =
-        (values.fluence.size() + values.scattered.size()) / std::max<std::size_t>(1, from.needed.size());
     parallel_for(
         to.lattice.brick_count(),
         [&](std::size_t b) {
             if (!any_needed(to, b))
                 return;
             const auto needed = to.needed.begin() + std::ptrdiff_t(b * BrickLattice::kNodes);
-            ParentBox box;
+            std::array<float, kParents * kParents * kParents> box;
             const ivec3 low = to.lattice.first_node(b) >> 1;
             for (std::size_t c = 0; c < source.size(); ++c) {
                 copy_box(from.lattice, source[c], 1, low, ivec3(kParents), box);
-                const bool roots = c < rooted && take_roots(box);
                 float* const node = &sum[c][b * BrickLattice::kNodes];
                 for (int k = 0; k < BrickLattice::kNodes; ++k)
-                    if (needed[k]) {
-                        const float between = between_parents(box, BrickLattice::node_in_brick(k));
-                        node[k] += roots ? eighth_power(between) : between;
-                    }
+                    if (needed[k])
+                        node[k] += between_parents(box.data(), BrickLattice::node_in_brick(k));
             }
         },
         16);

@@ -1,10 +1,11 @@
 // The lattices at whose nodes light of each level is gathered, and the way back to the finest.
 //
-// Far light changes slowly: that of level l is gathered at every 2^m-th node, with 2^m at most a quarter of the level's
-// blending radius, and interpolated to the nodes between, coarsest lattice first. In smoke light falls almost
-// exponentially, and it is interpolated as its eighth root. This is for an error of 2 %; where less is asked for, the
-// distance falls as its power 3/2; where more is allowed, it grows as its square root. All light of far levels together
-// then costs less than that of the nearest.
+// A level's shadow maps know its light no finer than by about a quarter of the level's own spacing: their texels, and
+// their steps along a ray, are as long. At the least distance of such a light, an interpolant over that length errs by
+// some thousandths. So the light of level l is gathered at every 2^m-th node, with 2^m at most an eighth of the
+// level's blending radius, and interpolated to the nodes between, coarsest lattice first. This is for an error of 2 %;
+// where less is asked for, the distance falls as its power 3/2; where more is allowed, it grows as its square root. All
+// light of far levels together then costs less than that of the nearest.
 //
 // Surfaces in the medium end light at once: nodes that do not see all the coarse ones around them gather for themselves
 // (medium/lattice/corners_seen.h). Beyond the edges of surfaces the shadow of a light that stands for many voxels fades
@@ -51,8 +52,7 @@ int coarsening_of(const LightField& field, const GridLevel& level);
 // Adds `values`, one per receiver and channel, to `out`, planar over the nodes.
 void add_at_nodes(const NodeReceivers& from, const Gathered& values, Gathered& out);
 
-// Adds light at the nodes of a lattice to the needed nodes of one twice as fine: trilinearly, as its eighth root where
-// no value around is negative. Moments are interpolated as they are.
+// Adds light at the nodes of a lattice to the needed nodes of one twice as fine, trilinearly.
 void add_interpolated(const NodeReceivers& from, const Gathered& values, const NodeReceivers& to, Gathered& out);
 
 }  // namespace brisance
