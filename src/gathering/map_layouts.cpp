@@ -58,18 +58,16 @@ int shadow_distances(const LightingSettings& settings) {
 ShadowMapLayout map_layout(const LightField& field, const GridLevel& level, bool top) {
     ShadowMapLayout layout;
     // A coarser light's map covers more voxels but its own size blurs its shadows: resolution grows as the square root
-    // of the spacing (more gained less than the hierarchy's own error on real smoke), to even numbers. Nodes in the
-    // open read maps from level 2 on (separations.h).
-    layout.for_outside = field.escape != nullptr;
-    const int first = layout.for_outside ? 1 : 2;
+    // of the spacing (more gained less than the hierarchy's own error on real smoke), to even numbers.
     const float growth =
-        std::max(std::sqrt(float(1 << std::clamp(level.level - first, 0, 6))), growth_for_few(level.position.size()));
+        std::max(std::sqrt(float(1 << std::min(level.level - 1, 6))), growth_for_few(level.position.size()));
     layout.resolution =
         std::min(128, 2 * static_cast<int>(std::lround(0.5f * growth * shadow_resolution(field.settings))));
     layout.distances = shadow_distances(field.settings);
     const float radius = field.alpha * level.spacing;
     layout.near_distance = level.level == field.bottom ? kNearestOfBalls * level.spacing : 0.5f * radius;
     layout.far_distance = 2.0f * radius;
+    layout.for_outside = field.escape != nullptr;
     layout.range = layout.for_outside ? 1.0f / FootprintPicker::kLeastShare : 1.0f;
     if (top) {
         const float far = std::max(layout.far_distance, farthest_distance(level, field.pyramid->medium()));
