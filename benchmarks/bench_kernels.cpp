@@ -8,6 +8,7 @@
 #include "fires.h"
 #include "gathering/far_kernels.h"
 #include "medium/phase.h"
+#include "near_field/first_level.h"
 #include "near_field/near_field.h"
 #include "peaks.h"
 
@@ -119,10 +120,29 @@ void near_stencil(benchmark::State& state, bool shadows) {
     state.counters["separations"] = double(near.separations());
 }
 
+// Level 1 at all nodes, without maps.
+void first_level(benchmark::State& state) {
+    const ThreadLimit one(1);
+    const Fire& fire = fire_of(60);
+    const FirstLevel level(fire.medium.local_from_index, 2.0f * fire.grid.levels.front().spacing);
+    const std::vector<std::uint8_t> needed(fire.medium.lattice.node_count(), 1);
+    Gathered out;
+    out.resize(needed.size(), false, false);
+    std::uint64_t evaluations = 0;
+    for (auto _ : state) {
+        evaluations += level.gather({&fire.medium.lattice, &fire.medium.extinction, &fire.grid.levels.front(),
+                                     std::nullopt, fire.medium.local_of_node(ivec3(0)), 0.0f},
+                                    {&fire.medium.lattice, &needed, false}, out);
+        benchmark::DoNotOptimize(out.fluence.data());
+    }
+    state.counters["evaluations/s"] = benchmark::Counter(double(evaluations), benchmark::Counter::kIsRate);
+}
+
 BENCHMARK(roofs)->Iterations(1)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(far_kernel, unshadowed, FarLights::Shadow::None)->ArgName("level")->Arg(1)->Arg(2);
 BENCHMARK_CAPTURE(far_kernel, maps, FarLights::Shadow::Maps)->ArgName("level")->Arg(1)->Arg(2);
 BENCHMARK_CAPTURE(far_kernel, exact, FarLights::Shadow::Exact)->ArgName("level")->Arg(1);
+BENCHMARK(first_level)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(near_stencil, unshadowed, false)->ArgName("alpha")->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(near_stencil, shadowed, true)->ArgName("alpha")->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond);
 
