@@ -19,8 +19,8 @@ namespace {
 // Seconds of one core at 2.5 GHz, fitted to nine pictures of 0.04 to 0.7 million nodes, which are within 30 %.
 // Evaluations of a light at a node: so many for each node at alpha 1, and as its power 1.9.
 constexpr double kEvaluation = 11e-9, kDirectional = 1.25, kEvaluationsOfNode = 360.0, kPowerOfAlpha = 1.9;
-// Values of shadow maps of 12^2 texels and 10 distances: so many for each node, from level 2 on, and those of the few top
-// levels.
+// Values of shadow maps of 12^2 texels and 10 distances: so many for each node, from level 2 on, and those of the few
+// top levels.
 constexpr double kMapValue = 7e-9, kMapValuesOfNode = 180.0, kMapValuesAtTop = 26e6, kKnownMap = 12.0 * 12.0 * 10.0;
 // The operator and the series, for each node of their lattice. A level has about a sixth of the next finer one's nodes.
 constexpr double kCoarseNode = 80e-6, kNodesOfParent = 6.0;

@@ -108,25 +108,29 @@ private:
                                                   by_separations.longest_reach(), *field_.occluders));
                 open = &parts.back().in_the_open;
             }
-            cost.evaluations += by_separations.gather(
-                {&field_.pyramid->lattice(level.level - 1), &field_.pyramid->nodes(level.level - 1), &level,
-                 request_.eye, medium.local_of_node(ivec3(0)), request_.mean_cosine},
-                {&open->lattice, &open->needed, asked.coarsening == level.level}, *asked.light);
+            cost.evaluations +=
+                by_separations.gather({field_.pyramid, &level, request_.eye, request_.mean_cosine},
+                                      {&open->lattice, &open->needed, asked.coarsening == level.level}, *asked.light);
         }
         cost.gather_seconds = watch.seconds();
         costs_.push_back(cost);
-        if (!field_.occluders)
-            return;
         std::vector<Asked> beside;
-        for (std::size_t i = 0; i < asked_.size(); ++i)
-            beside.push_back({&parts[i].beside, asked_[i].light, asked_[i].coarsening});
+        for (std::size_t i = 0; i < parts.size(); ++i)
+            if (parts[i].beside.receivers.size() > 0)
+                beside.push_back({&parts[i].beside, asked_[i].light, asked_[i].coarsening});
+        if (!beside.empty())
+            gather_beside_surfaces(beside, index);
+    }
+
+    // By maps of the lights that the nodes ask for.
+    void gather_beside_surfaces(const std::vector<Asked>& asked, std::size_t index) {
         ShadowMapCache own;
         auto& maps = (field_.cache ? field_.cache : &own)->beside_surfaces;
         if (!maps)
             maps = std::make_unique<ShadowMapCache>(ShadowMapCache{{}, true});
         LightField field = field_;
         field.cache = maps.get();
-        gather_by_maps(field, beside, index, index + 1);
+        gather_by_maps(field, asked, index, index + 1);
     }
 
     const LightField& field_;

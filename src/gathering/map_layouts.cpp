@@ -86,7 +86,7 @@ std::uint64_t map_bytes(const LightField& field) {
     std::uint64_t sum = 0;
     for (const GridLevel& level : field.grid->levels)
         if (level.size() > 0 && field.settings.shadows == ShadowMethod::Maps &&
-            !gathers_by_separations(field, level, coarsening_of(field, level)))
+            (field.occluders || !gathers_by_separations(field, level, coarsening_of(field, level))))
             sum += level.size() * map_layout(field, level, &level == &field.grid->levels.back()).bytes_per_light();
     return sum;
 }

@@ -76,14 +76,14 @@ namespace {
 constexpr int kSize = BrickLattice::kSize, kCells = FirstLevelBlock::kCells;
 
 // Intensity and shift from its vertex of each light, six per node of the lights' lattice.
-std::vector<float> lights_at_vertices(const FirstLevel::Input& in, const mat3& local_from_index) {
+std::vector<float> lights_at_vertices(const FirstLevel::Input& in) {
     const GridLevel& lights = *in.lights;
     std::vector<float> out(lights.lattice.node_count() * 6, 0.0f);
     parallel_for(
         lights.size(),
         [&](std::size_t i) {
             float* const to = &out[std::size_t(lights.node[i]) * 6];
-            const vec3 shift = lights.position[i] - (in.first_node + local_from_index * vec3(2 * lights.vertex[i]));
+            const vec3 shift = lights.position[i] - in.local_of_node(2 * lights.vertex[i]);
             for (int a = 0; a < 3; ++a) {
                 to[a] = lights.intensity[i][a];
                 to[3 + a] = shift[a];
@@ -103,17 +103,15 @@ std::vector<float> directions_at_vertices(const GridLevel& lights) {
 // Light is gathered in blocks of 8^3 cells, with the memory of one thread.
 class BlockGather {
 public:
-    BlockGather(const FirstLevel& level, const mat3& local_from_index, const FirstLevel::Input& in,
-                const FirstLevel::Targets& targets, Gathered& out)
+    BlockGather(const FirstLevel& level, const FirstLevel::Input& in, const FirstLevel::Targets& targets, Gathered& out)
         : in_(in),
           targets_(targets),
           out_(out),
-          local_from_index_(local_from_index),
           radius_(level.radius()),
           margin_(level.margin()),
           wide_(kSize + 2 * margin_),
           plane_(std::size_t(wide_) * wide_ * wide_),
-          light_(lights_at_vertices(in, local_from_index)),
+          light_(lights_at_vertices(in)),
           directional_(directions_at_vertices(*in.lights)),
           parities_(targets.every_second ? 1 : kParities) {
         for (int p = 0; p < parities_; ++p)
@@ -192,7 +190,8 @@ private:
         const int nodes = 2 * wide_;
         m.nodes.resize(8 * plane_);
         m.extinction.resize(8 * plane_);
-        copy_box(*in_.lattice, *in_.extinction, 1, 2 * low, ivec3(nodes), m.nodes);
+        copy_box(in_.pyramid->lattice(in_.lattice_level()), in_.pyramid->nodes(in_.lattice_level()), 1, 2 * low,
+                 ivec3(nodes), m.nodes);
         const float* from = m.nodes.data();
         for (int x = 0; x < nodes; ++x)
             for (int y = 0; y < nodes; ++y) {
@@ -235,7 +234,7 @@ private:
         m.toward_camera.resize(3 * kCells);
         for (int cell = 0; cell < kCells; ++cell) {
             const ivec3 node = 2 * (block * kSize + BrickLattice::node_in_brick(cell)) + FirstLevel::parity(parity);
-            const vec3 toward = direction_toward(*in_.eye, in_.first_node + local_from_index_ * vec3(node));
+            const vec3 toward = direction_toward(*in_.eye, in_.local_of_node(node));
             for (int a = 0; a < 3; ++a)
                 m.toward_camera[std::size_t(a * kCells + cell)] = toward[a];
         }
@@ -253,7 +252,6 @@ private:
     const FirstLevel::Input& in_;
     const FirstLevel::Targets& targets_;
     Gathered& out_;
-    mat3 local_from_index_;
     float radius_;
     int margin_, wide_;
     std::size_t plane_;
@@ -265,7 +263,7 @@ private:
 }  // namespace
 
 std::uint64_t FirstLevel::gather(const Input& input, const Targets& targets, Gathered& out) const {
-    return BlockGather(*this, local_from_index_, input, targets, out).run();
+    return BlockGather(*this, input, targets, out).run();
 }
 
 }  // namespace brisance

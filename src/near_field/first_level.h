@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "lighting_grid/lighting_grid.h"
-#include "medium/lattice/brick_lattice.h"
+#include "medium/lattice/extinction_pyramid.h"
 #include "near_field/separation_depth.h"
 #include "receivers/receivers.h"
 
@@ -32,12 +32,15 @@ public:
     static bool is_small(const mat3& local_from_index, float radius);
 
     struct Input {
-        const BrickLattice* lattice;
-        const std::vector<float>* extinction;  // per node [1/m]
-        const GridLevel* lights;               // whose vertices are every second node
-        std::optional<vec3> eye;               // local [m]; none: no `scattered`
-        vec3 first_node;                       // local position of node 0 [m]
+        const ExtinctionPyramid* pyramid;  // whose level below that of the lights is the lattice
+        const GridLevel* lights;
+        std::optional<vec3> eye;  // local [m]; none: no `scattered`
         float mean_cosine = 0.0f;
+
+        int lattice_level() const { return lights->level - 1; }
+        vec3 local_of_node(const ivec3& node) const {
+            return pyramid->medium().local_of_node(node * (1 << lattice_level()));
+        }
     };
 
     // The nodes that need light: of the lattice itself, or (every_second) of its even nodes.

@@ -86,12 +86,7 @@ FirstLevel first_level(const Lit& lit) {
 }
 
 FirstLevel::Input input_of(const Lit& lit) {
-    return {&lit.medium.lattice,
-            &lit.medium.extinction,
-            &lit.grid.levels.front(),
-            std::nullopt,
-            lit.medium.local_of_node(ivec3(0)),
-            0.0f};
+    return {&lit.pyramid, &lit.grid.levels.front(), std::nullopt, 0.0f};
 }
 
 // The level alone, against rays from its lights through the smoke; on a lattice of skewed axes.
