@@ -7,8 +7,8 @@
 // combination of extinctions, as in the near field. The light's shift from its vertex changes that depth to first
 // order, by another such combination (separation_depth.h); distance, direction and blend are those of the light itself.
 //
-// Shadow maps of this level would hold about as many values as there are receivers that read them, and every reading
-// costs more than a separation's sum: extinctions of neighbouring receivers lie side by side here.
+// Shadow maps of this level would hold about as many values as there are receivers that read them, and would be many
+// times larger than the caches. Extinctions of neighbouring receivers lie side by side.
 #pragma once
 
 #include <cstdint>
