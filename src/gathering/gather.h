@@ -77,11 +77,11 @@ struct LatticeRequest {
     int least_coarsening = 0;            // then at no more than every 2^n-th node
 };
 
-// Gathers at the nodes of the medium: the near field exactly, the levels above with precomputed shadows. There is a
-// near field where level 0 are the lattice's own nodes. Else field.grid holds all levels from field.bottom on: lights
-// outside of the lattice (point_grid.h) and lamps (light_clusters.h), where field.intensity and field.directional are
-// null, or lights that begin at a coarser level. The result is planar over nodes. Nodes that were not requested hold
-// part of the sum and must not be used.
+// Gathers at the nodes of the medium: the near field exactly, the first levels above by separations (separations.h),
+// the others with precomputed shadows. There is a near field where level 0 are the lattice's own nodes. Else field.grid
+// holds all levels from field.bottom on: lights outside of the lattice (point_grid.h) and lamps (light_clusters.h),
+// where field.intensity and field.directional are null, or lights that begin at a coarser level. The result is planar
+// over nodes. Nodes that were not requested hold part of the sum and must not be used.
 Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
                          Progress& progress);
 

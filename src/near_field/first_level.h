@@ -6,6 +6,8 @@
 // hundred values for each of the eight parities of the receiver, and the optical depth along it is a fixed linear
 // combination of extinctions, as in the near field. The light's shift from its vertex changes that depth to first
 // order, by another such combination (separation_depth.h); distance, direction and blend are those of the light itself.
+// The built-in explosion errs by 1.7 % so, by 1.8 % with rays from the lights, and by 2.5 % with lights at their
+// vertices.
 //
 // Shadow maps of this level would hold about as many values as there are receivers that read them, and would be many
 // times larger than the caches. Extinctions of neighbouring receivers lie side by side.
