@@ -51,15 +51,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<float, 16>;
 using V = hn::Vec<D>;
 
-// The blend of [1] for a light of this level at distance d: rises over [r/2, r], falls over [r, 2r].
-HWY_INLINE V blend(D d, const FarLights& l, V distance) {
-    const V t = hn::Mul(distance, hn::Set(d, 1.0f / l.radius));
-    V b = l.bottom ? hn::Set(d, 1.0f) : hn::Sub(hn::Add(t, t), hn::Set(d, 1.0f));
-    if (!l.top)
-        b = hn::Min(b, hn::Sub(hn::Set(d, 2.0f), t));
-    return hn::Min(hn::Max(b, hn::Zero(d)), hn::Set(d, 1.0f));
-}
-
 // Where a unit direction w lies in an octahedral map with a border.
 struct TexelPosition {
     V s, t;
@@ -223,7 +214,7 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, bool beyon
     const V safe = hn::Max(square, hn::Set(d, 1e-30f));
     const V inverse = reciprocal_sqrt(d, safe);
     const V distance = hn::Mul(safe, inverse);
-    const V b = blend(d, l, distance);
+    const V b = level_blend(d, l.radius, !l.bottom, !l.top, distance);
     if (hn::AllTrue(d, hn::Eq(b, hn::Zero(d))))
         return;
     V w = hn::Mul(

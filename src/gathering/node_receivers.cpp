@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "medium/coarse_medium.h"
+#include "medium/lattice/brick_masks.h"
 #include "medium/lattice/corners_seen.h"
 #include "medium/voxel_size.h"
 
@@ -32,11 +33,6 @@ ivec3 node_in_sub_blocks(int k) {
 std::size_t needed_in_brick(const NodeReceivers& nodes, std::size_t brick) {
     const auto first = nodes.needed.begin() + std::ptrdiff_t(brick * BrickLattice::kNodes);
     return std::size_t(std::count_if(first, first + BrickLattice::kNodes, [](std::uint8_t n) { return n != 0; }));
-}
-
-bool any_needed(const NodeReceivers& nodes, std::size_t brick) {
-    const auto first = nodes.needed.begin() + std::ptrdiff_t(brick * BrickLattice::kNodes);
-    return std::any_of(first, first + BrickLattice::kNodes, [](std::uint8_t n) { return n != 0; });
 }
 
 // Fills in block `block` of the receivers from the needed nodes of a brick.
@@ -136,7 +132,7 @@ NodesBesideSurfaces part_within_reach(const Medium& medium, const LatticeRequest
     constexpr int kPart = BrickLattice::kSize / 2;  // of a brick, tested alone
     parallel_for(nodes.lattice.brick_count(), [&](std::size_t b) {
         const ivec3 first = nodes.lattice.first_node(b);
-        if (!any_needed(nodes, b) || !near_surface(first, BrickLattice::kSize))
+        if (!any_in_brick(nodes.needed, b) || !near_surface(first, BrickLattice::kSize))
             return;
         std::array<bool, 8> near;
         for (int k = 0; k < 8; ++k)
@@ -184,7 +180,7 @@ void add_interpolated(const NodeReceivers& from, const Gathered& values, const N
     parallel_for(
         to.lattice.brick_count(),
         [&](std::size_t b) {
-            if (!any_needed(to, b))
+            if (!any_in_brick(to.needed, b))
                 return;
             const auto needed = to.needed.begin() + std::ptrdiff_t(b * BrickLattice::kNodes);
             std::array<float, kParents * kParents * kParents> box;

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "core/parallel.h"
+#include "medium/lattice/brick_masks.h"
 #include "near_field/first_level_kernels.h"
 
 namespace brisance {
@@ -41,14 +42,10 @@ bool FirstLevel::is_small(const mat3& local_from_index, float radius) {
     return std::max({reach.x, reach.y, reach.z}) <= kLongestReach;
 }
 
-float FirstLevel::longest_reach() const {
-    return 2.0f * radius_ + longest_shift(local_from_index_);
-}
-
 FirstLevel::FirstLevel(const mat3& local_from_index, float radius)
-    : local_from_index_(local_from_index), radius_(radius) {
+    : radius_(radius), longest_reach_(2.0f * radius + longest_shift(local_from_index)) {
     const ivec3 reach = reach_of(local_from_index, radius), cells = (reach + 1) / 2 + 1;
-    const float shift = longest_shift(local_from_index), longest = longest_reach();
+    const float shift = longest_reach_ - 2.0f * radius;
     parallel_for(kParities, [&](std::size_t p) {
         for (int x = -cells.x; x <= cells.x; ++x)
             for (int y = -cells.y; y <= cells.y; ++y)
@@ -56,14 +53,17 @@ FirstLevel::FirstLevel(const mat3& local_from_index, float radius)
                     const ivec3 vertex(x, y, z), node = 2 * vertex - parity(int(p));
                     const vec3 to_vertex = local_from_index * vec3(node);
                     const float d = glm::length(to_vertex);
-                    if (node != ivec3(0) && d < longest && d > 0.5f * radius - shift)
-                        separations_[p].push_back({vertex, to_vertex, {}});
+                    if (d < longest_reach_ && d > 0.5f * radius - shift)
+                        separations_[p].push_back({vertex, to_vertex, false, {}});
                 }
     });
     for (int p = 0; p < kParities; ++p)
         parallel_for(separations_[p].size(), [&](std::size_t i) {
             Separation& s = separations_[p][i];
-            s.taps = shifted_taps(2 * s.vertex - parity(p), local_from_index);
+            const ivec3 node = 2 * s.vertex - parity(p);
+            s.own = node == ivec3(0);
+            s.taps =
+                s.own ? std::vector<ShiftedTap>{{ivec3(0), 1.0f, vec3(0.0f)}} : shifted_taps(node, local_from_index);
         });
     for (const auto& of_parity : separations_)
         for (const Separation& s : of_parity)
@@ -134,11 +134,9 @@ private:
 
     std::vector<ivec3> blocks_with_targets() const {
         std::vector<ivec3> blocks;
-        for (std::size_t b = 0; b < targets_.lattice->brick_count(); ++b) {
-            const auto first = targets_.needed->begin() + std::ptrdiff_t(b * BrickLattice::kNodes);
-            if (std::any_of(first, first + BrickLattice::kNodes, [](std::uint8_t n) { return n != 0; }))
+        for (std::size_t b = 0; b < targets_.lattice->brick_count(); ++b)
+            if (any_in_brick(*targets_.needed, b))
                 blocks.push_back(targets_.every_second ? targets_.lattice->brick(b) : targets_.lattice->brick(b) >> 1);
-        }
         std::sort(blocks.begin(), blocks.end(),
                   [](const ivec3& a, const ivec3& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); });
         blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());

@@ -58,6 +58,7 @@ public:
     struct Separation {
         ivec3 vertex;    // of the light from the receiver's cell of two nodes, in cells
         vec3 to_vertex;  // from the receiver [m]
+        bool own;        // the receiver is at the vertex: the depth is its extinction times the light's distance
         std::vector<ShiftedTap> taps;
     };
     // `parity`: of a receiver at node 2 c + parity, c being its cell.
@@ -65,11 +66,10 @@ public:
     static ivec3 parity(int p) { return {p >> 2, p >> 1 & 1, p & 1}; }
     int margin() const { return margin_; }  // of cells around a receiver's cell that count
     float radius() const { return radius_; }
-    float longest_reach() const;  // from a receiver to a light [m]
+    float longest_reach() const { return longest_reach_; }  // from a receiver to a light [m]
 
 private:
-    mat3 local_from_index_;
-    float radius_;
+    float radius_, longest_reach_;
     int margin_ = 1;
     std::vector<Separation> separations_[8];
 };

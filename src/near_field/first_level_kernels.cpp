@@ -33,12 +33,6 @@ struct RowLight {
     bool dark;
 };
 
-HWY_INLINE V blend(D d, float radius, V distance) {
-    const V t = hn::Mul(distance, hn::Set(d, 1.0f / radius));
-    const V rising = hn::Sub(hn::Add(t, t), hn::Set(d, 1.0f)), falling = hn::Sub(hn::Set(d, 2.0f), t);
-    return hn::Min(hn::Max(hn::Min(rising, falling), hn::Zero(d)), hn::Set(d, 1.0f));
-}
-
 HWY_INLINE RowLight row_light(D d, const FirstLevelBlock& b, const FlatSeparations::Separation& s, int at) {
     RowLight row;
     const float* const light = b.light + at + s.offset;
@@ -54,7 +48,7 @@ HWY_INLINE RowLight row_light(D d, const FirstLevelBlock& b, const FlatSeparatio
         dot(row.to_light[0], row.to_light[1], row.to_light[2], row.to_light[0], row.to_light[1], row.to_light[2]),
         hn::Set(d, 1e-30f));
     row.inverse = reciprocal_sqrt(d, square);
-    const V share = blend(d, b.radius, hn::Mul(square, row.inverse));
+    const V share = level_blend(d, b.radius, true, true, hn::Mul(square, row.inverse));
     row.dark = hn::AllTrue(d, hn::Eq(share, hn::Zero(d)));
     row.weight = hn::Mul(share, hn::Mul(row.inverse, row.inverse));
     return row;
@@ -80,8 +74,10 @@ HWY_INLINE void extinguish(D d, const FlatSeparations& all, const FlatSeparation
         }
     }
     for (int r = 0; r < kRows; ++r) {
-        const V shifted = hn::Add(depth[r], dot(change[r][0], change[r][1], change[r][2], rows[r].shift[0],
-                                                rows[r].shift[1], rows[r].shift[2]));
+        V shifted = hn::Add(depth[r], dot(change[r][0], change[r][1], change[r][2], rows[r].shift[0], rows[r].shift[1],
+                                          rows[r].shift[2]));
+        if (s.own)
+            shifted = hn::Div(depth[r], rows[r].inverse);
         const V positive = hn::Min(hn::Max(shifted, hn::Zero(d)), hn::Set(d, 80.0f));
         rows[r].weight = hn::Mul(rows[r].weight, hn::Exp(d, hn::Neg(positive)));
     }
@@ -194,7 +190,7 @@ FlatSeparations flatten(const FirstLevel& level, int parity, int wide) {
                                 t.length,
                                 {t.change.x, t.change.y, t.change.z}});
         }
-        out.separations.push_back({flat(s.vertex), s.to_vertex, first, static_cast<int>(out.taps.size())});
+        out.separations.push_back({flat(s.vertex), s.to_vertex, s.own, first, static_cast<int>(out.taps.size())});
     }
     return out;
 }

@@ -18,6 +18,7 @@ struct FlatSeparations {
     struct Separation {
         int offset;
         vec3 to_vertex;
+        bool own;  // as of FirstLevel::Separation
         int first_tap, last_tap;
     };
     std::vector<Separation> separations;

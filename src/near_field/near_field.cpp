@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "medium/lattice/brick_masks.h"
 #include "medium/phase.h"
 #include "medium/sh.h"
 #include "near_field/near_kernels.h"
@@ -164,15 +165,6 @@ NearField::SelfKernels NearField::self_kernels(float s) const {
     return {between(&SelfKernels::light) / (h * h * one), between(&SelfKernels::flux) / (h * one * one)};
 }
 
-namespace {
-
-bool any_needed(const std::vector<std::uint8_t>& needed, std::size_t brick) {
-    const auto first = needed.begin() + std::ptrdiff_t(brick * BrickLattice::kNodes);
-    return std::any_of(first, first + BrickLattice::kNodes, [](std::uint8_t n) { return n != 0; });
-}
-
-}  // namespace
-
 void NearField::gather(const Input& in, Gathered& out) const {
     const BrickLattice& lattice = *in.lattice;
     const int wide = BrickLattice::kSize + 2 * margin_;
@@ -183,7 +175,7 @@ void NearField::gather(const Input& in, Gathered& out) const {
     };
     const FlatStencil stencil = flatten(*this, wide);
     parallel_for(lattice.brick_count(), [&](std::size_t b) {
-        if (in.needed && !any_needed(*in.needed, b))
+        if (in.needed && !any_in_brick(*in.needed, b))
             return;
         thread_local std::vector<float> extinction, intensity, directional;
         std::vector<vec3> toward_camera;

@@ -36,6 +36,17 @@ HWY_INLINE V dot(V ax, V ay, V az, V bx, V by, V bz) {
     return hn::MulAdd(ax, bx, hn::MulAdd(ay, by, hn::Mul(az, bz)));
 }
 
+// What a level of the hierarchy has of a light at this distance (gathering/gather.h): where it rises, over [radius / 2,
+// radius], and where it falls, over [radius, 2 radius].
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V level_blend(D d, float radius, bool rises, bool falls, V distance) {
+    const V t = hn::Mul(distance, hn::Set(d, 1.0f / radius));
+    V b = rises ? hn::Sub(hn::Add(t, t), hn::Set(d, 1.0f)) : hn::Set(d, 1.0f);
+    if (falls)
+        b = hn::Min(b, hn::Sub(hn::Set(d, 2.0f), t));
+    return hn::Min(hn::Max(b, hn::Zero(d)), hn::Set(d, 1.0f));
+}
+
 // Real spherical harmonics of degrees 1 and 2 (sh.h).
 template <class D>
 struct BasisLanes {

@@ -120,6 +120,30 @@ TEST(FirstLevel, SendsWhatExactShadowsLetThrough) {
     EXPECT_LT(root_mean_square(a, b), 0.02);
 }
 
+// One voxel between eight vertices sends from where it is to all nodes around, those vertices among them.
+TEST(FirstLevel, ALightAWholeNodeFromItsVertexIsSeenThere) {
+    Recipe r = glowing_ball(12, 1.0f);
+    r.density = [](const ivec3&) { return 1.0f; };
+    r.flame = [](const ivec3& n) { return n == ivec3(1) ? 1.0f : 0.0f; };
+    r.settings.smoke.extinction_per_metre = 0.2f;
+    const Medium medium = make_medium(r);
+    std::vector<Rgb> intensity(medium.lattice.node_count(), Rgb(0.0f));
+    intensity[std::size_t(medium.lattice.find_node(ivec3(1)))] = Rgb(1.0f);
+    const Lit lit(medium, intensity);
+    const std::vector<std::uint8_t> needed(intensity.size(), 1);
+    const float radius = lit.grid.levels.front().spacing;
+    Gathered g;
+    g.resize(needed.size(), false, false);
+    FirstLevel(lit.medium.local_from_index, radius).gather(input_of(lit), {&lit.medium.lattice, &needed, false}, g);
+    for (int k = 0; k < 8; ++k) {
+        const std::int64_t i = lit.medium.lattice.find_node(2 * ivec3(k >> 2, k >> 1 & 1, k & 1));
+        ASSERT_GE(i, 0);
+        const float d = std::sqrt(3.0f) * lit.medium.spacing;
+        const float expected = (2.0f * d / radius - 1.0f) / (d * d) * std::exp(-lit.medium.extinction[i] * d);
+        EXPECT_NEAR(g.fluence[i] / expected, 1.0f, 0.03f);
+    }
+}
+
 TEST(FirstLevel, EverySecondNodeGetsWhatItGetsAmongAll) {
     const Lit lit(make_medium(skewed_fire()));
     const std::vector<std::uint8_t> all(lit.medium.lattice.node_count(), 1);

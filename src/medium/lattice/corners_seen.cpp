@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "medium/lattice/brick_masks.h"
 
 namespace brisance {
 
@@ -66,11 +67,7 @@ public:
                                     std::exp2(float(coarsening_)) * medium_.spacing, level, occluders);
     }
     bool asks(std::size_t node) const { return !needed_ || (*needed_)[node] != 0; }
-    bool brick_asks(std::size_t brick) const {
-        return !needed_ || std::any_of(needed_->begin() + std::ptrdiff_t(brick * BrickLattice::kNodes),
-                                       needed_->begin() + std::ptrdiff_t((brick + 1) * BrickLattice::kNodes),
-                                       [](std::uint8_t n) { return n != 0; });
-    }
+    bool brick_asks(std::size_t brick) const { return !needed_ || any_in_brick(*needed_, brick); }
 
     std::uint8_t seen_from(const ivec3& node, int level, const Occluders& occluders) const {
         const CoarseCell cell(node, level);
