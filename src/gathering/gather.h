@@ -75,6 +75,9 @@ struct LatticeRequest {
     float mean_cosine = 0.0f;
     bool interpolates_far_light = true;  // between fewer nodes (node_receivers.h)
     int least_coarsening = 0;            // then at no more than every 2^n-th node
+    // Of the light above the near field that all nodes would gather, what they gather themselves, in [0, 1]. The rest is
+    // interpolated from every second node (light_between.h).
+    float own_share = 1.0f;
 };
 
 // Gathers at the nodes of the medium: the near field exactly, the first levels above by separations (separations.h),
@@ -84,6 +87,10 @@ struct LatticeRequest {
 // over nodes. Nodes that were not requested hold part of the sum and must not be used.
 Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
                          Progress& progress);
+
+// The share with which a picture errs by no more than it may, where every node is lit: none at the usual error of 0.02
+// and above, all of it at half of that and below.
+float own_share_of(float error);
 
 // Returns the lit nodes as a level of lights for gather_at_points. Its vertices are the nodes.
 GridLevel bottom_level(const LightField& field);

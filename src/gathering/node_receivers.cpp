@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "gathering/between_parents.h"
 #include "medium/coarse_medium.h"
 #include "medium/lattice/brick_masks.h"
 #include "medium/lattice/corners_seen.h"
@@ -70,24 +71,15 @@ void place_receivers(const Medium& medium, const LatticeRequest& request, int co
         bricks.size(), [&](std::size_t i) { place_brick(medium, request, coarsening, bricks[i], i, out); }, 64);
 }
 
-// Coarse nodes around one brick of the fine lattice: it reaches from the first node's to beyond the last one's.
-constexpr int kParents = BrickLattice::kSize / 2 + 1;
-
-// Value at node `p` of a brick whose parents' values are in `box`.
-float between_parents(const float* box, const ivec3& p) {
-    const ivec3 low = p >> 1, high = (p + 1) >> 1;
-    const auto along_z = [&](int x, int y) {
-        const float* row = box + (x * kParents + y) * kParents;
-        return 0.5f * (row[low.z] + row[high.z]);
-    };
-    const auto along_y = [&](int x) { return 0.5f * (along_z(x, low.y) + along_z(x, high.y)); };
-    return 0.5f * (along_y(low.x) + along_y(high.x));
-}
-
 }  // namespace
 
 NodeReceivers node_receivers(const Medium& medium, const LatticeRequest& request) {
-    NodeReceivers out{medium.lattice, *request.needed, {}, {}};
+    return marked_receivers(medium, request, *request.needed);
+}
+
+NodeReceivers marked_receivers(const Medium& medium, const LatticeRequest& request,
+                               const std::vector<std::uint8_t>& marked) {
+    NodeReceivers out{medium.lattice, marked, {}, {}};
     place_receivers(medium, request, 0, out);
     return out;
 }
@@ -175,25 +167,12 @@ void add_at_nodes(const NodeReceivers& from, const Gathered& values, Gathered& o
 }
 
 void add_interpolated(const NodeReceivers& from, const Gathered& values, const NodeReceivers& to, Gathered& out) {
-    const auto source = values.planes();
     const auto sum = out.planes();
-    parallel_for(
-        to.lattice.brick_count(),
-        [&](std::size_t b) {
-            if (!any_in_brick(to.needed, b))
-                return;
-            const auto needed = to.needed.begin() + std::ptrdiff_t(b * BrickLattice::kNodes);
-            std::array<float, kParents * kParents * kParents> box;
-            const ivec3 low = to.lattice.first_node(b) >> 1;
-            for (std::size_t c = 0; c < source.size(); ++c) {
-                copy_box(from.lattice, source[c], 1, low, ivec3(kParents), box);
-                float* const node = &sum[c][b * BrickLattice::kNodes];
-                for (int k = 0; k < BrickLattice::kNodes; ++k)
-                    if (needed[k])
-                        node[k] += between_parents(box.data(), BrickLattice::node_in_brick(k));
-            }
-        },
-        16);
+    for_each_between_parents(from.lattice, values.planes(), to.lattice, to.needed,
+                             [&](std::size_t node, std::span<const float> light) {
+                                 for (std::size_t c = 0; c < sum.size(); ++c)
+                                     sum[c][node] += light[c];
+                             });
 }
 
 }  // namespace brisance

@@ -29,6 +29,10 @@ struct NodeReceivers {
 // The requested nodes of the pyramid's medium.
 NodeReceivers node_receivers(const Medium& medium, const LatticeRequest& request);
 
+// Those of them that are marked.
+NodeReceivers marked_receivers(const Medium& medium, const LatticeRequest& request,
+                               const std::vector<std::uint8_t>& marked);
+
 // Every second node per axis: those with a share in the interpolation at some needed node of `fine`. `coarsening`: of
 // the result, relative to the medium.
 NodeReceivers coarser_receivers(const Medium& medium, const LatticeRequest& request, const NodeReceivers& fine,

@@ -68,6 +68,8 @@ private:
     GatherTarget target(int level, const std::vector<std::uint8_t>& mask, bool sparse) const {
         LatticeRequest request = request_;
         request.needed = &mask;
+        if (level > 0 || sparse)
+            request.own_share = 1.0f;
         return {level, level == 0 ? lattice_.pyramid() : *at(level).pyramid, request, sparse};
     }
 

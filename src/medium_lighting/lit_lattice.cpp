@@ -109,7 +109,11 @@ const std::vector<LitLevel>& LitLattice::coarser_levels() const {
 LatticeRequest LitLattice::request() const {
     const bool moments = input_.multiple && input_.directional;
     const std::optional<vec3> eye = input_.directional ? std::optional<vec3>(input_.eye) : std::nullopt;
-    return {&needed_, eye, moments, medium().mean_cosine};
+    LatticeRequest request{&needed_, eye, moments, medium().mean_cosine};
+    const LightingSettings& settings = input_.lighting;
+    if (settings.interpolation != 0.0f && settings.shadows == ShadowMethod::Maps)
+        request.own_share = own_share_of(settings.error);
+    return request;
 }
 
 LatticeRequest LitLattice::last_request() const {

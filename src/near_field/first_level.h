@@ -34,7 +34,8 @@ public:
     static bool is_small(const mat3& local_from_index, float radius);
 
     struct Input {
-        const ExtinctionPyramid* pyramid;  // whose level below that of the lights is the lattice
+        const ExtinctionPyramid* pyramid;      // whose level below that of the lights is the lattice
+        const std::vector<float>* extinction;  // at its nodes [1/m]
         const GridLevel* lights;
         std::optional<vec3> eye;  // local [m]; none: no `scattered`
         float mean_cosine = 0.0f;

@@ -1,0 +1,57 @@
+// Light at the nodes of a medium, from that at every second one.
+//
+// Light of the levels above the near field comes from some voxels away. It is smooth, but for what the smoke just around
+// a node holds back, and that is known for every node: the mean depth over directions of the way from the nearest such
+// lights. So light at every second node is taken to where it enters that smoke, interpolated, and taken through the smoke
+// around each node. It falls almost exponentially, so that its eighth root is interpolated, a mean close to the
+// geometric one; of moments their ratio to the fluence.
+//
+// A sixteenth of the nodes gather the nearest level themselves. How much more or less collides by their own light is a
+// ratio that changes slowly from place to place (local_ratios.h), and scales what is interpolated: no light is gained or
+// lost. The built-in explosion errs by 1.9 instead of 1.8 %, with all nodes gathering, and two explosions and a fireball
+// by 2.9 instead of 3.0, 0.7 and 0.7, 1.9 and 1.8 %.
+#pragma once
+
+#include "gathering/local_ratios.h"
+#include "gathering/node_receivers.h"
+
+namespace brisance {
+
+class LightBetween {
+public:
+    // `coarser`: every second node of the pyramid's medium. `mean_extinction`: there, of the smoke in which separations
+    // see it [1/m]. `reach`: of the smoke around a node [m]. Keeps references to the first and the third.
+    LightBetween(const ExtinctionPyramid& pyramid, const std::vector<float>& mean_extinction,
+                 const NodeReceivers& coarser, float reach);
+
+    // Adds light at the coarser nodes to `sum`, as it is before it enters the smoke around them. `in_mean_extinction`:
+    // which light has gone through the smoke of the coarser lattice.
+    void add(const Gathered& values, bool in_mean_extinction, Gathered& sum) const;
+
+    // Of the nodes that `needed` marks, those whose own light is compared with that between others: a sixteenth, spread
+    // evenly, in rows that stay where they are in the world.
+    std::vector<std::uint8_t> compared_nodes(const std::vector<std::uint8_t>& needed) const;
+
+    // Sets `out` at marked nodes to the light between the nodes of `sum`.
+    void set(const Gathered& sum, const std::vector<std::uint8_t>& marked, Gathered& out) const;
+
+    // Of what collides: by the compared nodes' own light in `out` over the same by that between the nodes of `sum`.
+    LocalRatios ratios_of_own(const Gathered& sum, const std::vector<std::uint8_t>& compared,
+                              const Gathered& out) const;
+
+    // Mixes the light of marked nodes, `own_share` of it, with that between the nodes of `sum`, times `ratios`.
+    void mix(const Gathered& sum, const LocalRatios& ratios, const std::vector<std::uint8_t>& marked, float own_share,
+             Gathered& out) const;
+
+private:
+    // Calls take(node, light) with the light between the nodes of `sum` at marked nodes, from several threads.
+    template <class Take>
+    void for_each_between(const Gathered& sum, const std::vector<std::uint8_t>& marked, const Take& take) const;
+
+    const Medium& medium_;
+    const NodeReceivers& coarser_;
+    std::vector<float> depth_;       // of the smoke around nodes of the medium
+    std::vector<float> mean_depth_;  // of that around nodes of the coarser lattice
+};
+
+}  // namespace brisance
