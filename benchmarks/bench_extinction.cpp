@@ -67,7 +67,7 @@ void shadow_map_rays(benchmark::State& state) {
     layout.near_distance = level.spacing;
     layout.far_distance = 4.0f * level.spacing;
     const std::size_t count = std::min<std::size_t>(64 >> std::min(level.level, 5), level.size());
-    std::vector<std::uint16_t> maps;
+    LargeVector<std::uint16_t> maps;
     for (auto _ : state) {
         build_shadow_maps(fire.pyramid, level, fire.weight, nullptr, layout, (level.size() - count) / 2, count, maps);
         benchmark::DoNotOptimize(maps.data());

@@ -77,7 +77,7 @@ void far_kernel(benchmark::State& state, FarLights::Shadow shadow) {
     lights.shadow = shadow;
     lights.layout.near_distance = 0.5f * lights.radius;
     lights.layout.far_distance = 2.0f * lights.radius;
-    std::vector<std::uint16_t> maps;
+    LargeVector<std::uint16_t> maps;
     if (shadow == FarLights::Shadow::Maps) {
         lights.list_base = list.front();
         build_shadow_maps(fire.pyramid, level, fire.weight, nullptr, lights.layout, list.front(),

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/large_vector.h"
 #include "core/progress.h"
 #include "gathering/settings.h"
 #include "lighting_grid/lighting_grid.h"
@@ -36,9 +37,9 @@ struct LevelCost {
 // Shadow maps kept for a second gather from the same grid, whose positions and medium must not have changed.
 struct ShadowMapCache {
     struct Level {
-        std::vector<std::uint16_t> maps;    // empty until made
+        LargeVector<std::uint16_t> maps;    // empty until made
         std::vector<std::uint32_t> map_of;  // on demand: of each light, its number among the maps (far_kernels.h)
-        std::vector<std::uint16_t> ends;    // of each map, where receivers beyond the medium have asked for them
+        LargeVector<std::uint16_t> ends;    // of each map, where receivers beyond the medium have asked for them
     };
     std::vector<Level> levels;
     // Makes maps only of lights that may reach some receiver. This pays for few receivers among many lights and changes

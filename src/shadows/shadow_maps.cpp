@@ -162,10 +162,11 @@ int ParallelRays::of(std::size_t light) const {
 
 void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const NodeWeights& weights,
                        const NodeWeights* escape, const ShadowMapLayout& layout, std::size_t first, std::size_t count,
-                       std::vector<std::uint16_t>& maps, const Occluders* occluders) {
+                       LargeVector<std::uint16_t>& maps, const Occluders* occluders) {
     std::vector<std::uint32_t> list(count);
     std::iota(list.begin(), list.end(), static_cast<std::uint32_t>(first));
-    maps.assign(count * layout.stride(), 0);
+    maps.clear();  // nothing of them is kept, so that nothing is copied
+    maps.resize(count * layout.stride());
     build_shadow_maps(pyramid, level, weights, escape, layout, list, maps.data(), occluders);
 }
 
@@ -215,7 +216,9 @@ void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level,
                 cut_at_surfaces(*occluders, {position, voxels.empty() ? level.parts_of(light) : voxels, surface},
                                 layout, interior);
             }
-            copy_with_border(interior.data(), seen, layout, maps + k * layout.stride());
+            std::uint16_t* const map = maps + k * layout.stride();
+            std::fill_n(map, layout.stride(), std::uint16_t{0});  // of texels that are not seen
+            copy_with_border(interior.data(), seen, layout, map);
         }
     });
 }

@@ -28,6 +28,7 @@
 #include <span>
 #include <vector>
 
+#include "core/large_vector.h"
 #include "lighting_grid/footprint.h"
 #include "lighting_grid/lighting_grid.h"
 #include "medium/lattice/extinction_pyramid.h"
@@ -76,9 +77,9 @@ private:
 // are surfaces that block light, or null.
 void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const NodeWeights& weights,
                        const NodeWeights* escape, const ShadowMapLayout& layout, std::size_t first, std::size_t count,
-                       std::vector<std::uint16_t>& maps, const Occluders* occluders = nullptr);
+                       LargeVector<std::uint16_t>& maps, const Occluders* occluders = nullptr);
 
-// Builds the maps of the lights in `list`, one after another in `maps`, which begin as zeros.
+// Builds the maps of the lights in `list`, one after another in `maps`.
 void build_shadow_maps(const ExtinctionPyramid& pyramid, const GridLevel& level, const NodeWeights& weights,
                        const NodeWeights* escape, const ShadowMapLayout& layout, std::span<const std::uint32_t> list,
                        std::uint16_t* maps, const Occluders* occluders = nullptr);

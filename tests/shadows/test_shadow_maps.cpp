@@ -40,8 +40,8 @@ ShadowMapLayout layout_of(const GridLevel& level) {
     return layout;
 }
 
-std::vector<std::uint16_t> maps_of(const Lit& lit, const GridLevel& level, const ShadowMapLayout& layout) {
-    std::vector<std::uint16_t> maps;
+LargeVector<std::uint16_t> maps_of(const Lit& lit, const GridLevel& level, const ShadowMapLayout& layout) {
+    LargeVector<std::uint16_t> maps;
     build_shadow_maps(lit.pyramid, level, lit.weight, nullptr, layout, 0, level.size(), maps);
     return maps;
 }
@@ -51,7 +51,7 @@ float distance_of(const ShadowMapLayout& layout, int k) {
 }
 
 // Transmittance of a texel; interior texels are 0 .. resolution - 1, the border lies at -1 and at resolution.
-float stored(const std::vector<std::uint16_t>& maps, const ShadowMapLayout& layout, std::size_t light, int u, int v,
+float stored(const LargeVector<std::uint16_t>& maps, const ShadowMapLayout& layout, std::size_t light, int u, int v,
              int k) {
     const std::size_t texel = std::size_t(u + 1) * layout.side() + (v + 1);
     return float(maps[light * layout.stride() + texel * layout.distances + k]) / 65535.0f;
@@ -64,7 +64,7 @@ vec3 direction_of(const ShadowMapLayout& layout, int u, int v) {
 
 void expect_beers_law(const Lit& lit, const GridLevel& level, float extinction) {
     const ShadowMapLayout layout = layout_of(level);
-    const std::vector<std::uint16_t> maps = maps_of(lit, level, layout);
+    const LargeVector<std::uint16_t> maps = maps_of(lit, level, layout);
     for (std::size_t light = 0; light < level.size(); ++light)
         for (int u = -1; u <= layout.resolution; ++u)
             for (int v = -1; v <= layout.resolution; ++v)
@@ -97,7 +97,7 @@ TEST(ShadowMaps, EmptySpaceDimsNothing) {
     const Lit lit(make_medium(r));
     const GridLevel& level = lit.grid.levels[0];
     const ShadowMapLayout layout = layout_of(level);
-    const std::vector<std::uint16_t> maps = maps_of(lit, level, layout);
+    const LargeVector<std::uint16_t> maps = maps_of(lit, level, layout);
     for (std::size_t light = 0; light < level.size(); ++light)
         for (int i = 0; i < layout.resolution; ++i)
             for (int k = 0; k < layout.distances; ++k)
@@ -110,7 +110,7 @@ TEST(ShadowMaps, AWallDarkensOnlyWhatLiesBehindIt) {
     const auto lit = testing::single_light(make_medium(r), ivec3(0));
     const GridLevel& level = lit->grid.levels[2];
     const ShadowMapLayout layout = layout_of(level);
-    const std::vector<std::uint16_t> maps = maps_of(*lit, level, layout);
+    const LargeVector<std::uint16_t> maps = maps_of(*lit, level, layout);
     for (int u = 0; u < layout.resolution; ++u)
         for (int v = 0; v < layout.resolution; ++v) {
             const vec3 w = direction_of(layout, u, v);
@@ -154,7 +154,7 @@ TEST(ShadowMaps, OfALightOutsideAreMadeWhereTheMediumIs) {
                 ShadowMapLayout layout = layout_of(level);
                 layout.resolution = resolution;
                 layout.far_distance = (distance + 1.0f) * radius;
-                const std::vector<std::uint16_t> maps = maps_of(*lit, level, layout);
+                const LargeVector<std::uint16_t> maps = maps_of(*lit, level, layout);
                 for (int i = 0; i < 500; ++i) {
                     vec3 p = glm::mix(bounds.low, bounds.high, vec3(rng.next(), rng.next(), rng.next()));
                     if (i < 8)
@@ -178,7 +178,7 @@ TEST(ShadowMaps, LightFadesMonotonicallyWithDistance) {
     const Lit lit(make_medium(r));
     const GridLevel& level = lit.grid.levels[2];
     const ShadowMapLayout layout = layout_of(level);
-    const std::vector<std::uint16_t> maps = maps_of(lit, level, layout);
+    const LargeVector<std::uint16_t> maps = maps_of(lit, level, layout);
     for (std::size_t light = 0; light < level.size(); light += 11)
         for (int u = 0; u < layout.resolution; ++u)
             for (int v = 0; v < layout.resolution; ++v)
@@ -199,7 +199,7 @@ TEST(ShadowMaps, TheBorderIsTheOtherSideOfTheSeam) {
     const auto lit = testing::single_light(make_medium(r), ivec3(0));
     const GridLevel& level = lit->grid.levels[1];
     const ShadowMapLayout layout = layout_of(level);
-    const std::vector<std::uint16_t> maps = maps_of(*lit, level, layout);
+    const LargeVector<std::uint16_t> maps = maps_of(*lit, level, layout);
     const int end = layout.resolution, last = end - 1;
     bool varies = false;
     for (int i = 0; i < layout.resolution; ++i)
@@ -223,7 +223,7 @@ TEST(ShadowMaps, TransmittanceAgreesWithAPlainMarch) {
     const auto lit = testing::single_light(make_medium(r), ivec3(2, -3, 5));
     const GridLevel& level = lit->grid.levels[1];
     const ShadowMapLayout layout = layout_of(level);
-    const std::vector<std::uint16_t> maps = maps_of(*lit, level, layout);
+    const LargeVector<std::uint16_t> maps = maps_of(*lit, level, layout);
     const vec3 light = lit->medium.local_of_node({2, -3, 5});
     for (int u = 0; u < layout.resolution; ++u)
         for (int v = 0; v < layout.resolution; ++v)
@@ -240,10 +240,10 @@ TEST(ShadowMaps, APartOfTheLevelHasTheMapsOfTheWholeWhateverTheThreads) {
     const Lit lit(make_medium(r));
     const GridLevel& level = lit.grid.levels[2];
     const ShadowMapLayout layout = layout_of(level);
-    const std::vector<std::uint16_t> whole = maps_of(lit, level, layout);
+    const LargeVector<std::uint16_t> whole = maps_of(lit, level, layout);
     for (const int threads : {1, 8}) {
         const ThreadLimit limit(threads);
-        std::vector<std::uint16_t> part;
+        LargeVector<std::uint16_t> part;
         build_shadow_maps(lit.pyramid, level, lit.weight, nullptr, layout, 5, 20, part);
         ASSERT_EQ(part.size(), 20 * layout.stride());
         for (std::size_t i = 0; i < part.size(); ++i) {
@@ -265,8 +265,8 @@ TEST(ShadowMaps, StridesThroughEvenSmokeLoseNothing) {
     layout.for_outside = true;
     layout.far_distance = 8.0f;
     const NodeWeights escape(lit.weight.size(), 1.0f);
-    std::vector<std::uint16_t> steps, strides, nowhere;
-    const auto build = [&](std::vector<std::uint16_t>& maps) {
+    LargeVector<std::uint16_t> steps, strides, nowhere;
+    const auto build = [&](LargeVector<std::uint16_t>& maps) {
         build_shadow_maps(lit.pyramid, level, lit.weight, &escape, layout, 0, std::min<std::size_t>(level.size(), 64),
                           maps);
     };
@@ -333,7 +333,7 @@ TEST(ParallelRays, ThatFollowPowerGiveABetterSumOfFewerRays) {
     layout.range = 1.0f / FootprintPicker::kLeastShare;
     const NodeWeights escape(nodes, 1.0f);
     const auto sums = [&](const GridLevel& level) {
-        std::vector<std::uint16_t> maps;
+        LargeVector<std::uint16_t> maps;
         build_shadow_maps(lit.pyramid, level, lit.weight, &escape, layout, 0, level.size(), maps);
         std::vector<double> sum(layout.stride() - 2, 0.0);
         for (std::size_t i = 0; i < level.size(); ++i)

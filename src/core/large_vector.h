@@ -1,0 +1,62 @@
+// A vector for large arrays of plain values that are read at random, such as shadow maps.
+//
+// New elements hold no particular value: whoever fills them in parallel has their memory set up in parallel, too. Where
+// the system has large pages, the array lies in them. A system that has none for it gives small ones.
+#pragma once
+
+#include <sys/mman.h>
+
+#include <cstddef>
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace brisance {
+
+template <class T>
+class LargeAllocator : public std::allocator<T> {
+public:
+    template <class U>
+    struct rebind {
+        using other = LargeAllocator<U>;
+    };
+
+    T* allocate(std::size_t count) {
+        const std::size_t bytes = count * sizeof(T);
+        if (bytes < kFewPages * kLargePage)
+            return std::allocator<T>::allocate(count);
+        const std::size_t whole = (bytes + kLargePage - 1) / kLargePage * kLargePage;
+        void* const memory = std::aligned_alloc(kLargePage, whole);
+        if (!memory)
+            throw std::bad_alloc();
+        madvise(memory, whole, MADV_HUGEPAGE);  // a wish: what comes of it changes nothing but the time
+        return static_cast<T*>(memory);
+    }
+
+    void deallocate(T* memory, std::size_t count) {
+        if (count * sizeof(T) < kFewPages * kLargePage)
+            std::allocator<T>::deallocate(memory, count);
+        else
+            std::free(memory);
+    }
+
+    template <class U, class... Args>
+    void construct(U* at, Args&&... args) {
+        if constexpr (sizeof...(Args) == 0)
+            ::new (static_cast<void*>(at)) U;
+        else
+            ::new (static_cast<void*>(at)) U(std::forward<Args>(args)...);
+    }
+
+private:
+    static constexpr std::size_t kLargePage = std::size_t{2} << 20, kFewPages = 2;
+    static_assert(std::is_trivially_default_constructible_v<T>);
+};
+
+template <class T>
+using LargeVector = std::vector<T, LargeAllocator<T>>;
+
+}  // namespace brisance
