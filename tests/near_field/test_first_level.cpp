@@ -86,7 +86,7 @@ FirstLevel first_level(const Lit& lit) {
 }
 
 FirstLevel::Input input_of(const Lit& lit) {
-    return {&lit.pyramid, &lit.grid.levels.front(), std::nullopt, 0.0f};
+    return {&lit.pyramid, &lit.medium.extinction, &lit.grid.levels.front(), std::nullopt, 0.0f};
 }
 
 // The level alone, against rays from its lights through the smoke; on a lattice of skewed axes.
