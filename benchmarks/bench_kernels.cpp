@@ -130,8 +130,9 @@ void first_level(benchmark::State& state) {
     out.resize(needed.size(), false, false);
     std::uint64_t evaluations = 0;
     for (auto _ : state) {
-        evaluations += level.gather({&fire.pyramid, &fire.medium.extinction, &fire.grid.levels.front(), std::nullopt, 0.0f},
-                                    {&fire.medium.lattice, &needed, false}, out);
+        evaluations +=
+            level.gather({&fire.pyramid, &fire.medium.extinction, &fire.grid.levels.front(), std::nullopt, 0.0f},
+                         {&fire.medium.lattice, &needed, false}, out);
         benchmark::DoNotOptimize(out.fluence.data());
     }
     state.counters["evaluations/s"] = benchmark::Counter(double(evaluations), benchmark::Counter::kIsRate);

@@ -7,6 +7,7 @@
 #include "camera_rays/automatic_samples.h"
 #include "camera_rays/picture.h"
 #include "core/parallel.h"
+#include "gathering/gather.h"
 #include "gathering/map_layouts.h"
 #include "medium_lighting/levels/lighting_level.h"
 #include "medium_lighting/lit_lattice.h"
@@ -17,21 +18,24 @@ namespace brisance {
 namespace {
 
 // Seconds of one core at 2.5 GHz, fitted to nine pictures of 0.04 to 0.7 million nodes, which are within 30 %.
-// Evaluations of a light at a node: so many for each node at alpha 1, and as its power 1.9.
-constexpr double kEvaluation = 11e-9, kDirectional = 1.25, kEvaluationsOfNode = 360.0, kPowerOfAlpha = 1.9;
-// Values of shadow maps of 12^2 texels and 10 distances: so many for each node, from level 2 on, and those of the few
-// top levels.
-constexpr double kMapValue = 7e-9, kMapValuesOfNode = 180.0, kMapValuesAtTop = 26e6, kKnownMap = 12.0 * 12.0 * 10.0;
+// Evaluations of a light at a node, with what else a node takes: so many for each node at alpha 1 where all of its
+// light is interpolated, where all is its own, and as alpha's power 1.9.
+constexpr double kEvaluation = 11e-9, kDirectional = 1.25, kPowerOfAlpha = 1.9;
+constexpr double kEvaluationsBetween = 190.0, kEvaluationsOfOwn = 360.0;
+// Values of shadow maps of 12^2 texels and 10 distances: so many for each node in the same two cases, and those of the
+// few top levels.
+constexpr double kMapValue = 7e-9, kMapValuesBetween = 75.0, kMapValuesOfOwn = 180.0, kMapValuesAtTop = 26e6,
+                 kKnownMap = 12.0 * 12.0 * 10.0;
 // The operator and the series, for each node of their lattice. A level has about a sixth of the next finer one's nodes.
 constexpr double kCoarseNode = 80e-6, kNodesOfParent = 6.0;
-constexpr double kFineBounce = 0.3;  // the evaluations of one, over those of the last flight
+constexpr double kFineBounce = 0.3;  // the evaluations of one, over those of a flight whose nodes gather all
 constexpr double kFrame = 0.25;
 constexpr double kSegment = 1.2e-6;  // of a path: 0.7 to 1.9
 constexpr double kCameraRay = 2.4e-6;
 constexpr double kTrackingOfVoxel = 0.25e-6;  // set-up of the path tracer
 // With a set, a guess from seven (costs.h): lights for surfaces and what those send into smoke, over the lighting of
 // smoke alone; virtual lights; what lights the surface that a camera ray meets.
-constexpr double kSmokeOfSet = 2.7, kVirtualLights = 6.0, kSurfaceRay = 4e-6;
+constexpr double kSmokeOfSet = 3.2, kVirtualLights = 6.0, kSurfaceRay = 4e-6;
 
 constexpr int kPilotSamples = 8;
 
@@ -105,20 +109,25 @@ double lighting_seconds(const Shot& shot, const CountedMedium& counted, const Pl
         return counted.lit_nodes / std::pow(kNodesOfParent, level.level);
     };
     const double nodes = nodes_of(levels.first), of_smoke = plan.multiple ? nodes_of(levels.smoke) : 0.0;
-    double evaluations = kEvaluationsOfNode * nodes * std::pow(double(shot.lighting.alpha), kPowerOfAlpha);
+    const bool may_interpolate = shot.lighting.interpolation != 0.0f && shot.lighting.shadows == ShadowMethod::Maps;
+    const double own = may_interpolate ? own_share_of(shot.lighting.error) : 1.0;
+    const double evaluations_of_node = std::lerp(kEvaluationsBetween, kEvaluationsOfOwn, own);
+    double evaluations = evaluations_of_node * nodes * std::pow(double(shot.lighting.alpha), kPowerOfAlpha);
     double coarse = 0.0;
     if (plan.multiple) {
         const ScatteringSettings orders = orders_of(shot);
         const LatticeChoice series = forecast_lattice(shot, counted.medium, levels.smoke.level);
         const bool bounces = share_of_fine_bounces(series, orders, shot.lighting.error) > 0.0f;
-        const double flights = 1.0 + (bounces ? kFineBounce * count_of_fine_bounces(orders) : 0.0);
-        evaluations += flights * kEvaluationsOfNode * of_smoke * std::pow(double(shot.scattering.alpha), kPowerOfAlpha);
+        const double bounce = bounces ? kFineBounce * kEvaluationsOfOwn * count_of_fine_bounces(orders) : 0.0;
+        evaluations +=
+            (evaluations_of_node + bounce) * of_smoke * std::pow(double(shot.scattering.alpha), kPowerOfAlpha);
         coarse = of_smoke / std::pow(kNodesOfParent, double(series.level) + series.share_of_coarser);
     }
     const double map =
         std::pow(double(shadow_resolution(shot.lighting)), 2.0) * shadow_distances(shot.lighting) / kKnownMap;
-    const double values =
-        0.5 * map * (kMapValuesOfNode * (nodes + of_smoke) + (plan.multiple ? 2.0 : 1.0) * kMapValuesAtTop);
+    const double values = 0.5 * map *
+                          (std::lerp(kMapValuesBetween, kMapValuesOfOwn, own) * (nodes + of_smoke) +
+                           (plan.multiple ? 2.0 : 1.0) * kMapValuesAtTop);
     const double of_smoke_alone =
         kEvaluation * (plan.directional ? kDirectional : 1.0) * evaluations + kMapValue * values + kCoarseNode * coarse;
     return kFrame + (has_set(plan) ? kSmokeOfSet : 1.0) * of_smoke_alone +

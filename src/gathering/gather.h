@@ -11,13 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "core/large_vector.h"
 #include "core/progress.h"
 #include "gathering/settings.h"
 #include "lighting_grid/lighting_grid.h"
 #include "medium/lattice/extinction_pyramid.h"
 #include "near_field/near_field.h"
 #include "receivers/receivers.h"
+#include "shadows/large_vector.h"
 
 namespace brisance {
 
@@ -76,8 +76,8 @@ struct LatticeRequest {
     float mean_cosine = 0.0f;
     bool interpolates_far_light = true;  // between fewer nodes (node_receivers.h)
     int least_coarsening = 0;            // then at no more than every 2^n-th node
-    // Of the light above the near field that all nodes would gather, what they gather themselves, in [0, 1]. The rest is
-    // interpolated from every second node (light_between.h).
+    // Of the light above the near field that all nodes would gather, what they gather themselves, in [0, 1]. The rest
+    // is interpolated from every second node (light_between.h).
     float own_share = 1.0f;
 };
 

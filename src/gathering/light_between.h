@@ -1,15 +1,15 @@
 // Light at the nodes of a medium, from that at every second one.
 //
-// Light of the levels above the near field comes from some voxels away. It is smooth, but for what the smoke just around
-// a node holds back, and that is known for every node: the mean depth over directions of the way from the nearest such
-// lights. So light at every second node is taken to where it enters that smoke, interpolated, and taken through the smoke
-// around each node. It falls almost exponentially, so that its eighth root is interpolated, a mean close to the
-// geometric one; of moments their ratio to the fluence.
+// Light of the levels above the near field comes from some voxels away. It is smooth, but for what the smoke just
+// around a node holds back, and that is known for every node: the mean depth over directions of the way from the
+// nearest such lights. So light at every second node is taken to where it enters that smoke, interpolated, and taken
+// through the smoke around each node. It falls almost exponentially, so that its eighth root is interpolated, a mean
+// close to the geometric one; of moments their ratio to the fluence.
 //
 // A sixteenth of the nodes gather the nearest level themselves. How much more or less collides by their own light is a
-// ratio that changes slowly from place to place (local_ratios.h), and scales what is interpolated: no light is gained or
-// lost. The built-in explosion errs by 1.9 instead of 1.8 %, with all nodes gathering, and two explosions and a fireball
-// by 2.9 instead of 3.0, 0.7 and 0.7, 1.9 and 1.8 %.
+// ratio that changes slowly from place to place (local_ratios.h), and scales what is interpolated: no light is gained
+// or lost. The built-in explosion errs by 1.9 instead of 1.8 %, with all nodes gathering, and two explosions and a
+// fireball by 2.9 instead of 3.0, 0.7 and 0.7, 1.9 and 1.8 %.
 #pragma once
 
 #include "gathering/local_ratios.h"

@@ -22,7 +22,7 @@ public:
         s.count += 1.0;
     }
 
-    using Corners = std::array<Rgb, 8>;  // x slowest
+    using Corners = std::array<Rgb, 8>;       // x slowest
     std::vector<Corners> at_corners() const;  // of every brick
     static Rgb at_node(const Corners& corners, const ivec3& node_in_brick);
 

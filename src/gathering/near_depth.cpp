@@ -44,7 +44,8 @@ std::vector<Tap> taps_around(const mat3& local_from_index, float reach) {
     std::vector<Tap> taps;
     for (int i = 0; i < kTaps; ++i)
         if (sum[std::size_t(i)] > 0.0)
-            taps.push_back({ivec3(i / (kWide * kWide), i / kWide % kWide, i % kWide) - kMargin, float(sum[std::size_t(i)])});
+            taps.push_back(
+                {ivec3(i / (kWide * kWide), i / kWide % kWide, i % kWide) - kMargin, float(sum[std::size_t(i)])});
     return taps;
 }
 

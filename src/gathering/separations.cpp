@@ -12,7 +12,8 @@ mat3 first_level_lattice(const LightField& field, const GridLevel& level) {
 }
 
 std::vector<float> extinction_of_separations(const ExtinctionPyramid& pyramid, int lattice_level) {
-    constexpr float kBlur = 0.25f;  // of h^2: half from the means' weights, two thirds from the hat, less the finer hat's
+    constexpr float kBlur =
+        0.25f;  // of h^2: half from the means' weights, two thirds from the hat, less the finer hat's
     std::vector<float> extinction = pyramid.nodes(lattice_level);
     if (lattice_level > 0)
         sharpen_nodes(pyramid.lattice(lattice_level), extinction, 1, 0.5f * kBlur);

@@ -188,8 +188,7 @@ private:
         const int nodes = 2 * wide_;
         m.nodes.resize(8 * plane_);
         m.extinction.resize(8 * plane_);
-        copy_box(in_.pyramid->lattice(in_.lattice_level()), *in_.extinction, 1, 2 * low,
-                 ivec3(nodes), m.nodes);
+        copy_box(in_.pyramid->lattice(in_.lattice_level()), *in_.extinction, 1, 2 * low, ivec3(nodes), m.nodes);
         const float* from = m.nodes.data();
         for (int x = 0; x < nodes; ++x)
             for (int y = 0; y < nodes; ++y) {

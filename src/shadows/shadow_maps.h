@@ -28,10 +28,10 @@
 #include <span>
 #include <vector>
 
-#include "core/large_vector.h"
 #include "lighting_grid/footprint.h"
 #include "lighting_grid/lighting_grid.h"
 #include "medium/lattice/extinction_pyramid.h"
+#include "shadows/large_vector.h"
 
 namespace brisance {
 

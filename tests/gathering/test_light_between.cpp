@@ -25,7 +25,6 @@ Recipe lumpy_fire(float extinction) {
     return r;
 }
 
-
 Gathered gathered(const Lit& lit, float own_share, const Occluders* surfaces = nullptr, bool directions = false) {
     LightField field = field_of(lit, lighting(ShadowMethod::Maps));
     field.occluders = surfaces;
@@ -53,14 +52,14 @@ OfCollisions of_collisions(const Medium& medium, const std::vector<float>& a, co
     return {sum / all, std::sqrt(square / squares)};
 }
 
-// Voxels of a depth of 0.1, 0.5 and 1.5. A node may err by some percent, which averages out along a ray; the light as a whole may not.
+// Voxels of a depth of 0.1, 0.5 and 1.5. A node may err by some percent, which averages out along a ray; the light as a
+// whole may not.
 TEST(LightBetween, LosesAndGainsNoLight) {
     for (const float extinction : {3.0f, 12.0f, 40.0f}) {
         const Lit lit(make_medium(lumpy_fire(extinction)));
-        const OfCollisions d =
-            of_collisions(lit.medium, gathered(lit, 0.0f).fluence, gathered(lit, 1.0f).fluence);
-        std::printf("depth of a voxel %.2f: mean %+.3f %%, rms %.2f %%\n",
-                    extinction * lit.medium.spacing, 100.0 * d.mean, 100.0 * d.rms);
+        const OfCollisions d = of_collisions(lit.medium, gathered(lit, 0.0f).fluence, gathered(lit, 1.0f).fluence);
+        std::printf("depth of a voxel %.2f: mean %+.3f %%, rms %.2f %%\n", extinction * lit.medium.spacing,
+                    100.0 * d.mean, 100.0 * d.rms);
         EXPECT_LT(std::abs(d.mean), 0.01);  // the energy balance takes the rest
         EXPECT_LT(d.rms, 0.03);
     }
@@ -166,8 +165,8 @@ TEST(NearDepth, IsThatOfEvenSmoke) {
         const float reach = 0.75f;
         const std::vector<float> depth = near_depths(lattice, even, span, reach);
         for (int k = 0; k < BrickLattice::kNodes; ++k)
-            ASSERT_NEAR(depth[std::size_t(lattice.find_node(ivec3(8) + BrickLattice::node_in_brick(k)))],
-                        0.7f * reach, 1e-4f);
+            ASSERT_NEAR(depth[std::size_t(lattice.find_node(ivec3(8) + BrickLattice::node_in_brick(k)))], 0.7f * reach,
+                        1e-4f);
     }
     // One node alone: the integral of its hat along lines from it is 0.43 to 0.5 voxels.
     std::vector<float> single(lattice.node_count(), 0.0f);

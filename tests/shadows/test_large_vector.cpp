@@ -1,5 +1,5 @@
 // Large arrays keep what is put into them, however they grow, and lie where large pages can be.
-#include "core/large_vector.h"
+#include "shadows/large_vector.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,8 @@ namespace {
 TEST(LargeVector, KeepsItsValuesAsItGrows) {
     LargeVector<std::uint16_t> v;
     std::size_t filled = 0;
-    for (const std::size_t size : {std::size_t{10}, std::size_t{100'000}, std::size_t{5'000'000}, std::size_t{9'000'000}}) {
+    for (const std::size_t size :
+         {std::size_t{10}, std::size_t{100'000}, std::size_t{5'000'000}, std::size_t{9'000'000}}) {
         v.resize(size);
         for (; filled < size; ++filled)
             v[filled] = std::uint16_t(filled * 7);
