@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "core/rng.h"
 #include "gathering/between_parents.h"
+#include "gathering/light_roots.h"
 #include "gathering/near_depth.h"
 
 namespace brisance {
@@ -25,20 +26,6 @@ bool in_compared_row(const ivec3& node) {
     const std::uint64_t box = part(node.x >> 2) << 42 | part(node.y >> 2) << 21 | part(node.z >> 4);
     const int row = static_cast<int>(Rng(stream_of("light between nodes"), box).next() * 16.0f);
     return row == ((node.x & 3) << 2 | (node.y & 3));
-}
-
-float eighth_root(float v) {
-    return std::sqrt(std::sqrt(std::sqrt(std::max(0.0f, v))));
-}
-
-float eighth_power(float v) {
-    const float square = v * v, fourth = square * square;
-    return fourth * fourth;
-}
-
-// Planes of fluence and scattered light; those of moments follow.
-std::size_t planes_of_light(const Gathered& g, std::size_t nodes) {
-    return (g.fluence.size() + g.scattered.size()) / nodes;
 }
 
 }  // namespace
@@ -74,24 +61,14 @@ template <class Take>
 void LightBetween::for_each_between(const Gathered& sum, const std::vector<std::uint8_t>& marked,
                                     const Take& take) const {
     Gathered roots = sum;
-    const std::size_t nodes = coarser_.needed.size(), lights = planes_of_light(sum, nodes);
-    const auto planes = roots.planes();
-    parallel_for(
-        nodes,
-        [&](std::size_t i) {
-            for (std::size_t c = lights; c < planes.size(); ++c)
-                planes[c][i] = planes[c % 3][i] > 0.0f ? planes[c][i] / planes[c % 3][i] : 0.0f;
-            for (std::size_t c = 0; c < lights; ++c)
-                planes[c][i] = eighth_root(planes[c][i]);
-        },
-        4096);
+    const std::size_t nodes = coarser_.needed.size();
+    take_roots(roots, nodes);
     for_each_between_parents(coarser_.lattice, std::as_const(roots).planes(), medium_.lattice, marked,
                              [&](std::size_t node, std::span<float> light) {
+                                 raise_roots(light, planes_of_light(sum, nodes));
                                  const float passes = transmittance(depth_[node]);
-                                 for (std::size_t c = 0; c < lights; ++c)
-                                     light[c] = passes * eighth_power(light[c]);
-                                 for (std::size_t c = lights; c < light.size(); ++c)
-                                     light[c] *= light[c % 3];
+                                 for (float& l : light)
+                                     l *= passes;
                                  take(node, std::span<const float>(light));
                              });
 }

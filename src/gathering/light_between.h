@@ -3,8 +3,7 @@
 // Light of the levels above the near field comes from some voxels away. It is smooth, but for what the smoke just
 // around a node holds back, and that is known for every node: the mean depth over directions of the way from the
 // nearest such lights. So light at every second node is taken to where it enters that smoke, interpolated, and taken
-// through the smoke around each node. It falls almost exponentially, so that its eighth root is interpolated, a mean
-// close to the geometric one; of moments their ratio to the fluence.
+// through the smoke around each node (interpolated: light_roots.h).
 //
 // A sixteenth of the nodes gather the nearest level themselves. How much more or less collides by their own light is a
 // ratio that changes slowly from place to place (local_ratios.h), and scales what is interpolated: no light is gained

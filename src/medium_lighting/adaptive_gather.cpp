@@ -1,9 +1,12 @@
 #include "medium_lighting/adaptive_gather.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "core/parallel.h"
+#include "gathering/light_roots.h"
 #include "lighting_grid/voxel_lights.h"
 #include "medium/phase.h"
 #include "medium/voxel_size.h"
@@ -225,33 +228,23 @@ private:
             4);
     }
 
-    // Turns `coarse` into what is interpolated: eighth roots, and of moments their ratios to the fluence.
+    // Turns `coarse` into what is interpolated (gathering/light_roots.h).
     void interpolate(int level, Gathered& coarse, const std::vector<float>& coarse_weight, Gathered& out,
                      std::vector<float>& weight) const {
-        const std::size_t below = coarse_weight.size();
+        constexpr std::size_t kMostPlanes = 3 + 3 + 24;
+        const std::size_t below = coarse_weight.size(), lights = planes_of_light(coarse, below);
+        take_roots(coarse, below);
         const auto from = coarse.planes(), to = out.planes();
-        const std::size_t rooted = (coarse.fluence.size() + coarse.scattered.size()) / below;
-        parallel_for(
-            below,
-            [&](std::size_t j) {
-                for (std::size_t c = rooted; c < from.size(); ++c)
-                    from[c][j] = from[c % 3][j] > 0.0f ? from[c][j] / from[c % 3][j] : 0.0f;
-                for (std::size_t c = 0; c < rooted; ++c)
-                    from[c][j] = std::sqrt(std::sqrt(std::sqrt(from[c][j])));
-            },
-            4096);
         for_each_interpolated(level, [&](std::size_t i, const auto& each) {
+            std::array<float, kMostPlanes> light{};
             each([&](std::size_t j, float w) {
                 for (std::size_t c = 0; c < from.size(); ++c)
-                    to[c][i] += w * from[c][j];
+                    light[c] += w * from[c][j];
                 weight[i] += w * coarse_weight[j];
             });
-            for (std::size_t c = 0; c < rooted; ++c) {
-                const float square = to[c][i] * to[c][i], fourth = square * square;
-                to[c][i] = fourth * fourth;
-            }
-            for (std::size_t c = rooted; c < from.size(); ++c)
-                to[c][i] *= to[c % 3][i];
+            raise_roots(std::span(light).first(from.size()), lights);
+            for (std::size_t c = 0; c < from.size(); ++c)
+                to[c][i] = light[c];
         });
     }
 
