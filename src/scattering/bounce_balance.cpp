@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kEscapeBatches = 32;
 constexpr std::size_t kCollisionRays = std::size_t{1} << 16;
-constexpr std::size_t kEscapeRays = std::size_t{1} << 14;
+constexpr std::size_t kEscapeRays = std::size_t{1} << 15;
 constexpr double kGatherError = 0.03;  // of a gather's collisions, typically
 constexpr int kStarts = 64;            // nodes that stand for a hat
 // Sets the random numbers of measurements apart from those of the table, whose keys do without this bit.
