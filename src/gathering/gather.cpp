@@ -1,6 +1,7 @@
 #include "gathering/gather.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -96,7 +97,7 @@ private:
         const std::vector<std::uint8_t>& open = parts.in_the_open.needed;
         const NodeReceivers coarser = coarser_receivers(medium, request_, parts.in_the_open, 1);
         const LightBetween between(*field_.pyramid, extinction_of_separations(*field_.pyramid, 1), coarser,
-                                   field_.alpha * medium.spacing);
+                                   field_.alpha * medium.spacing, field_.occluders);
         const bool all_gather = request_.own_share > 0.0f;
         const NodeReceivers compared =
             marked_receivers(medium, request_, all_gather ? open : between.compared_nodes(open));
@@ -115,7 +116,7 @@ private:
             const GridLevel& level = field_.grid->levels[index];
             between.add(here, level.level > 1 && gathers_by_separations(field_, level, 1), sum);
         }
-        between.mix(sum, between.ratios_of_own(sum, compared.needed, out), open, request_.own_share, out);
+        between.mix(sum, between.excess_of_own(sum, compared.needed, out), open, request_.own_share, out);
     }
 
     // At the nodes of a lattice, from the coarser ones below it.
@@ -260,9 +261,10 @@ LevelCost gather_near_field(const LightField& field, const LatticeRequest& reque
 
 }  // namespace
 
-float own_share_of(float error) {
-    constexpr float kUsual = 0.02f;
-    return 1.0f - glm::smoothstep(0.5f * kUsual, kUsual, error);
+float own_share_of(float error, float mean_cosine) {
+    constexpr float kUsual = 0.02f, kWide = 0.4f, kNarrow = 0.6f;
+    return 1.0f - glm::smoothstep(0.5f * kUsual, kUsual, error) *
+                      (1.0f - glm::smoothstep(kWide, kNarrow, std::abs(mean_cosine)));
 }
 
 Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,

@@ -26,7 +26,7 @@ void LocalRatios::Sums::add(const Sums& other) {
 Rgb LocalRatios::Sums::ratio(const Rgb& general, double nodes) const {
     Rgb out = general;
     for (int c = 0; c < 3; ++c)
-        if (above[c] > 0.0 && below[c] > 0.0)
+        if (below[c] > 0.0)
             out[c] = float((count * above[c] / below[c] + nodes * general[c]) / (count + nodes));
     return out;
 }
@@ -35,7 +35,7 @@ std::vector<LocalRatios::Corners> LocalRatios::at_corners() const {
     Sums all;
     for (const Sums& s : sums_)
         all.add(s);
-    const Rgb general = all.ratio(Rgb(1.0f), kFewNodes);
+    const Rgb general = all.ratio(Rgb(0.0f), kFewNodes);
     std::vector<Corners> out(sums_.size());
     parallel_for(
         out.size(),

@@ -9,7 +9,7 @@
 namespace brisance {
 
 // Sums are kept brick by brick. The ratio at a corner of bricks is that of all bricks that touch it, drawn toward the
-// ratio of all sums where these have few nodes; between the corners it is trilinear.
+// ratio of all sums where these have few nodes, and that toward 0; between the corners it is trilinear.
 class LocalRatios {
 public:
     explicit LocalRatios(const BrickLattice& lattice);  // keeps a reference

@@ -112,7 +112,7 @@ LatticeRequest LitLattice::request() const {
     LatticeRequest request{&needed_, eye, moments, medium().mean_cosine};
     const LightingSettings& settings = input_.lighting;
     if (settings.interpolation != 0.0f && settings.shadows == ShadowMethod::Maps)
-        request.own_share = own_share_of(settings.error);
+        request.own_share = own_share_of(settings.error, medium().mean_cosine);
     return request;
 }
 

@@ -153,6 +153,18 @@ TEST(LightBetween, ComparedNodesAreASixteenthThatStaysInTheWorld) {
         ASSERT_EQ(of_some[i], compared[i] && some[i]);
 }
 
+TEST(LightBetween, NodesGatherForThemselvesWhereLittleErrorIsAllowedOrLobesAreNarrow) {
+    EXPECT_EQ(own_share_of(0.02f, 0.0f), 0.0f);
+    EXPECT_EQ(own_share_of(0.05f, -0.4f), 0.0f);
+    EXPECT_EQ(own_share_of(0.01f, 0.0f), 1.0f);
+    EXPECT_EQ(own_share_of(0.02f, 0.6f), 1.0f);
+    EXPECT_EQ(own_share_of(0.02f, -0.6f), 1.0f);
+    for (const float part : {0.1f, 0.5f, 0.9f}) {
+        EXPECT_GT(own_share_of(0.01f + 0.01f * part, 0.0f), own_share_of(0.01f + 0.01f * (part + 0.1f), 0.0f));
+        EXPECT_LT(own_share_of(0.02f, 0.4f + 0.2f * part), own_share_of(0.02f, 0.4f + 0.2f * (part + 0.1f)));
+    }
+}
+
 // In even smoke the depth is extinction times reach, whatever the voxels' shape.
 TEST(NearDepth, IsThatOfEvenSmoke) {
     std::vector<ivec3> bricks;
@@ -180,13 +192,13 @@ TEST(LocalRatios, FollowTheirPlaceAndDoNotJump) {
     const BrickLattice lattice({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}});
     LocalRatios ratios(lattice);
     for (std::size_t i = 0; i < lattice.node_count(); i += 4)
-        ratios.add(i, Rgb(lattice.node(i).x < 16 ? 0.9f : 1.1f) * 3.0f, Rgb(3.0f));
+        ratios.add(i, Rgb(lattice.node(i).x < 16 ? -0.1f : 0.1f) * 3.0f, Rgb(3.0f));
     const std::vector<LocalRatios::Corners> corners = ratios.at_corners();
     const auto at = [&](int x) {
         return LocalRatios::at_node(corners[std::size_t(lattice.find({x / 8, 0, 0}))], {x % 8, 3, 5}).x;
     };
-    EXPECT_NEAR(at(0), 0.9f, 0.02f);
-    EXPECT_NEAR(at(31), 1.1f, 0.02f);
+    EXPECT_NEAR(at(0), -0.1f, 0.02f);
+    EXPECT_NEAR(at(31), 0.1f, 0.02f);
     for (int x = 0; x < 31; ++x)
         EXPECT_LT(std::abs(at(x + 1) - at(x)), 0.03f) << x;
 }
@@ -194,10 +206,10 @@ TEST(LocalRatios, FollowTheirPlaceAndDoNotJump) {
 TEST(LocalRatios, OfFewNodesSayLittle) {
     const BrickLattice lattice({{0, 0, 0}, {9, 9, 9}});
     LocalRatios nothing(lattice), few(lattice);
-    few.add(0, Rgb(2.0f), Rgb(1.0f));
+    few.add(0, Rgb(1.0f), Rgb(1.0f));
     const auto at = [](const LocalRatios& r) { return LocalRatios::at_node(r.at_corners()[1], ivec3(3)); };
-    EXPECT_EQ(at(nothing), Rgb(1.0f));
-    EXPECT_NEAR(at(few).x, 1.0f, 0.005f);
+    EXPECT_EQ(at(nothing), Rgb(0.0f));
+    EXPECT_NEAR(at(few).x, 0.0f, 0.005f);
 }
 
 }  // namespace
