@@ -116,7 +116,7 @@ private:
             const GridLevel& level = field_.grid->levels[index];
             between.add(here, level.level > 1 && gathers_by_separations(field_, level, 1), sum);
         }
-        between.mix(sum, between.excess_of_own(sum, compared.needed, out), open, request_.own_share, out);
+        between.mix(sum, compared.needed, open, request_.own_share, out);
     }
 
     // At the nodes of a lattice, from the coarser ones below it.

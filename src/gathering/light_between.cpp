@@ -108,29 +108,34 @@ std::vector<std::vector<float>> LightBetween::second_differences(std::span<const
     return out;
 }
 
-template <class Take>
-void LightBetween::for_each_between(const Gathered& sum, const std::vector<std::uint8_t>& marked,
-                                    const Take& take) const {
-    Gathered roots = sum;
-    const std::size_t nodes = coarser_.needed.size(), lights = planes_of_light(sum, nodes);
-    take_roots(roots, nodes);
-    auto planes = std::as_const(roots).planes();
-    const std::size_t count = planes.size();
-    std::vector<std::vector<float>> curvature;
-    for (std::size_t c = 0; c < lights; ++c)
+LightBetween::Interpolant LightBetween::interpolant_of(const Gathered& sum) const {
+    const std::size_t nodes = coarser_.needed.size();
+    Interpolant out{sum, {}, planes_of_light(sum, nodes)};
+    take_roots(out.roots, nodes);
+    const auto planes = std::as_const(out.roots).planes();
+    for (std::size_t c = 0; c < out.lights; ++c)
         for (std::vector<float>& along : second_differences(planes[c]))
-            curvature.push_back(std::move(along));
-    planes.insert(planes.end(), curvature.begin(), curvature.end());
+            out.curvature.push_back(std::move(along));
+    return out;
+}
+
+template <class Take>
+void LightBetween::for_each_between(const Interpolant& of, const std::vector<std::uint8_t>& marked,
+                                    const Take& take) const {
+    auto planes = of.roots.planes();
+    const std::size_t count = planes.size();
+    planes.insert(planes.end(), of.curvature.begin(), of.curvature.end());
     for_each_between_parents(
         coarser_.lattice, planes, medium_.lattice, marked, [&](std::size_t node, std::span<float> values) {
             const ivec3 odd = odd_axes(node);
-            for (std::size_t c = 0; c < lights; ++c) {
+            for (std::size_t c = 0; c < of.lights; ++c) {
                 const float* const along = &values[count + 3 * c];
+                // Through the nodes at -1, 0, 1 and 2, half way: a sixteenth of both second differences less.
                 const float cubic = values[c] - 0.125f * (odd.x * along[0] + odd.y * along[1] + odd.z * along[2]);
                 values[c] = std::clamp(cubic, kLeastOfLinear * values[c], values[c] / kLeastOfLinear);
             }
             const std::span<float> light = values.first(count);
-            raise_roots(light, lights);
+            raise_roots(light, of.lights);
             const float passes = transmittance(depth_[node]);
             for (float& l : light)
                 l *= passes;
@@ -148,29 +153,32 @@ std::vector<std::uint8_t> LightBetween::compared_nodes(const std::vector<std::ui
 
 void LightBetween::set(const Gathered& sum, const std::vector<std::uint8_t>& marked, Gathered& out) const {
     const auto to = out.planes();
-    for_each_between(sum, marked, [&](std::size_t node, std::span<const float> light) {
+    for_each_between(interpolant_of(sum), marked, [&](std::size_t node, std::span<const float> light) {
         for (std::size_t c = 0; c < to.size(); ++c)
             to[c][node] = light[c];
     });
 }
 
-LocalRatios LightBetween::excess_of_own(const Gathered& sum, const std::vector<std::uint8_t>& compared,
+// What collides by the compared nodes' own light beyond what does by the light between, over the latter and for each
+// axis along which a node lies between two.
+LocalRatios LightBetween::excess_of_own(const Interpolant& between, const std::vector<std::uint8_t>& compared,
                                         const Gathered& out) const {
     const std::size_t nodes = medium_.lattice.node_count();
     LocalRatios excess(medium_.lattice);
-    for_each_between(sum, compared, [&](std::size_t node, std::span<const float> light) {
+    for_each_between(between, compared, [&](std::size_t node, std::span<const float> light) {
         const Rgb own(out.fluence[node], out.fluence[nodes + node], out.fluence[2 * nodes + node]);
-        const Rgb between = medium_.extinction[node] * Rgb(light[0], light[1], light[2]);
-        excess.add(node, medium_.extinction[node] * own - between, count_of_odd_axes(node) * between);
+        const Rgb collides = medium_.extinction[node] * Rgb(light[0], light[1], light[2]);
+        excess.add(node, medium_.extinction[node] * own - collides, count_of_odd_axes(node) * collides);
     });
     return excess;
 }
 
-void LightBetween::mix(const Gathered& sum, const LocalRatios& excess, const std::vector<std::uint8_t>& marked,
-                       float own_share, Gathered& out) const {
+void LightBetween::mix(const Gathered& sum, const std::vector<std::uint8_t>& compared,
+                       const std::vector<std::uint8_t>& marked, float own_share, Gathered& out) const {
+    const Interpolant between = interpolant_of(sum);
+    const std::vector<LocalRatios::Corners> corners = excess_of_own(between, compared, out).at_corners();
     const auto to = out.planes();
-    const std::vector<LocalRatios::Corners> corners = excess.at_corners();
-    for_each_between(sum, marked, [&](std::size_t node, std::span<const float> light) {
+    for_each_between(between, marked, [&](std::size_t node, std::span<const float> light) {
         const Rgb part = LocalRatios::at_node(corners[node / BrickLattice::kNodes],
                                               BrickLattice::node_in_brick(int(node % BrickLattice::kNodes)));
         const Rgb factor = glm::max(1.0f + count_of_odd_axes(node) * part, 0.0f);

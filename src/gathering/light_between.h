@@ -11,6 +11,9 @@
 // all nodes gathering, and two explosions and a fireball by 2.9 instead of 3.0, 0.7 and 0.7, 1.9 and 1.8 %.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "gathering/local_ratios.h"
 #include "gathering/node_receivers.h"
 
@@ -34,22 +37,28 @@ public:
     // Sets `out` at marked nodes to the light between the nodes of `sum`.
     void set(const Gathered& sum, const std::vector<std::uint8_t>& marked, Gathered& out) const;
 
-    // What collides by the compared nodes' own light in `out` beyond what does by light between the nodes of `sum`,
-    // over the latter and for each axis along which a node lies between two.
-    LocalRatios excess_of_own(const Gathered& sum, const std::vector<std::uint8_t>& compared,
-                              const Gathered& out) const;
-
-    // Mixes the light of marked nodes, `own_share` of it, with that between the nodes of `sum` and its `excess`.
-    void mix(const Gathered& sum, const LocalRatios& excess, const std::vector<std::uint8_t>& marked, float own_share,
-             Gathered& out) const;
+    // Mixes the light of marked nodes in `out`, `own_share` of it, with that between the nodes of `sum`, after this has
+    // been made to collide as much as the own light of compared nodes.
+    void mix(const Gathered& sum, const std::vector<std::uint8_t>& compared, const std::vector<std::uint8_t>& marked,
+             float own_share, Gathered& out) const;
 
 private:
-    // Calls take(node, light) with the light between the nodes of `sum` at marked nodes, from several threads.
-    template <class Take>
-    void for_each_between(const Gathered& sum, const std::vector<std::uint8_t>& marked, const Take& take) const;
+    struct Interpolant {
+        Gathered roots;                             // light_roots.h
+        std::vector<std::vector<float>> curvature;  // second differences, three for each plane of light
+        std::size_t lights;                         // planes of light
+    };
+    Interpolant interpolant_of(const Gathered& sum) const;
 
     // Along each axis, per coarser node: 0 where a neighbour does not gather, or surfaces may part it from the node.
     std::vector<std::vector<float>> second_differences(std::span<const float> values) const;
+
+    // Calls take(node, light) with the light between at marked nodes, from several threads.
+    template <class Take>
+    void for_each_between(const Interpolant& of, const std::vector<std::uint8_t>& marked, const Take& take) const;
+
+    LocalRatios excess_of_own(const Interpolant& between, const std::vector<std::uint8_t>& compared,
+                              const Gathered& out) const;
 
     const Medium& medium_;
     const NodeReceivers& coarser_;
