@@ -109,8 +109,7 @@ double lighting_seconds(const Shot& shot, const CountedMedium& counted, const Pl
         return counted.lit_nodes / std::pow(kNodesOfParent, level.level);
     };
     const double nodes = nodes_of(levels.first), of_smoke = plan.multiple ? nodes_of(levels.smoke) : 0.0;
-    const bool may_interpolate = shot.lighting.interpolation != 0.0f && shot.lighting.shadows == ShadowMethod::Maps;
-    const double own = may_interpolate ? own_share_of(shot.lighting.error, counted.medium.mean_cosine) : 1.0;
+    const double own = own_share_of(shot.lighting, counted.medium.mean_cosine);
     const double evaluations_of_node = std::lerp(kEvaluationsBetween, kEvaluationsOfOwn, own);
     double evaluations = evaluations_of_node * nodes * std::pow(double(shot.lighting.alpha), kPowerOfAlpha);
     double coarse = 0.0;

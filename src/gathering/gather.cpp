@@ -28,7 +28,7 @@ class GatherDown {
 public:
     GatherDown(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
                Progress& progress)
-        : field_(field), request_(request), costs_(costs), progress_(progress) {}
+        : field_(field), request_(request), costs_(costs), progress_(progress), extinction_(*field.pyramid) {}
 
     // At the nodes of the medium and at coarser ones below them.
     void run(Gathered& out) {
@@ -96,8 +96,8 @@ private:
             parts = part_beside_surfaces(medium, request_, nodes, 0, *field_.occluders);
         const std::vector<std::uint8_t>& open = parts.in_the_open.needed;
         const NodeReceivers coarser = coarser_receivers(medium, request_, parts.in_the_open, 1);
-        const LightBetween between(*field_.pyramid, extinction_of_separations(*field_.pyramid, 1), coarser,
-                                   field_.alpha * medium.spacing, field_.occluders);
+        const LightBetween between(*field_.pyramid, extinction_.at(1), coarser, field_.alpha * medium.spacing,
+                                   field_.occluders);
         const bool all_gather = request_.own_share > 0.0f;
         const NodeReceivers compared =
             marked_receivers(medium, request_, all_gather ? open : between.compared_nodes(open));
@@ -162,7 +162,6 @@ private:
         const GridLevel& level = field_.grid->levels[index];
         const Medium& medium = field_.pyramid->medium();
         const FirstLevel by_separations(first_level_lattice(field_, level), field_.alpha * level.spacing);
-        const std::vector<float> extinction = extinction_of_separations(*field_.pyramid, level.level - 1);
         LevelCost cost;
         cost.level = level.level;
         cost.lights = level.size();
@@ -175,9 +174,9 @@ private:
                                                   by_separations.longest_reach(), *field_.occluders));
                 open = &parts.back().in_the_open;
             }
-            cost.evaluations +=
-                by_separations.gather({field_.pyramid, &extinction, &level, request_.eye, request_.mean_cosine},
-                                      {&open->lattice, &open->needed, a.coarsening == level.level}, *a.light);
+            cost.evaluations += by_separations.gather(
+                {field_.pyramid, &extinction_.at(level.level - 1), &level, request_.eye, request_.mean_cosine},
+                {&open->lattice, &open->needed, a.coarsening == level.level}, *a.light);
         }
         cost.gather_seconds = watch.seconds();
         costs_.push_back(cost);
@@ -204,6 +203,7 @@ private:
     const LatticeRequest& request_;
     std::vector<LevelCost>& costs_;
     Progress& progress_;
+    SeparationExtinction extinction_;
     std::vector<Asked> asked_;
 };
 
@@ -261,9 +261,11 @@ LevelCost gather_near_field(const LightField& field, const LatticeRequest& reque
 
 }  // namespace
 
-float own_share_of(float error, float mean_cosine) {
+float own_share_of(const LightingSettings& settings, float mean_cosine) {
     constexpr float kUsual = 0.02f, kWide = 0.4f, kNarrow = 0.6f;
-    return 1.0f - glm::smoothstep(0.5f * kUsual, kUsual, error) *
+    if (settings.interpolation == 0.0f || settings.shadows != ShadowMethod::Maps)
+        return 1.0f;
+    return 1.0f - glm::smoothstep(0.5f * kUsual, kUsual, settings.error) *
                       (1.0f - glm::smoothstep(kWide, kNarrow, std::abs(mean_cosine)));
 }
 

@@ -89,10 +89,11 @@ struct LatticeRequest {
 Gathered gather_at_nodes(const LightField& field, const LatticeRequest& request, std::vector<LevelCost>& costs,
                          Progress& progress);
 
-// The share with which a picture errs by no more than it may: none at the usual error of 0.02 and above, all of it at
-// half of that and below. A narrow phase function shows light from one side, and the smoke there is not that around a
-// node: from a mean cosine of 0.4 to 0.6, of either sign, the share rises to all as well.
-float own_share_of(float error, float mean_cosine);
+// The share with which a picture errs by no more than it may: all where every node is to be lit by itself, or shadows
+// are no maps. Else none at the usual error of 0.02 and above, all of it at half of that and below. A narrow phase
+// function shows light from one side, and the smoke there is not that around a node: from a mean cosine of 0.4 to 0.6,
+// of either sign, the share rises to all as well.
+float own_share_of(const LightingSettings& settings, float mean_cosine);
 
 // Returns the lit nodes as a level of lights for gather_at_points. Its vertices are the nodes.
 GridLevel bottom_level(const LightField& field);

@@ -9,6 +9,7 @@
 #include "gathering/between_parents.h"
 #include "gathering/light_roots.h"
 #include "gathering/near_depth.h"
+#include "medium/lattice/node_key.h"
 #include "medium/voxel_size.h"
 
 namespace brisance {
@@ -25,8 +26,7 @@ float transmittance(float depth) {
 
 // One of 16 rows along z in every box of 4 x 4 x 16 nodes.
 bool in_compared_row(const ivec3& node) {
-    const auto part = [](int c) { return std::uint64_t(std::uint32_t(c) & 0x1fffffu); };
-    const std::uint64_t box = part(node.x >> 2) << 42 | part(node.y >> 2) << 21 | part(node.z >> 4);
+    const std::uint64_t box = node_key({node.x >> 2, node.y >> 2, node.z >> 4});
     const int row = static_cast<int>(Rng(stream_of("light between nodes"), box).next() * 16.0f);
     return row == ((node.x & 3) << 2 | (node.y & 3));
 }

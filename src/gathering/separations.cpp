@@ -11,13 +11,15 @@ mat3 first_level_lattice(const LightField& field, const GridLevel& level) {
     return field.pyramid->medium().local_from_index * float(1 << (level.level - 1));
 }
 
-std::vector<float> extinction_of_separations(const ExtinctionPyramid& pyramid, int lattice_level) {
+const std::vector<float>& SeparationExtinction::at(int lattice_level) {
     constexpr float kBlur =
         0.25f;  // of h^2: half from the means' weights, two thirds from the hat, less the finer hat's
-    std::vector<float> extinction = pyramid.nodes(lattice_level);
-    if (lattice_level > 0)
-        sharpen_nodes(pyramid.lattice(lattice_level), extinction, 1, 0.5f * kBlur);
-    return extinction;
+    if (lattice_level == 0)
+        return pyramid_.nodes(0);
+    const auto [entry, is_new] = sharpened_.try_emplace(lattice_level, pyramid_.nodes(lattice_level));
+    if (is_new)
+        sharpen_nodes(pyramid_.lattice(lattice_level), entry->second, 1, 0.5f * kBlur);
+    return entry->second;
 }
 
 bool gathers_by_separations(const LightField& field, const GridLevel& level, int coarsening) {

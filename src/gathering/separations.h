@@ -1,6 +1,9 @@
 // Which levels are gathered by the separations of nodes, without shadow maps (near_field/first_level.h).
 #pragma once
 
+#include <map>
+#include <vector>
+
 #include "gathering/gather.h"
 
 namespace brisance {
@@ -18,6 +21,16 @@ mat3 first_level_lattice(const LightField& field, const GridLevel& level);
 // The extinction of that lattice, level - 1 of the pyramid [1/m]. Means between which light interpolates are blurred:
 // by h^2/4 per axis for voxels h wide that are twice as wide as those known. That is undone, as for media on coarser
 // lattices. A fireball of dense folds errs by 1.9 instead of 2.2 %.
-std::vector<float> extinction_of_separations(const ExtinctionPyramid& pyramid, int lattice_level);
+class SeparationExtinction {
+public:
+    explicit SeparationExtinction(const ExtinctionPyramid& pyramid) : pyramid_(pyramid) {}  // keeps a reference
+
+    // Made by the first call for a level; not for several threads.
+    const std::vector<float>& at(int lattice_level);
+
+private:
+    const ExtinctionPyramid& pyramid_;
+    std::map<int, std::vector<float>> sharpened_;
+};
 
 }  // namespace brisance

@@ -110,9 +110,7 @@ LatticeRequest LitLattice::request() const {
     const bool moments = input_.multiple && input_.directional;
     const std::optional<vec3> eye = input_.directional ? std::optional<vec3>(input_.eye) : std::nullopt;
     LatticeRequest request{&needed_, eye, moments, medium().mean_cosine};
-    const LightingSettings& settings = input_.lighting;
-    if (settings.interpolation != 0.0f && settings.shadows == ShadowMethod::Maps)
-        request.own_share = own_share_of(settings.error, medium().mean_cosine);
+    request.own_share = own_share_of(input_.lighting, medium().mean_cosine);
     return request;
 }
 

@@ -8,6 +8,7 @@
 #include "core/rng.h"
 #include "gathering/escape_probability.h"
 #include "lighting_grid/voxel_lights.h"
+#include "medium/lattice/node_key.h"
 #include "medium/phase.h"
 #include "scattering/escape_rays.h"
 
@@ -17,11 +18,6 @@ namespace {
 
 constexpr std::size_t kBatches = 16;
 constexpr double kGoldenRatio = 0.61803398874989484820;
-
-std::uint64_t vertex_key(const ivec3& v) {
-    const auto part = [](int c) { return static_cast<std::uint64_t>(static_cast<std::uint32_t>(c) & 0x1fffffu); };
-    return part(v.x) << 42 | part(v.y) << 21 | part(v.z);
-}
 
 std::vector<float> luminances(const std::vector<Rgb>& intensity) {
     std::vector<float> y;
@@ -183,7 +179,7 @@ std::vector<float> collision_probabilities(const ExtinctionPyramid& pyramid, con
             FootprintPicker picker(medium, medium.extinction, level);
             for (std::size_t k = begin; k < end; ++k) {
                 const std::vector<ivec3> starts = nodes_of_vertex(picker, vertices[first + k], level, directions);
-                Rng rng(Stream::EscapeRay, vertex_key(vertices[first + k]), 1);
+                Rng rng(Stream::EscapeRay, node_key(vertices[first + k]), 1);
                 const double turn_u = rng.next(), turn_v = rng.next();
                 for (int d = 0; d < directions; ++d) {
                     const std::size_t ray = k * directions + d;

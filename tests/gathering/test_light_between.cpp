@@ -154,15 +154,25 @@ TEST(LightBetween, ComparedNodesAreASixteenthThatStaysInTheWorld) {
 }
 
 TEST(LightBetween, NodesGatherForThemselvesWhereLittleErrorIsAllowedOrLobesAreNarrow) {
-    EXPECT_EQ(own_share_of(0.02f, 0.0f), 0.0f);
-    EXPECT_EQ(own_share_of(0.05f, -0.4f), 0.0f);
-    EXPECT_EQ(own_share_of(0.01f, 0.0f), 1.0f);
-    EXPECT_EQ(own_share_of(0.02f, 0.6f), 1.0f);
-    EXPECT_EQ(own_share_of(0.02f, -0.6f), 1.0f);
+    LightingSettings settings;
+    const auto share = [&](float error, float mean_cosine) {
+        settings.error = error;
+        return own_share_of(settings, mean_cosine);
+    };
+    EXPECT_EQ(share(0.02f, 0.0f), 0.0f);
+    EXPECT_EQ(share(0.05f, -0.4f), 0.0f);
+    EXPECT_EQ(share(0.01f, 0.0f), 1.0f);
+    EXPECT_EQ(share(0.02f, 0.6f), 1.0f);
+    EXPECT_EQ(share(0.02f, -0.6f), 1.0f);
     for (const float part : {0.1f, 0.5f, 0.9f}) {
-        EXPECT_GT(own_share_of(0.01f + 0.01f * part, 0.0f), own_share_of(0.01f + 0.01f * (part + 0.1f), 0.0f));
-        EXPECT_LT(own_share_of(0.02f, 0.4f + 0.2f * part), own_share_of(0.02f, 0.4f + 0.2f * (part + 0.1f)));
+        EXPECT_GT(share(0.01f + 0.01f * part, 0.0f), share(0.01f + 0.01f * (part + 0.1f), 0.0f));
+        EXPECT_LT(share(0.02f, 0.4f + 0.2f * part), share(0.02f, 0.4f + 0.2f * (part + 0.1f)));
     }
+    settings.shadows = ShadowMethod::Exact;
+    EXPECT_EQ(share(0.02f, 0.0f), 1.0f);
+    settings = {};
+    settings.interpolation = 0.0f;
+    EXPECT_EQ(share(0.02f, 0.0f), 1.0f);
 }
 
 // In even smoke the depth is extinction times reach, whatever the voxels' shape.
