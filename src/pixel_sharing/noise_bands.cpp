@@ -56,7 +56,7 @@ public:
         HalvedLight out = light;
         map_.for_each([&](std::size_t pixel, std::uint32_t k) {
             MeanOfHalves mean(light);
-            for_neighbours(pixel, k, step, [&](std::uint32_t j, float w) { mean.add(j, w * map_.patches[j].samples); });
+            for_neighbours(pixel, k, step, [&](std::uint32_t j, float w) { mean.add(j, w * map_.patches[j].rays); });
             if (mean.any())
                 mean.put(out, k);
         });

@@ -20,6 +20,7 @@ struct Patch {
     Rgb weight{0.0f};                    // the pixel shows the light times this
     float closeness = 0.0f, met = 0.0f;  // and how many samples met a surface
     float samples = 0.0f;
+    float rays = 0.0f;  // of the pixel, that the samples stand for: where many are taken, light must not count for more
     std::uint32_t next = kNone;  // of the pixel
 };
 

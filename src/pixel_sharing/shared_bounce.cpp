@@ -93,6 +93,7 @@ bool SharedBounce::add(const Sample& s) {
     p.closeness += s.closeness;
     p.met += s.closeness > 0.0f ? 1.0f : 0.0f;
     p.samples += 1.0f;
+    p.rays += s.rays;
     return true;
 }
 
@@ -134,7 +135,7 @@ void SharedBounce::for_neighbours(std::size_t pixel, const Patch& patch, float r
         if (far >= 1.0f || facing <= least_facing || off_plane * off_plane >= 1.0f)
             return;
         if (const float same_lobe = alike(patch.lobe, other.lobe); same_lobe > 0.0f)
-            take(k, other.area * other.samples * square(1.0f - far) * (1.0f - off_plane * off_plane) * same_lobe *
+            take(k, other.area * other.rays * square(1.0f - far) * (1.0f - off_plane * off_plane) * same_lobe *
                         (facing - least_facing));
     });
 }

@@ -47,6 +47,7 @@ public:
         Rgb weight{0.0f};        // the pixel shows light times weight
         float closeness = 0.0f;  // inverse distance of the surface that the path met first; 0: none [1/m]
         Aparts apart{};          // as `light`
+        float rays = 1.0f;       // of the pixel, for which the sample stands
         Rgb& of(Apart which) { return apart[std::size_t(which)]; }
         const Rgb& of(Apart which) const { return apart[std::size_t(which)]; }
         Rgb of_other_cells() const { return of(Apart::SV) + of(Apart::SM) + of(Apart::SA); }

@@ -11,8 +11,8 @@
 #include "core/cpu_clock.h"
 #include "core/stopwatch.h"
 #include "render/bound_layers.h"
+#include "render/typical_luminance.h"
 #include "scattering_methods/scattering_pass.h"
-#include "surface_lighting/surface_shader.h"
 
 namespace brisance {
 
@@ -21,11 +21,12 @@ namespace {
 // What a single pixel may err by for want of rays, in parts of `lighting.error`. Most pixels err by far less.
 constexpr float kShareOfSampling = 0.35f;
 
-// Standard error of a pixel of surfaces for want of shaded samples, in parts of `lighting.error`.
-constexpr float kShareOfShading = 1.0f;
-
 constexpr std::pair<Cell, SharedBounce::Apart> kSharedCells[] = {
     {Cell::SV, SharedBounce::Apart::SV}, {Cell::SM, SharedBounce::Apart::SM}, {Cell::SA, SharedBounce::Apart::SA}};
+
+// Standard error of a pixel of surfaces for want of shaded samples, in parts of `lighting.error` (SurfaceRounds). Most
+// have less: together they err by less than `lighting.error` of the picture.
+constexpr float kShareOfShading = 1.5f;
 
 // Few rays first, and more where they err. Not where each ray carries random estimates, which want all rays, nor where
 // the layers of bounces have to add up, nor where moments of the shutter share the rays of a pixel.
@@ -217,10 +218,14 @@ int FramePicture::samples_of_pixel(const Camera& camera) const {
 
 // Passes of a scattering method divide the error among them, and compensation in screen space looks at all samples. Who
 // states the samples of a pixel wants them all.
-float FramePicture::shading_tolerance() const {
-    const bool all = input_.plan.scattering_method || input_.camera.settings().samples_per_axis > 0 ||
-                     input_.shot.virtual_lights.compensation == BoundCompensation::ScreenSpace;
-    return all ? 0.0f : kShareOfShading * static_cast<float>(input_.shot.lighting.error);
+SurfaceRounds::Tolerance FramePicture::shading_tolerance(const Camera& camera, const SurfaceLightingInput& lighting) {
+    if (input_.plan.scattering_method || input_.camera.settings().samples_per_axis > 0 ||
+        input_.shot.virtual_lights.compensation == BoundCompensation::ScreenSpace ||
+        !SurfaceRounds::split(std::size_t(lighting.samples)))
+        return {};
+    if (!typical_)
+        typical_ = typical_luminance(camera, settings_, lighting);
+    return {kShareOfShading * static_cast<float>(input_.shot.lighting.error), *typical_};
 }
 
 // What rough lobes reflect is shared as a whole, but where lights are to be seen one by one: in the smoke, in
@@ -280,28 +285,30 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
         shared_sky.emplace(camera.settings().width, camera.settings().height, radius, rays_of_pixel());
     std::optional<LightReuse> reuse = light_reuse(camera, shared ? &*shared : nullptr, bound ? &*bound : nullptr);
     std::optional<ScreenSpaceCompensation> compensated = compensation(camera);
-    SurfaceShader shader({input_.plan.needed,
-                          lights.field(),
-                          *lights.paths(),
-                          lights_.medium().lighting(),
-                          lights_.virtual_lights(),
-                          estimator,
-                          takes_peaks_for_straight(input_) ? 0.0f : input_.plan.emitters_by_rays,
-                          settings_.parts,
-                          camera.settings().width,
-                          static_cast<float>(input_.shot.lighting.error),
-                          shading_tolerance(),
-                          samples_of_pixel(camera),
-                          lengths_ ? &*lengths_ : nullptr,
-                          shared ? &*shared : nullptr,
-                          shared_sky ? &*shared_sky : nullptr,
-                          camera.pixel_angle(),
-                          reuse ? &*reuse : nullptr,
-                          compensated ? &*compensated : nullptr,
-                          lights.fire_on_surfaces(),
-                          lights.unified(),
-                          bound ? &*bound : nullptr,
-                          input_.shot.virtual_lights.seed});
+    SurfaceLightingInput lighting{input_.plan.needed,
+                                  lights.field(),
+                                  *lights.paths(),
+                                  lights_.medium().lighting(),
+                                  lights_.virtual_lights(),
+                                  estimator,
+                                  takes_peaks_for_straight(input_) ? 0.0f : input_.plan.emitters_by_rays,
+                                  settings_.parts,
+                                  camera.settings().width,
+                                  static_cast<float>(input_.shot.lighting.error),
+                                  {},
+                                  samples_of_pixel(camera),
+                                  lengths_ ? &*lengths_ : nullptr,
+                                  shared ? &*shared : nullptr,
+                                  shared_sky ? &*shared_sky : nullptr,
+                                  camera.pixel_angle(),
+                                  reuse ? &*reuse : nullptr,
+                                  compensated ? &*compensated : nullptr,
+                                  lights.fire_on_surfaces(),
+                                  lights.unified(),
+                                  bound ? &*bound : nullptr,
+                                  input_.shot.virtual_lights.seed};
+    lighting.tolerance = shading_tolerance(camera, lighting);
+    SurfaceShader shader(lighting);
     Image image = render_picture(lights.field(), camera, settings_, progress_,
                                  [&](const auto& samples, auto& light) { shader.shade(samples, light); });
     if (reuse)

@@ -11,6 +11,7 @@
 #include "surface_lighting/light_reuse.h"
 #include "surface_lighting/path_lengths.h"
 #include "surface_lighting/screen_space_compensation.h"
+#include "surface_lighting/surface_shader.h"
 
 namespace brisance {
 
@@ -53,7 +54,7 @@ private:
     std::vector<SharedBounce::Apart> told_of_shared(const InScattering* estimator, bool asks_for_bound) const;
     std::optional<ScreenSpaceCompensation> compensation(const Camera& camera) const;
     int samples_of_pixel(const Camera& camera) const;
-    float shading_tolerance() const;
+    SurfaceRounds::Tolerance shading_tolerance(const Camera& camera, const SurfaceLightingInput& lighting);
     void add_shared(Image& image, SharedBounce& shared);
     Image order_picture(const NodeSources& order, PictureSettings settings);
 
@@ -63,6 +64,7 @@ private:
     PictureSettings settings_;
     Progress& progress_;
     std::optional<PathLengths> lengths_;
+    std::optional<float> typical_;  // luminance
     BoundTally bound_costs_;
     std::array<double, kCells> square_errors_of_shared_{};  // sums over the pictures
     int pictures_ = 0;

@@ -6,6 +6,9 @@ namespace brisance {
 
 namespace {
 
+// Of a line toward the fire. Most of them lie far off the lobe, and march through the smoke for less than this.
+constexpr float kLeastWeight = 0.003f;
+
 bool is_dark(const SecondaryField::Seen& seen) {
     return seen.emission == Rgb(0.0f) && seen.scattered == Rgb(0.0f);
 }
@@ -26,7 +29,7 @@ double GlossOfMedium::reflect(const SurfacePoint& point, const dvec3& toward_vie
     const PathVertex vertex(point, lobes.bsdf, -toward_viewer);
     const float lines = has_wide_lobes(point.material) ? direct_.fire_lines_on_surface(vertex) : 0.0f;
     if (lines > 0.0f)
-        if (const auto line = direct_.line_toward_fire(vertex, lines, ray_rng))
+        if (const auto line = direct_.line_toward_fire(vertex, lines, ray_rng, kLeastWeight))
             add(medium_.glance(line->ray, line->end, float(lobes.split.of_rays(line->ray.direction)), ray_rng),
                 line->weight, true, light);
     const std::optional<BsdfSample> drawn = lobes.bsdf.sample(toward_viewer, numbers);

@@ -10,24 +10,36 @@ namespace {
 // Rays along a pixel's side from which on few are shaded first: a quarter of fewer says nothing of their error.
 constexpr std::size_t kLeastPerAxis = 4;
 
-// In each row of four by four rays the column of the one that is shaded first: no two share a row or a column.
-constexpr std::size_t kColumns[] = {2, 0, 3, 1};
+// In each row of four by four rays the columns in the order in which they are shaded, quarter by quarter: in none do
+// two share a row or a column.
+constexpr std::uint32_t kQuarters[4][4] = {{2, 1, 0, 3}, {0, 3, 2, 1}, {3, 0, 1, 2}, {1, 2, 3, 0}};
 
-// Of the variance of the few, what all rays leave.
-constexpr float kLeftByAll = 0.25f;
+// In all: grains that these leave are for other estimators.
+constexpr std::uint32_t kMostPasses = 4;
+
 // Of the variance that other light leaves: less is not worth a second round.
 constexpr float kBesideOther = 0.25f;
+
+// Pixels to each side whose variance counts, and for how much those do that are not the next.
+constexpr int kAround = 2;
+constexpr float kFarther = 0.5f;
 
 constexpr std::uint32_t kNone = ~0u;
 
 }  // namespace
 
-SurfaceRounds::SurfaceRounds(std::span<const SurfaceSample> samples, int width, std::size_t rays, float tolerance)
+bool SurfaceRounds::split(std::size_t rays) {
+    const auto per_axis = static_cast<std::size_t>(std::lround(std::sqrt(double(rays))));
+    return per_axis >= kLeastPerAxis && per_axis * per_axis == rays;
+}
+
+SurfaceRounds::SurfaceRounds(std::span<const SurfaceSample> samples, int width, std::size_t rays,
+                             const Tolerance& tolerance)
     : samples_(samples),
       width_(static_cast<std::size_t>(width)),
       per_axis_(static_cast<std::size_t>(std::lround(std::sqrt(double(rays))))),
-      tolerance_(tolerance) {
-    const bool splits = tolerance > 0.0f && per_axis_ >= kLeastPerAxis && per_axis_ * per_axis_ == rays;
+      tolerance_(tolerance),
+      splits_(tolerance.part > 0.0f && split(rays)) {
     if (!samples.empty())
         origin_ = samples.front().pixel / width_ * width_;
     for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -37,22 +49,31 @@ SurfaceRounds::SurfaceRounds(std::span<const SurfaceSample> samples, int width, 
         pixel_of_.push_back(static_cast<std::uint32_t>(pixels_.size() - 1));
     }
     for (Pixel& p : pixels_) {
-        float all = 0.0f, few = 0.0f;
-        for (std::size_t i = p.begin; i < p.end; ++i) {
-            all += samples[i].share;
-            few += among_few(i) ? samples[i].share : 0.0f;
-        }
-        p.few = splits && p.end - p.begin == rays && few > 0.0f;
-        p.scale = p.few ? all / few : 1.0f;
+        if (splits_ && p.end - p.begin == rays)
+            shade(p, 1);
         for (std::size_t i = p.begin; i < p.end; ++i)
-            if (!p.few || among_few(i))
+            if (quarter_of(i) < p.quarters)
                 first_.push_back(i);
     }
 }
 
-bool SurfaceRounds::among_few(std::size_t sample) const {
+std::uint32_t SurfaceRounds::quarter_of(std::size_t sample) const {
     const std::size_t ray = samples_[sample].number & 0xffffffffu;
-    return ray % per_axis_ % 4 == kColumns[ray / per_axis_ % 4];
+    return static_cast<std::uint32_t>(
+        std::ranges::find(kQuarters[ray / per_axis_ % 4], static_cast<std::uint32_t>(ray % per_axis_ % 4)) -
+        kQuarters[ray / per_axis_ % 4]);
+}
+
+void SurfaceRounds::shade(Pixel& p, std::uint32_t quarters) const {
+    float all = 0.0f, shaded = 0.0f;
+    for (std::size_t i = p.begin; i < p.end; ++i) {
+        all += samples_[i].share;
+        shaded += quarter_of(i) < quarters ? samples_[i].share : 0.0f;
+    }
+    if (!(shaded > 0.0f))
+        return;
+    p.quarters = quarters;
+    p.scale = quarters == 4 ? 1.0f : all / shaded;
 }
 
 void SurfaceRounds::measure(Pixel& p, std::span<const float> even, const Found& found) const {
@@ -61,7 +82,7 @@ void SurfaceRounds::measure(Pixel& p, std::span<const float> even, const Found& 
     for (std::size_t i = p.begin; i < p.end; ++i) {
         const float share = samples_[i].share;
         p.shown += share * even[i];
-        if (p.few && !among_few(i))
+        if (quarter_of(i) >= p.quarters)
             continue;
         const float seen = p.scale * share * found.noisy[i];
         p.shown += p.scale * share * found.shared[i];
@@ -70,63 +91,90 @@ void SurfaceRounds::measure(Pixel& p, std::span<const float> even, const Found& 
         count += 1.0f;
     }
     p.shown += sum;
-    p.variance = p.few ? std::max(0.0f, squares - sum * sum / count) * count / (count - 1.0f) : 0.0f;
+    const float variance = count > 1.0f ? std::max(0.0f, squares - sum * sum / count) * count / (count - 1.0f) : 0.0f;
+    p.variance = variance * float(p.quarters);
 }
 
-// By the pixels around, as far as the rows of this call reach.
-void SurfaceRounds::decide(std::size_t number, float beside) {
-    Pixel& own = pixels_[number];
-    if (!own.few)
-        return;
-    const auto at = static_cast<int>(samples_[own.begin].pixel - origin_), width = static_cast<int>(width_);
-    const int px = at % width, py = at / width, height = static_cast<int>(number_.size()) / width;
-    float variance = 0.0f, estimates = 0.0f, shown = 0.0f, count = 0.0f;
-    for (int y = std::max(py - 1, 0); y <= std::min(py + 1, height - 1); ++y)
-        for (int x = std::max(px - 1, 0); x <= std::min(px + 1, width - 1); ++x) {
-            const std::uint32_t other = number_[std::size_t(y) * width_ + x];
-            if (other == kNone)
-                continue;
-            const Pixel& p = pixels_[other];
-            shown += p.shown;
-            count += 1.0f;
-            if (!p.few)
-                continue;
-            variance += p.variance;
-            estimates += 1.0f;
-        }
-    const float tolerated = tolerance_ * shown / count, found = std::max(own.variance, variance / estimates);
-    // In this order what is not a number wants more.
-    own.refined = !(found <= std::max(tolerated * tolerated, beside));
-    own.left = own.refined ? found * kLeftByAll : found;
-}
-
-std::vector<std::size_t> SurfaceRounds::second(std::span<const float> even, const Found& found,
-                                               const SurfaceRounds* other) {
-    if (pixels_.empty())
-        return {};
+void SurfaceRounds::measure_all(std::span<const float> even, const Found& found) {
     const std::size_t rows = (samples_.back().pixel - origin_) / width_ + 1;
     number_.assign(rows * width_, kNone);
     for (std::uint32_t k = 0; k < pixels_.size(); ++k) {
         measure(pixels_[k], even, found);
         number_[samples_[pixels_[k].begin].pixel - origin_] = k;
     }
+}
+
+// By the pixels around, as far as the rows of this call reach.
+SurfaceRounds::Wanted SurfaceRounds::wanted(const Pixel& own, float beside) const {
+    const auto at = static_cast<int>(samples_[own.begin].pixel - origin_), width = static_cast<int>(width_);
+    const int px = at % width, py = at / width, height = static_cast<int>(number_.size()) / width;
+    float variance = 0.0f, weights = 0.0f, shown = 0.0f, count = 0.0f;
+    for (int y = std::max(py - kAround, 0); y <= std::min(py + kAround, height - 1); ++y)
+        for (int x = std::max(px - kAround, 0); x <= std::min(px + kAround, width - 1); ++x) {
+            const std::uint32_t other = number_[std::size_t(y) * width_ + x];
+            if (other == kNone)
+                continue;
+            const Pixel& p = pixels_[other];
+            shown += p.shown;
+            count += 1.0f;
+            if (&p == &own)
+                continue;
+            const float weight = std::max(std::abs(x - px), std::abs(y - py)) > 1 ? kFarther : 1.0f;
+            weights += weight;
+            variance += weight * p.variance;
+        }
+    const float seen = shown / count, typical = tolerance_.typical > 0.0f ? tolerance_.typical : seen,
+                found = (weights > 0.0f ? variance / weights : own.variance) / float(own.quarters),
+                limit = std::max(tolerance_.part * tolerance_.part * typical * seen, beside);
+    return {found <= limit ? 0.0f : found / limit, found};
+}
+
+std::vector<std::size_t> SurfaceRounds::second(std::span<const float> even, const Found& found,
+                                               const SurfaceRounds* other) {
+    if (pixels_.empty() || !splits_)
+        return {};
+    measure_all(even, found);
     std::vector<std::size_t> second;
     for (std::size_t k = 0; k < pixels_.size(); ++k) {
-        decide(k, other ? kBesideOther * other->pixels_[k].left : 0.0f);
         Pixel& p = pixels_[k];
-        if (!p.refined)
+        const auto [times, left] = wanted(p, other ? kBesideOther * other->pixels_[k].left : 0.0f);
+        p.left = left;
+        if (p.quarters == 4 || times <= 1.0f)
             continue;
-        p.scale = 1.0f;
+        // In this order what is not a number wants more.
+        const std::uint32_t before = p.quarters;
+        shade(p, times <= 2.0f ? 2 : 4);
+        p.left *= float(before) / float(p.quarters);
         for (std::size_t i = p.begin; i < p.end; ++i)
-            if (!among_few(i))
+            if (const std::uint32_t quarter = quarter_of(i); quarter >= before && quarter < p.quarters)
                 second.push_back(i);
     }
     return second;
 }
 
+std::vector<SurfaceRounds::Again> SurfaceRounds::further(std::span<const float> even, const Found& found) {
+    if (pixels_.empty() || !splits_)
+        return {};
+    measure_all(even, found);
+    std::vector<Again> again;
+    for (Pixel& p : pixels_) {
+        const auto [times, left] = wanted(p, 0.0f);
+        p.left = left;
+        if (p.quarters < 4 || times <= 1.0f)
+            continue;
+        // In this order what is not a number wants more.
+        p.passes = times <= float(kMostPasses) ? static_cast<std::uint32_t>(std::ceil(times)) : kMostPasses;
+        p.left /= float(p.passes);
+        for (std::size_t i = p.begin; i < p.end; ++i)
+            for (std::uint32_t pass = 1; pass < p.passes; ++pass)
+                again.push_back({i, pass});
+    }
+    return again;
+}
+
 float SurfaceRounds::stands_for(std::size_t sample) const {
     const Pixel& p = pixels_[pixel_of_[sample]];
-    return p.few && !p.refined && !among_few(sample) ? 0.0f : p.scale;
+    return quarter_of(sample) < p.quarters ? p.scale / float(p.passes) : 0.0f;
 }
 
 }  // namespace brisance

@@ -1,5 +1,6 @@
 #include "surface_lighting/surface_shader.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -15,6 +16,12 @@ namespace brisance {
 namespace {
 
 constexpr std::size_t kSamplesAtOnce = 256;
+
+// Of samples that are shaded once more: their points are large.
+constexpr std::size_t kAgainAtOnce = 1 << 15;
+
+// Above the passes of the picture, in SurfaceSample::number.
+constexpr int kPassesOfPixel = 48;
 
 // What a puddle shows of a window is followed to what the window shows. Beyond that, paths find it.
 constexpr int kMostReflections = 2;
@@ -136,9 +143,41 @@ void SurfaceShader::shade(const Samples& samples, Light& light) {
     light_some(bases.first(), &BaseLighting::light);
     shade(others.first());
     shade(others.second(even(bases, on_bases), of_others));
-    light_some(bases.second(even(others, of_others), on_bases, &others), &BaseLighting::light_penumbrae);
+    const std::vector<float> seen_beside = even(others, of_others);
+    const std::vector<SurfaceRounds::Again> again =
+        input_.reuse ? std::vector<SurfaceRounds::Again>() : others.further(even(bases, on_bases), of_others);
+    light_some(bases.second(seen_beside, on_bases, &others), &BaseLighting::light_penumbrae);
     add_up(samples, bases, others, points, found, light);
     hand_over(samples, points, light);
+    for (std::size_t begin = 0; begin < again.size(); begin += kAgainAtOnce)
+        shade_again(samples, std::span(again).subspan(begin, std::min(kAgainAtOnce, again.size() - begin)), others,
+                    light);
+}
+
+// Further passes of some samples, all but what lights bases: other numbers, which the passes of a pixel divide among
+// themselves as its rays do.
+void SurfaceShader::shade_again(const Samples& samples, std::span<const SurfaceRounds::Again> again,
+                                const SurfaceRounds& rounds, Light& light) {
+    Samples more;
+    for (const SurfaceRounds::Again& a : again) {
+        more.push_back(samples[a.sample]);
+        more.back().number += std::uint64_t(a.pass) << kPassesOfPixel;
+    }
+    Some all(more.size());
+    std::iota(all.begin(), all.end(), std::size_t(0));
+    Points points(more.size());
+    Light found(more.size()), shown(more.size());
+    prepare(more, all, points, found);
+    shade_some(more, all, points, found);
+    for (const std::size_t k : all) {
+        points[k].stands_for = rounds.stands_for(again[k].sample);
+        shown[k].add(found[k], Rgb(points[k].stands_for));
+        if (input_.lengths)
+            input_.lengths->add(more[k].pixel, points[k].vertices);
+    }
+    hand_over(more, points, shown);
+    for (const std::size_t k : all)
+        light[again[k].sample].add(shown[k], Rgb(1.0f));
 }
 
 // What the rounds have found, as each sample stands for others: `light` on bases, and `found` besides, which is added.
@@ -312,8 +351,10 @@ void SurfaceShader::hand_over(const Samples& samples, Points& points, Light& lig
         if (input_.bound)
             input_.bound->add(samples[i].pixel, at.bound, share * at.seen.throughput);
         for (std::optional<SharedBounce::Sample>* s : {&at.base, &at.gloss, &at.sky})
-            if (*s)
+            if (*s) {
                 (*s)->weight *= at.stands_for;
+                (*s)->rays = at.stands_for;
+            }
         for (LightReuse::Sample& c : at.chosen) {
             c.share = share;
             c.shared.swap(c.lobes == Lobes::Base ? at.base : at.gloss);

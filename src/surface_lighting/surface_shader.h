@@ -56,7 +56,7 @@ struct SurfaceLightingInput {
     int parts = 2;                                    // that of PictureSettings
     int width = 0;                                    // of the picture, in pixels
     float base_tolerance = 0.0f;                      // that of BaseLighting
-    float tolerance = 0.0f;                           // that of SurfaceRounds
+    SurfaceRounds::Tolerance tolerance = {};          // of samples
     int samples = 1;                                  // rays of a pixel
     PathLengths* lengths = nullptr;                   // counts the paths of virtual lights; null: not counted
     SharedBounce* shared = nullptr;                   // gets SS of bases and rough lobes; null: samples keep it
@@ -94,6 +94,8 @@ private:
     void tell(const Samples& samples, const Some& some, const Points& points, const Light& found,
               SurfaceRounds::Found& known) const;
     void shade_some(const Samples& samples, const Some& some, Points& points, Light& found);
+    void shade_again(const Samples& samples, std::span<const SurfaceRounds::Again> again, const SurfaceRounds& rounds,
+                     Light& light);
     void shade_reflected(const Samples& samples, const Some& some, Points& points, Light& found);
     void light_reflected(const Samples& by, Points& there, Light& found);
     bool shows_others(const ShadedPoint& at) const;

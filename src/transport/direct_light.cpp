@@ -1,5 +1,6 @@
 #include "transport/direct_light.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace brisance {
@@ -45,16 +46,22 @@ float DirectLight::fire_lines_on_surface(const PathVertex& vertex) const {
 
 // value / (lines pdf) times the balance heuristic's weight, lines pdf / (lines pdf + pdf of the BSDF): one quotient.
 std::optional<DirectLight::LineTowardFire> DirectLight::line_toward_fire(const PathVertex& vertex, float fire_lines,
-                                                                         Rng& rng) const {
+                                                                         Rng& rng, float least) const {
     const Ray line = vertex.leaving(fire_.sample(vertex.position(), rng));
     const PathVertex::Value scattered = vertex.at(line.direction);
     if (scattered.value == Rgb(0.0f))
         return std::nullopt;
+    Rgb weight = scattered.value / float(fire_lines * fire_.pdf(line) + scattered.pdf);
+    if (const float brings = luminance(weight); brings < least) {
+        if (rng.next() * least >= brings)
+            return std::nullopt;
+        weight *= least / brings;
+    }
     double end = kNoEnd;
     if (surroundings_)
         if (const std::optional<SurfaceHit> hit = surroundings_->intersector().first_hit(line))
             end = hit->distance;
-    return LineTowardFire{line, end, scattered.value / float(fire_lines * fire_.pdf(line) + scattered.pdf)};
+    return LineTowardFire{line, end, weight};
 }
 
 Rgb DirectLight::from_fire(const PathVertex& vertex, float fire_lines, Rng& rng) const {
@@ -73,6 +80,35 @@ Rgb DirectLight::from_emitters(const PathVertex& vertex, double choice, Rng& rng
     return light ? from_sample(vertex, *light, rng, chosen) : Rgb(0.0f);
 }
 
+Rgb DirectLight::from_emitters_resampled(const PathVertex& vertex, double choice, int candidates, Rng& rng,
+                                         ChosenEmitter* chosen) const {
+    const Emitters& emitters = surroundings_->emitters();
+    const auto parts = static_cast<double>(emitters.choices());
+    const double part = std::min(std::floor(choice * parts), parts - 1.0), within = choice * parts - part;
+    if (candidates == 1 || emitters.is_far(static_cast<std::size_t>(part)))
+        return from_emitters(vertex, choice, rng, chosen);
+    std::optional<EmitterSample> kept;
+    float of_kept = 0.0f, sum = 0.0f;
+    for (int k = 0; k < candidates; ++k) {
+        const std::optional<EmitterSample> light =
+            emitters.sample(vertex.lit(), (part + (k + within) / candidates) / parts, rng);
+        const float brings = light ? luminance(unoccluded(vertex.at(light->direction), *light)) : 0.0f;
+        if (!(brings > 0.0f))
+            continue;
+        sum += brings;
+        if (rng.next_double() * sum < brings) {
+            kept = light;
+            of_kept = brings;
+        }
+    }
+    return kept ? from_sample(vertex, *kept, rng, chosen) * (sum / (of_kept * float(candidates))) : Rgb(0.0f);
+}
+
+Rgb DirectLight::unoccluded(const PathVertex::Value& scattered, const EmitterSample& light) const {
+    const double weight = light.pdf > 0.0 ? light.pdf / (light.pdf + scattered.pdf) : 1.0;
+    return scattered.value * light.weight * float(weight);
+}
+
 Rgb DirectLight::from_sample(const PathVertex& vertex, const EmitterSample& light, Rng& rng,
                              ChosenEmitter* chosen) const {
     const PathVertex::Value scattered = vertex.at(light.direction);
@@ -85,9 +121,7 @@ Rgb DirectLight::from_sample(const PathVertex& vertex, const EmitterSample& ligh
         return Rgb(0.0f);
     if (chosen)
         *chosen = {!near && light.pdf > 0.0, light.direction};
-    const double seen = lines_.transmittance(ray, end, rng);
-    const double weight = light.pdf > 0.0 ? light.pdf / (light.pdf + scattered.pdf) : 1.0;
-    return scattered.value * light.weight * float(seen * weight);
+    return unoccluded(scattered, light) * float(lines_.transmittance(ray, end, rng));
 }
 
 Rgb DirectLight::at_end(const RaySegment& segment, double pdf, bool delta, const PathVertex* from) const {

@@ -43,13 +43,15 @@ public:
 
     // A line from the vertex toward the fire, sampled with probability `fire_lines` and weighted against the direction
     // that the vertex samples: `weight` times the radiance along it is the light scattered. Up to the first surface;
-    // none where nothing is scattered. There must be a fire.
+    // none where nothing is scattered. Lines of less weight than `least` are kept at random, with that weight. There
+    // must be a fire.
     struct LineTowardFire {
         Ray ray;
         double end;
         Rgb weight;
     };
-    std::optional<LineTowardFire> line_toward_fire(const PathVertex& vertex, float fire_lines, Rng& rng) const;
+    std::optional<LineTowardFire> line_toward_fire(const PathVertex& vertex, float fire_lines, Rng& rng,
+                                                   float least = 0.0f) const;
     // Radiance [W/(m^2 sr)] of the fire's emission scattered from such a line.
     Rgb from_fire(const PathVertex& vertex, float fire_lines, Rng& rng) const;
     // The weight of a ray that the vertex sampled with density `pdf` [1/sr] against such lines.
@@ -67,6 +69,11 @@ public:
         dvec3 direction{0.0};        // unit, toward it
     };
     Rgb from_emitters(const PathVertex& vertex, double choice, Rng& rng, ChosenEmitter* chosen = nullptr) const;
+    // The same by resampled importance sampling (J. Talbot, D. Cline, P. Egbert, Importance Resampling for Global
+    // Illumination, EGSR 2005): where `choice` falls on the emitters at finite distances, `candidates` of them are
+    // chosen, evenly spread over that part, and one is kept in proportion to what it sends if nothing hides it.
+    Rgb from_emitters_resampled(const PathVertex& vertex, double choice, int candidates, Rng& rng,
+                                ChosenEmitter* chosen = nullptr) const;
     // Of one sample of an emitter, however it was chosen.
     Rgb from_sample(const PathVertex& vertex, const EmitterSample& light, Rng& rng,
                     ChosenEmitter* chosen = nullptr) const;
@@ -75,6 +82,9 @@ public:
     Rgb at_end(const RaySegment& segment, double pdf, bool delta, const PathVertex* from) const;
 
 private:
+    // What a sample of an emitter brings where nothing is in between, weighted against the vertex's own directions.
+    Rgb unoccluded(const PathVertex::Value& scattered, const EmitterSample& light) const;
+
     TracingSettings settings_;
     const Surroundings* surroundings_;
     TrackingField field_;
