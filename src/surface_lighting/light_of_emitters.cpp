@@ -12,7 +12,7 @@ constexpr Stream kChoices = stream_of("surface_lighting/emitters"),
                  kLobes = stream_of("surface_lighting/emitters, lobes");
 
 // Of the emitters at finite distances. They cost little beside the ray toward the one that is kept.
-constexpr int kCandidates = 8;
+constexpr int kCandidates = 4;
 
 }  // namespace
 

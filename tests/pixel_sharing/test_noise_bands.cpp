@@ -40,7 +40,7 @@ Wall calm_wall(const Light& light, const Noise& noise, std::uint64_t seed = 1) {
             p.weight = Rgb(1.0f);
             p.closeness = 0.02f;
             p.met = 1.0f;
-            p.samples = float(kSamples);
+            p.samples = p.rays = float(kSamples);
             out.map.patches.push_back(p);
             out.light.lights.push_back(halves);
             out.light.first.push_back(0.5f);

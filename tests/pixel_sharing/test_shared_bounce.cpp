@@ -67,6 +67,36 @@ void grain(Sample& s, Rng& rng) {
     s.light = Rgb(rng.next() < 0.02f ? 50.0f : 0.0f);
 }
 
+// Bright pixels have eight samples and dark ones one. Samples that stand for an eighth of a ray count for as much: what
+// pixels share is the same as if all had one, and no light is added to the dark.
+TEST(SharedBounce, MoreSamplesOfAPixelCountForNoMore) {
+    const auto pixels = [](int of_bright) {
+        SharedBounce shared(kWidth, kHeight, 0.2, 1);
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                const bool bright = x >= kWidth / 2;
+                const int samples = bright ? of_bright : 1;
+                Sample s;
+                s.pixel = std::uint32_t(y * kWidth + x);
+                s.position = vec3(float(x), float(y), 0.0f) * kPixel;
+                s.normal = vec3(0.0f, 0.0f, 1.0f);
+                s.pixel_size = kPixel;
+                s.area = kPixel * kPixel;
+                s.light = Rgb(bright ? 3.0f : 1.0f);
+                s.rays = 1.0f / float(samples);
+                s.weight = Rgb(s.rays);
+                s.closeness = 2.0f;
+                for (int k = 0; k < samples; ++k)
+                    shared.add(s);
+            }
+        return shared.take_pixels();
+    };
+    const std::vector<Rgb> alike = pixels(1), more = pixels(8);
+    EXPECT_NEAR(spread(more).mean, spread(alike).mean, 1e-4);
+    for (std::size_t i = 0; i < alike.size(); ++i)
+        ASSERT_NEAR(more[i].y, alike[i].y, 0.02f) << i;
+}
+
 TEST(SharedBounce, KeepsConstantLightOnAnyColour) {
     float colour = 0.0f;
     SharedBounce shared = wall(0.2, [&](Sample& s, Rng& rng) {
