@@ -218,14 +218,16 @@ int FramePicture::samples_of_pixel(const Camera& camera) const {
 
 // Passes of a scattering method divide the error among them, and compensation in screen space looks at all samples. Who
 // states the samples of a pixel wants them all.
-SurfaceRounds::Tolerance FramePicture::shading_tolerance(const Camera& camera, const SurfaceLightingInput& lighting) {
+void FramePicture::set_tolerances(const Camera& camera, SurfaceLightingInput& lighting) {
     if (input_.plan.scattering_method || input_.camera.settings().samples_per_axis > 0 ||
         input_.shot.virtual_lights.compensation == BoundCompensation::ScreenSpace ||
         !SurfaceRounds::split(std::size_t(lighting.samples)))
-        return {};
+        return;
     if (!typical_)
         typical_ = typical_luminance(camera, settings_, lighting);
-    return {kShareOfShading * static_cast<float>(input_.shot.lighting.error), *typical_};
+    const auto error = static_cast<float>(input_.shot.lighting.error);
+    lighting.tolerance = {kShareOfShading * error, *typical_};
+    lighting.tolerance_of_bases = {error, 0.0f};
 }
 
 // What rough lobes reflect is shared as a whole, but where lights are to be seen one by one: in the smoke, in
@@ -296,6 +298,7 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
                                   camera.settings().width,
                                   static_cast<float>(input_.shot.lighting.error),
                                   {},
+                                  {},
                                   samples_of_pixel(camera),
                                   lengths_ ? &*lengths_ : nullptr,
                                   shared ? &*shared : nullptr,
@@ -307,7 +310,7 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
                                   lights.unified(),
                                   bound ? &*bound : nullptr,
                                   input_.shot.virtual_lights.seed};
-    lighting.tolerance = shading_tolerance(camera, lighting);
+    set_tolerances(camera, lighting);
     SurfaceShader shader(lighting);
     Image image = render_picture(lights.field(), camera, settings_, progress_,
                                  [&](const auto& samples, auto& light) { shader.shade(samples, light); });

@@ -54,7 +54,7 @@ private:
     std::vector<SharedBounce::Apart> told_of_shared(const InScattering* estimator, bool asks_for_bound) const;
     std::optional<ScreenSpaceCompensation> compensation(const Camera& camera) const;
     int samples_of_pixel(const Camera& camera) const;
-    SurfaceRounds::Tolerance shading_tolerance(const Camera& camera, const SurfaceLightingInput& lighting);
+    void set_tolerances(const Camera& camera, SurfaceLightingInput& lighting);
     void add_shared(Image& image, SharedBounce& shared);
     Image order_picture(const NodeSources& order, PictureSettings settings);
 

@@ -21,7 +21,7 @@ Camera with_few_pixels(const Camera& camera, const Medium& medium) {
 SurfaceLightingInput alone(SurfaceLightingInput lighting, int width) {
     lighting.width = width;
     lighting.samples = 1;
-    lighting.tolerance = {};
+    lighting.tolerance = lighting.tolerance_of_bases = {};
     lighting.lengths = nullptr;
     lighting.shared = lighting.shared_sky = nullptr;
     lighting.reuse = nullptr;

@@ -20,8 +20,9 @@ constexpr std::uint32_t kMostPasses = 4;
 // Of the variance that other light leaves: less is not worth a second round.
 constexpr float kBesideOther = 0.25f;
 
-// Pixels to each side whose variance counts, and for how much those do that are not the next.
-constexpr int kAround = 2;
+// Pixels to each side whose variance counts, and for how much those do that are not the next. Light that its own
+// samples tell of, too, has narrow edges.
+constexpr int kAround = 2, kAroundEdges = 1;
 constexpr float kFarther = 0.5f;
 
 constexpr std::uint32_t kNone = ~0u;
@@ -34,11 +35,12 @@ bool SurfaceRounds::split(std::size_t rays) {
 }
 
 SurfaceRounds::SurfaceRounds(std::span<const SurfaceSample> samples, int width, std::size_t rays,
-                             const Tolerance& tolerance)
+                             const Tolerance& tolerance, ToldBy told_by)
     : samples_(samples),
       width_(static_cast<std::size_t>(width)),
       per_axis_(static_cast<std::size_t>(std::lround(std::sqrt(double(rays))))),
       tolerance_(tolerance),
+      told_by_(told_by),
       splits_(tolerance.part > 0.0f && split(rays)) {
     if (!samples.empty())
         origin_ = samples.front().pixel / width_ * width_;
@@ -108,9 +110,10 @@ void SurfaceRounds::measure_all(std::span<const float> even, const Found& found)
 SurfaceRounds::Wanted SurfaceRounds::wanted(const Pixel& own, float beside) const {
     const auto at = static_cast<int>(samples_[own.begin].pixel - origin_), width = static_cast<int>(width_);
     const int px = at % width, py = at / width, height = static_cast<int>(number_.size()) / width;
+    const int reach = told_by_ == ToldBy::OwnToo ? kAroundEdges : kAround;
     float variance = 0.0f, weights = 0.0f, shown = 0.0f, count = 0.0f;
-    for (int y = std::max(py - kAround, 0); y <= std::min(py + kAround, height - 1); ++y)
-        for (int x = std::max(px - kAround, 0); x <= std::min(px + kAround, width - 1); ++x) {
+    for (int y = std::max(py - reach, 0); y <= std::min(py + reach, height - 1); ++y)
+        for (int x = std::max(px - reach, 0); x <= std::min(px + reach, width - 1); ++x) {
             const std::uint32_t other = number_[std::size_t(y) * width_ + x];
             if (other == kNone)
                 continue;
@@ -123,8 +126,10 @@ SurfaceRounds::Wanted SurfaceRounds::wanted(const Pixel& own, float beside) cons
             weights += weight;
             variance += weight * p.variance;
         }
+    const float around = weights > 0.0f ? variance / weights : own.variance,
+                told = told_by_ == ToldBy::OwnToo ? std::max(own.variance, around) : around,
+                found = told / float(own.quarters);
     const float seen = shown / count, typical = tolerance_.typical > 0.0f ? tolerance_.typical : seen,
-                found = (weights > 0.0f ? variance / weights : own.variance) / float(own.quarters),
                 limit = std::max(tolerance_.part * tolerance_.part * typical * seen, beside);
     return {found <= limit ? 0.0f : found / limit, found};
 }

@@ -12,7 +12,8 @@
 //
 // The error is estimated from samples: those of the pixels around, not its own. A pixel that got more samples where its
 // own differ would keep its light where they miss a bright spot, and divide that by more where they do not: light of
-// rare bright samples would be lost (4 % of the light between surfaces in a street).
+// rare bright samples would be lost (4 % of the light between surfaces in a street). Light of the grids on bases has
+// none, and edges of shadows that only its own samples know.
 //
 // Light of fire and smoke on bases, and what is sampled at each (reflections, emitters, light between surfaces), have
 // rounds of their own: a penumbra says nothing of reflections. Where the rounds of one leave a pixel noisy, the other
@@ -29,12 +30,19 @@ namespace brisance {
 
 class SurfaceRounds {
 public:
+    // Whose samples tell the error of a pixel.
+    enum class ToldBy : std::uint8_t {
+        Others,  // pixels around it
+        OwnToo,  // or its own, which tell more: for light without rare bright samples, that has edges as narrow as
+                 // pixels
+    };
     struct Tolerance {
         float part = 0.0f;     // of the geometric mean; 0: all samples are shaded, in the first round
         float typical = 0.0f;  // luminance [W/(m^2 sr)]; 0: it is not known, and the part is of the pixel alone
     };
     // Keeps a reference. `width`: of the picture, in pixels. `rays`: of a pixel.
-    SurfaceRounds(std::span<const SurfaceSample> samples, int width, std::size_t rays, const Tolerance& tolerance);
+    SurfaceRounds(std::span<const SurfaceSample> samples, int width, std::size_t rays, const Tolerance& tolerance,
+                  ToldBy told_by);
 
     // Whether pixels of that many rays are shaded in rounds.
     static bool split(std::size_t rays);
@@ -84,6 +92,7 @@ private:
     std::span<const SurfaceSample> samples_;
     std::size_t width_, per_axis_;
     Tolerance tolerance_;
+    ToldBy told_by_;
     bool splits_;
     std::size_t origin_ = 0;               // the first pixel of the rows
     std::vector<Pixel> pixels_;            // of those with samples

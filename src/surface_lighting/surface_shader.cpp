@@ -116,7 +116,11 @@ void SurfaceShader::shade(const Samples& samples, Light& light) {
     const std::vector<float> none(samples.size());
     Points points(samples.size());
     Light found(samples.size());  // but on bases
-    SurfaceRounds bases(samples, input_.width, std::size_t(input_.samples), input_.tolerance), others = bases;
+    const auto rounds = [&](const SurfaceRounds::Tolerance& tolerance, SurfaceRounds::ToldBy told_by) {
+        return SurfaceRounds(samples, input_.width, std::size_t(input_.samples), tolerance, told_by);
+    };
+    SurfaceRounds bases = rounds(input_.tolerance_of_bases, SurfaceRounds::ToldBy::OwnToo),
+                  others = rounds(input_.tolerance, SurfaceRounds::ToldBy::Others);
     SurfaceRounds::Found on_bases{none, none}, of_others{none, none};
     const auto light_some = [&](const Some& some, LightBases how) {
         prepare(samples, some, points, found);

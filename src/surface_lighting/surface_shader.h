@@ -49,20 +49,21 @@ struct SurfaceLightingInput {
     CellSet needed;  // SS and SA are computed only if they are among them
     const SourceField& field;
     const PathTracer& paths;
-    const MediumLighting* medium_lighting = nullptr;  // null: no grid lights surfaces or smoke
-    const VirtualLights* virtual_lights = nullptr;    // null: the shot uses none
-    const InScattering* in_scattering = nullptr;      // null: it does not own SM
-    float emitters_by_rays = 0.0f;                    // share of MA along rays (medium_along_ray.h)
-    int parts = 2;                                    // that of PictureSettings
-    int width = 0;                                    // of the picture, in pixels
-    float base_tolerance = 0.0f;                      // that of BaseLighting
-    SurfaceRounds::Tolerance tolerance = {};          // of samples
-    int samples = 1;                                  // rays of a pixel
-    PathLengths* lengths = nullptr;                   // counts the paths of virtual lights; null: not counted
-    SharedBounce* shared = nullptr;                   // gets SS of bases and rough lobes; null: samples keep it
-    SharedBounce* shared_sky = nullptr;               // gets SA of bases from light at infinity that is even
-    double pixel_angle = 0.0;                         // [rad], for what is shared and `compensation`
-    LightReuse* reuse = nullptr;                      // gets what samples chose of the lights; null: they keep it
+    const MediumLighting* medium_lighting = nullptr;   // null: no grid lights surfaces or smoke
+    const VirtualLights* virtual_lights = nullptr;     // null: the shot uses none
+    const InScattering* in_scattering = nullptr;       // null: it does not own SM
+    float emitters_by_rays = 0.0f;                     // share of MA along rays (medium_along_ray.h)
+    int parts = 2;                                     // that of PictureSettings
+    int width = 0;                                     // of the picture, in pixels
+    float base_tolerance = 0.0f;                       // that of BaseLighting
+    SurfaceRounds::Tolerance tolerance = {};           // of what samples find, but of ...
+    SurfaceRounds::Tolerance tolerance_of_bases = {};  // ... the medium's light on bases
+    int samples = 1;                                   // rays of a pixel
+    PathLengths* lengths = nullptr;                    // counts the paths of virtual lights; null: not counted
+    SharedBounce* shared = nullptr;                    // gets SS of bases and rough lobes; null: samples keep it
+    SharedBounce* shared_sky = nullptr;                // gets SA of bases from light at infinity that is even
+    double pixel_angle = 0.0;                          // [rad], for what is shared and `compensation`
+    LightReuse* reuse = nullptr;                       // gets what samples chose of the lights; null: they keep it
     // Gets what all samples show; null: the bound's loss is not looked for on the screen. Not beside `reuse`.
     ScreenSpaceCompensation* compensation = nullptr;
     const SampledFire* fire = nullptr;       // owns SV of the base; null: the lighting grid does, or these:

@@ -41,8 +41,9 @@ struct Band {
     SurfaceRounds::Found found(float shared = 0.0f) const {
         return {sampled, std::vector<float>(samples.size(), shared)};
     }
-    SurfaceRounds rounds(float part = kTolerance, float typical = 1.0f) const {
-        return {samples, kAcross, kRaysOfPixel, {part, typical}};
+    SurfaceRounds rounds(float part = kTolerance, float typical = 1.0f,
+                         SurfaceRounds::ToldBy told_by = SurfaceRounds::ToldBy::Others) const {
+        return {samples, kAcross, kRaysOfPixel, {part, typical}, told_by};
     }
     std::size_t at(int x, int y, int ray) const { return (std::size_t(y) * kAcross + x) * kRaysOfPixel + ray; }
 };
@@ -98,6 +99,14 @@ TEST(SurfaceRounds, ErrorAsksForAllRaysAround) {
                 EXPECT_TRUE(apart == 1 || apart == 2 ? all : few) << x << " " << y << " " << k << ": " << stands;
             }
         }
+}
+
+// Where light has edges as narrow as pixels and no grains, its own few tell of it, too.
+TEST(SurfaceRounds, OwnSamplesMayTellToo) {
+    const Band band([](int x, int y, int k) { return x == 5 && y == 4 && k == 2 ? 5.0f : 1.0f; });
+    SurfaceRounds rounds = band.rounds(kTolerance, 1.0f, SurfaceRounds::ToldBy::OwnToo);
+    EXPECT_EQ(rounds.second(band.even, band.found()).size(), 9 * kRaysOfPixel * 3 / 4);
+    EXPECT_EQ(rounds.stands_for(band.at(5, 4, 2)), 1.0f);
 }
 
 // How much luminance pixels of independent noise hold after all rounds, in parts of what they should: noise(random
@@ -228,7 +237,7 @@ TEST(SurfaceRounds, LightBesideNoiseNeedNotBeBetterKnown) {
 }
 
 TEST(SurfaceRounds, AreNoneWithoutSamples) {
-    SurfaceRounds rounds({}, kAcross, kRaysOfPixel, {kTolerance, 1.0f});
+    SurfaceRounds rounds({}, kAcross, kRaysOfPixel, {kTolerance, 1.0f}, SurfaceRounds::ToldBy::Others);
     EXPECT_TRUE(rounds.first().empty());
     EXPECT_TRUE(rounds.second({}, {}).empty());
     EXPECT_TRUE(rounds.further({}, {}).empty());
