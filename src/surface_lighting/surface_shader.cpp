@@ -148,6 +148,7 @@ void SurfaceShader::shade(const Samples& samples, Light& light) {
     shade(others.first());
     shade(others.second(even(bases, on_bases), of_others));
     const std::vector<float> seen_beside = even(others, of_others);
+    // Samples that reuse what others chose are one to a ray.
     const std::vector<SurfaceRounds::Again> again =
         input_.reuse ? std::vector<SurfaceRounds::Again>() : others.further(even(bases, on_bases), of_others);
     light_some(bases.second(seen_beside, on_bases, &others), &BaseLighting::light_penumbrae);
