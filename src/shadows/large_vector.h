@@ -16,6 +16,17 @@
 
 namespace brisance {
 
+inline constexpr std::size_t kLargePage = std::size_t{2} << 20, kLeastInLargePages = 2 * kLargePage;
+
+// To be freed by std::free(). Null: there is no memory.
+inline void* allocate_in_large_pages(std::size_t bytes) {
+    const std::size_t whole = (bytes + kLargePage - 1) / kLargePage * kLargePage;
+    void* const memory = whole >= bytes ? std::aligned_alloc(kLargePage, whole) : nullptr;
+    if (memory)
+        madvise(memory, whole, MADV_HUGEPAGE);  // a wish: what comes of it changes nothing but the time
+    return memory;
+}
+
 template <class T>
 class LargeAllocator : public std::allocator<T> {
 public:
@@ -25,19 +36,15 @@ public:
     };
 
     T* allocate(std::size_t count) {
-        const std::size_t bytes = count * sizeof(T);
-        if (bytes < kFewPages * kLargePage)
+        if (count * sizeof(T) < kLeastInLargePages)
             return std::allocator<T>::allocate(count);
-        const std::size_t whole = (bytes + kLargePage - 1) / kLargePage * kLargePage;
-        void* const memory = std::aligned_alloc(kLargePage, whole);
-        if (!memory)
-            throw std::bad_alloc();
-        madvise(memory, whole, MADV_HUGEPAGE);  // a wish: what comes of it changes nothing but the time
-        return static_cast<T*>(memory);
+        if (void* const memory = allocate_in_large_pages(count * sizeof(T)))
+            return static_cast<T*>(memory);
+        throw std::bad_alloc();
     }
 
     void deallocate(T* memory, std::size_t count) {
-        if (count * sizeof(T) < kFewPages * kLargePage)
+        if (count * sizeof(T) < kLeastInLargePages)
             std::allocator<T>::deallocate(memory, count);
         else
             std::free(memory);
@@ -52,7 +59,6 @@ public:
     }
 
 private:
-    static constexpr std::size_t kLargePage = std::size_t{2} << 20, kFewPages = 2;
     static_assert(std::is_trivially_default_constructible_v<T>);
 };
 

@@ -50,6 +50,11 @@ SurfaceRounds::SurfaceRounds(std::span<const SurfaceSample> samples, int width, 
         pixels_.back().end = i + 1;
         pixel_of_.push_back(static_cast<std::uint32_t>(pixels_.size() - 1));
     }
+    if (splits_ && !samples.empty()) {
+        number_.assign(((samples.back().pixel - origin_) / width_ + 1) * width_, kNone);
+        for (std::uint32_t k = 0; k < pixels_.size(); ++k)
+            number_[samples[pixels_[k].begin].pixel - origin_] = k;
+    }
     for (Pixel& p : pixels_) {
         if (splits_ && p.end - p.begin == rays)
             shade(p, 1);
@@ -98,12 +103,8 @@ void SurfaceRounds::measure(Pixel& p, std::span<const float> even, const Found& 
 }
 
 void SurfaceRounds::measure_all(std::span<const float> even, const Found& found) {
-    const std::size_t rows = (samples_.back().pixel - origin_) / width_ + 1;
-    number_.assign(rows * width_, kNone);
-    for (std::uint32_t k = 0; k < pixels_.size(); ++k) {
-        measure(pixels_[k], even, found);
-        number_[samples_[pixels_[k].begin].pixel - origin_] = k;
-    }
+    for (Pixel& p : pixels_)
+        measure(p, even, found);
 }
 
 // By the pixels around, as far as the rows of this call reach.

@@ -3,24 +3,18 @@
 // A volume, its light and a picture are arrays of megabytes to gigabytes. In pages of 4 KiB the system spends up to a
 // quarter of the program's time on setting them up, and the processor on finding them. So operator new, from some
 // megabytes on, asks the system for pages of 2 MiB. It is a wish: what comes of it changes nothing but the time.
-#include <sys/mman.h>
-
 #include <cstddef>
 #include <cstdlib>
 #include <new>
 
+#include "shadows/large_vector.h"
+
 namespace {
 
-constexpr std::size_t kLargePage = std::size_t{2} << 20, kLeast = 2 * kLargePage;
-
 void* allocate(std::size_t bytes) {
-    if (bytes < kLeast)
+    if (bytes < brisance::kLeastInLargePages)
         return std::malloc(bytes > 0 ? bytes : 1);
-    const std::size_t whole = (bytes + kLargePage - 1) / kLargePage * kLargePage;
-    void* const memory = whole >= bytes ? std::aligned_alloc(kLargePage, whole) : nullptr;
-    if (memory)
-        madvise(memory, whole, MADV_HUGEPAGE);
-    return memory;
+    return brisance::allocate_in_large_pages(bytes);
 }
 
 }  // namespace
