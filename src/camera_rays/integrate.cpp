@@ -1,7 +1,11 @@
 #include "camera_rays/integrate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
+
+#include "camera_rays/record_kernels.h"
 
 namespace brisance {
 
@@ -77,7 +81,7 @@ int parts_of(const SourceField& field, const VoxelSegment& s, float length) {
     return depth <= kThickVoxel ? 1 : (depth <= 2.0f * kThickVoxel ? kThickVoxelParts : kOpaqueVoxelParts);
 }
 
-// Visits the parts of a voxel until visit(position in the brick, length, distance) returns false.
+// Visits the parts of a voxel until visit(distance of its point, length) returns false.
 template <class Visit>
 bool visit_parts(const SourceField& field, const VoxelSegment& s, int parts, const Visit& visit) {
     const double length = s.end - s.begin;
@@ -85,7 +89,7 @@ bool visit_parts(const SourceField& field, const VoxelSegment& s, int parts, con
     const auto of_part = static_cast<float>(length / n);
     for (int k = 0; k < n; ++k) {
         const double t = s.begin + length * position_in_part(k, n);
-        if (!visit(position_in_brick(s, t), of_part, static_cast<float>(t)))
+        if (!visit(t, of_part))
             return false;
     }
     return true;
@@ -95,8 +99,9 @@ bool visit_parts(const SourceField& field, const VoxelSegment& s, int parts, con
 template <class Visit>
 void walk_parts(const SourceField& field, const Ray& ray, int parts, double end, const Visit& visit) {
     const auto visit_voxel = [&](const VoxelSegment& s) {
-        return visit_parts(field, s, parts, [&](const vec3& p, float length, float distance) {
-            Part part{field.sample(s.brick, p), field.sample_similar(s.brick, p), {}, length, distance};
+        return visit_parts(field, s, parts, [&](double t, float length) {
+            const vec3 p = position_in_brick(s, t);
+            Part part{field.sample(s.brick, p), field.sample_similar(s.brick, p), {}, length, static_cast<float>(t)};
             if (field.has_outside())
                 part.outside = field.sample_outside(s.brick, p);
             return visit(part);
@@ -105,73 +110,62 @@ void walk_parts(const SourceField& field, const Ray& ray, int parts, double end,
     walk_voxels(field, ray, visit_voxel, end);
 }
 
-// What add_part() sums where light scatters in the medium itself: records as a whole.
-class WholeRecords {
+// Parts of a ray in one brick, on their way to the kernel.
+class PartsOfBrick {
 public:
-    explicit WholeRecords(const SourceField& field) : field_(field) {}
+    PartsOfBrick(const SourceField& field, const VoxelSegment& brick, RecordSums& sums)
+        : ray_{field.own_records(brick.brick), field.has_outside() ? field.outside_records(brick.brick) : nullptr,
+               vec3(brick.origin + brick.direction * brick.begin), vec3(brick.direction), float(brick.begin)},
+          begin_(brick.begin),
+          emits_(field.direct_emission()),
+          sums_(sums) {}
 
-    // Returns whether what lies behind can be seen. `outside`: null: the surroundings send no light.
-    bool add(const SourceRecord& r, const SurroundingsRecord* outside, float length, float distance) {
-        const float extinction = r.value[SourceRecord::Extinction], tau = extinction * length, mean = phi1(tau);
-        const float path = transmittance_ * length * mean, opacity = path * extinction;
-        transmittance_ *= 1.0f - tau * mean;
-        depth_ += tau;
-        for (int i = 0; i < quads_of<SourceRecord>(); ++i)
-            seen_[i] += opacity * quad(r, i);
-        if (outside)
-            for (int i = 0; i < quads_of<SurroundingsRecord>(); ++i)
-                outside_[i] += opacity * quad(*outside, i);
-        if (field_.direct_emission())
-            emission_ += slot(r.value, SourceRecord::V) * path;
-        opacity_ += opacity;
-        distance_ += opacity * distance;
-        return depth_ < kOpaqueDepth;
+    // Both return whether what lies behind can be seen, as far as the parts of before are added. `splits`: that of
+    // RayPart.
+    bool take(double t, float length, bool splits) {
+        parts_[count_++] = {static_cast<float>(t - begin_), length, splits};
+        return count_ < kMost || add();
     }
-
-    RaySum sum() const {
-        SourceRecord seen;
-        SurroundingsRecord outside;
-        std::memcpy(seen.value, seen_, sizeof(seen_));
-        std::memcpy(outside.value, outside_, sizeof(outside_));
-        RaySum out;
-        out.depth = out.similar_depth = depth_;
-        out.cells.at(Cell::V) = field_.direct_emission() ? emission_ : slot(seen.value, SourceRecord::V);
-        out.cells.at(Cell::MV) = slot(seen.value, SourceRecord::MV);
-        out.cells.at(Cell::MM) = slot(seen.value, SourceRecord::MM);
-        out.cells.at(Cell::MS) = slot(outside.value, SurroundingsRecord::MS);
-        out.cells.at(Cell::MA) = field_.emitters_share() * slot(outside.value, SurroundingsRecord::MA);
-        out.albedo_sum = Rgb(seen.value[SourceRecord::Albedo]);
-        out.distance_weight = opacity_;
-        out.distance_sum = distance_;
-        return out;
+    bool take(const SourceField& field, const VoxelSegment& s, int parts) {
+        if (parts == 2 && parts_of(field, s, static_cast<float>(s.end - s.begin)) == 1)
+            return take(0.5 * (s.begin + s.end), static_cast<float>(s.end - s.begin), true);
+        return visit_parts(field, s, parts, [&](double t, float length) { return take(t, length, false); });
     }
+    bool add() { return add_parts(ray_, emits_, parts_.data(), std::exchange(count_, 0), sums_); }
 
 private:
-    const SourceField& field_;
-    float transmittance_ = 1.0f, depth_ = 0.0f, opacity_ = 0.0f, distance_ = 0.0f;
-    Quad seen_[quads_of<SourceRecord>()] = {};  // records, each times its part's opacity
-    Quad outside_[quads_of<SurroundingsRecord>()] = {};
-    Rgb emission_{0.0f};
+    static constexpr std::size_t kMost = 64;  // more than a brick of thin voxels has, and few enough to stay near
+    RayInBrick ray_;
+    double begin_;
+    bool emits_;
+    RecordSums& sums_;
+    std::array<RayPart, kMost> parts_;
+    std::size_t count_ = 0;
 };
 
-// `kOutside`: whether the field has light of the surroundings.
-template <bool kOutside>
+RaySum ray_sum(const RecordSums& seen, const SourceField& field) {
+    RaySum out;
+    out.depth = out.similar_depth = seen.depth;
+    out.cells.at(Cell::V) = slot(field.direct_emission() ? seen.emitted : seen.own, SourceRecord::V);
+    out.cells.at(Cell::MV) = slot(seen.own, SourceRecord::MV);
+    out.cells.at(Cell::MM) = slot(seen.own, SourceRecord::MM);
+    out.cells.at(Cell::MS) = slot(seen.outside, SurroundingsRecord::MS);
+    out.cells.at(Cell::MA) = field.emitters_share() * slot(seen.outside, SurroundingsRecord::MA);
+    out.albedo_sum = Rgb(seen.own[SourceRecord::Albedo]);
+    out.distance_weight = seen.opacity;
+    out.distance_sum = seen.distance;
+    return out;
+}
+
+// What add_part() sums, where light scatters in the medium itself: records as a whole.
 RaySum integrate_whole_records(const SourceField& field, const Ray& ray, int parts, double end) {
-    WholeRecords light(field);
+    RecordSums light;
     const auto visit_brick = [&](const VoxelSegment& brick) {
-        const SourceRecord* const records = field.own_records(brick.brick);
-        const SurroundingsRecord* const outside = kOutside ? field.outside_records(brick.brick) : nullptr;
-        return walk_cubes<1>(brick, [&](const VoxelSegment& s) {
-            return visit_parts(field, s, parts, [&](const vec3& p, float length, float distance) {
-                SurroundingsRecord around;
-                if constexpr (kOutside)
-                    around = interpolated(outside, p);
-                return light.add(interpolated(records, p), kOutside ? &around : nullptr, length, distance);
-            });
-        });
+        PartsOfBrick taken(field, brick, light);
+        return walk_cubes<1>(brick, [&](const VoxelSegment& s) { return taken.take(field, s, parts); }) && taken.add();
     };
     walk_bricks(field.bricks(), lattice_ray(field.bricks(), field.medium(), ray, end), visit_brick);
-    return light.sum();
+    return ray_sum(light, field);
 }
 
 // Where light was traced through a similar medium.
@@ -187,10 +181,8 @@ RaySum integrate_two_media(const SourceField& field, const Ray& ray, int parts, 
 }  // namespace
 
 RaySum integrate(const SourceField& field, const Ray& ray, int parts, double end) {
-    const auto by_records = field.has_similar()   ? integrate_two_media
-                            : field.has_outside() ? integrate_whole_records<true>
-                                                  : integrate_whole_records<false>;
-    RaySum sum = by_records(field, ray, parts, end);
+    RaySum sum = field.has_similar() ? integrate_two_media(field, ray, parts, end)
+                                     : integrate_whole_records(field, ray, parts, end);
     sum.alpha = -std::expm1(-sum.depth);
     sum.through = 1.0f - sum.alpha;
     return sum;

@@ -12,30 +12,35 @@ namespace {
 
 constexpr int kNodesAside = SourceField::kSide, kNodes = SourceField::kRecords;
 
-std::vector<float> around_brick(const BrickLattice& lattice, std::span<const float> field, int channels,
-                                const ivec3& low) {
-    std::vector<float> box(static_cast<std::size_t>(channels) * kNodes);
-    copy_box(lattice, field, channels, low, ivec3(kNodesAside), box);
-    return box;
+// Calls visit(record, node) for those nodes of a lattice that a brick's records stand for; `low` is the first of them.
+template <class Visit>
+void for_nodes(const BrickLattice& lattice, const ivec3& low, const Visit& visit) {
+    constexpr int kSize = BrickLattice::kSize;
+    const ivec3 end = low + kNodesAside, first = low >> 3, last = (end - 1) >> 3;
+    for (int b = 0; b < 8; ++b) {
+        const ivec3 place = first + ivec3(b >> 2, b >> 1 & 1, b & 1);
+        const int brick = glm::all(glm::lessThanEqual(place, last)) ? lattice.find(place) : -1;
+        if (brick < 0)
+            continue;
+        const ivec3 from = glm::max(low, place * kSize), to = glm::min(end, (place + 1) * kSize);
+        const std::size_t nodes = std::size_t(brick) * BrickLattice::kNodes;
+        for (int x = from.x; x < to.x; ++x)
+            for (int y = from.y; y < to.y; ++y) {
+                const std::size_t record = std::size_t((x - low.x) * kNodesAside + y - low.y) * kNodesAside,
+                                  node = nodes + std::size_t(BrickLattice::offset_in_brick({x, y, from.z}));
+                for (int z = from.z; z < to.z; ++z)
+                    visit(record + std::size_t(z - low.z), node + std::size_t(z - from.z));
+            }
+    }
 }
 
-template <class Record>
-void put(const Medium& medium, const std::vector<Rgb>& field, const ivec3& low, int slot, Record* records) {
-    if (field.empty())
-        return;
-    const std::vector<float> box =
-        around_brick(medium.lattice, {reinterpret_cast<const float*>(field.data()), field.size() * 3}, 3, low);
-    for (int i = 0; i < kNodes; ++i)
-        for (int c = 0; c < 3; ++c)
-            records[i].value[slot + c] = box[c * kNodes + i];
+// A node's value; 0 where the field is empty.
+void put(const std::vector<Rgb>& field, std::size_t node, float* to) {
+    for (int c = 0; c < 3; ++c)
+        to[c] = field.empty() ? 0.0f : field[node][c];
 }
 
-template <class Record>
-void put_extinction(const Medium& medium, const ivec3& low, Record* records) {
-    const std::vector<float> box = around_brick(medium.lattice, medium.extinction, 1, low);
-    for (int i = 0; i < kNodes; ++i)
-        records[i].value[Record::Extinction] = box[i];
-}
+const std::vector<Rgb> kNoLight;
 
 bool light_from_outside(const NodeSources* sources) {
     return sources != nullptr && (!sources->from_surfaces.empty() || !sources->from_emitters.empty());
@@ -57,8 +62,9 @@ SourceField::SourceField(const Medium& medium, const NodeSources* sources, const
     parallel_for(
         bricks_.brick_count(),
         [&](std::size_t b) {
-            const std::vector<float> extinction =
-                around_brick(medium.lattice, medium.extinction, 1, bricks_.first_node(b));
+            std::array<float, kNodes> extinction{};
+            for_nodes(medium.lattice, bricks_.first_node(b),
+                      [&](std::size_t i, std::size_t node) { extinction[i] = medium.extinction[node]; });
             const auto [least, greatest] = std::minmax_element(extinction.begin(), extinction.end());
             minimum_[b] = *least;
             majorant_[b] = *greatest;
@@ -71,37 +77,54 @@ SourceField::SourceField(const Medium& medium) : SourceField(medium, nullptr, nu
 SourceField::SourceField(const Medium& medium, const NodeSources& sources, const Medium* similar, float forward)
     : SourceField(medium, &sources, similar, forward) {}
 
+void SourceField::put_own(BrickRecords& out, const ivec3& low) const {
+    const std::vector<Rgb>&fire = direct_ ? medium_->emission : medium_->source,
+          &single = sources_ ? sources_->single : kNoLight, &multiple = sources_ ? sources_->multiple : kNoLight;
+    for (SourceRecord& r : out.own)
+        r.value[SourceRecord::Albedo] = luminance(medium_->albedo);
+    for_nodes(medium_->lattice, low, [&](std::size_t i, std::size_t node) {
+        float* const own = out.own[i].value;
+        own[SourceRecord::Extinction] = medium_->extinction[node];
+        put(fire, node, own + SourceRecord::V);
+        put(single, node, own + SourceRecord::MV);
+        put(multiple, node, own + SourceRecord::MM);
+        own[SourceRecord::Albedo] = luminance(medium_->albedo_at(node));
+    });
+}
+
+void SourceField::put_outside(BrickRecords& out, const ivec3& low) const {
+    out.outside.resize(kRecords);
+    for_nodes(medium_->lattice, low, [&](std::size_t i, std::size_t node) {
+        put(sources_->from_surfaces, node, out.outside[i].value + SurroundingsRecord::MS);
+        put(sources_->from_emitters, node, out.outside[i].value + SurroundingsRecord::MA);
+    });
+}
+
 void SourceField::put_similar(BrickRecords& out, const ivec3& low) const {
     out.similar.resize(kRecords);
-    put_extinction(*similar_, low, out.similar.data());
-    put(*similar_, direct_ ? similar_->emission : similar_->source, low, SimilarRecord::V, out.similar.data());
+    const auto put_forward = [&](std::size_t i, const Rgb& albedo) {
+        for (int c = 0; c < 3; ++c)
+            out.similar[i].value[SimilarRecord::Forward + c] = forward_ * albedo[c];
+    };
+    for (std::size_t i = 0; i < kRecords; ++i)
+        put_forward(i, medium_->albedo);
+    for_nodes(medium_->lattice, low,
+              [&](std::size_t i, std::size_t node) { put_forward(i, medium_->albedo_at(node)); });
+    const std::vector<Rgb>& fire = direct_ ? similar_->emission : similar_->source;
+    for_nodes(similar_->lattice, low, [&](std::size_t i, std::size_t node) {
+        out.similar[i].value[SimilarRecord::Extinction] = similar_->extinction[node];
+        put(fire, node, out.similar[i].value + SimilarRecord::V);
+    });
 }
 
 std::unique_ptr<SourceField::BrickRecords> SourceField::new_records(std::size_t brick) const {
     auto out = std::make_unique<BrickRecords>();
-    SourceRecord* const own = out->own.data();
     const ivec3 low = bricks_.first_node(brick);
-    put_extinction(*medium_, low, own);
-    put(*medium_, direct_ ? medium_->emission : medium_->source, low, SourceRecord::V, own);
-    if (sources_ != nullptr) {
-        put(*medium_, sources_->single, low, SourceRecord::MV, own);
-        put(*medium_, sources_->multiple, low, SourceRecord::MM, own);
-    }
-    if (outside_) {
-        out->outside.resize(kRecords);
-        put(*medium_, sources_->from_surfaces, low, SurroundingsRecord::MS, out->outside.data());
-        put(*medium_, sources_->from_emitters, low, SurroundingsRecord::MA, out->outside.data());
-    }
+    put_own(*out, low);
+    if (outside_)
+        put_outside(*out, low);
     if (similar_ != nullptr)
         put_similar(*out, low);
-    for (int i = 0; i < kRecords; ++i) {
-        const ivec3 node = low + ivec3(i / (kSide * kSide), i / kSide % kSide, i % kSide);
-        const std::int64_t n = medium_->lattice.find_node(node);
-        const Rgb albedo = n < 0 ? medium_->albedo : medium_->albedo_at(n);
-        own[i].value[SourceRecord::Albedo] = luminance(albedo);
-        for (int c = 0; similar_ != nullptr && c < 3; ++c)
-            out->similar[i].value[SimilarRecord::Forward + c] = forward_ * albedo[c];
-    }
     return out;
 }
 

@@ -135,6 +135,8 @@ private:
         return made_.get(brick, [&] { return new_records(brick); });
     }
     std::unique_ptr<BrickRecords> new_records(std::size_t brick) const;
+    void put_own(BrickRecords& out, const ivec3& low) const;
+    void put_outside(BrickRecords& out, const ivec3& low) const;
     void put_similar(BrickRecords& out, const ivec3& low) const;
 
     const Medium* medium_;

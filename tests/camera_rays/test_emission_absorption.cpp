@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "camera_rays/integrate.h"
+#include "core/rng.h"
 #include "fixtures/media.h"
 
 namespace brisance {
@@ -122,14 +123,80 @@ TEST(EmissionAbsorption, AFlameInSmokeIsDimmedByIt) {
 
 TEST(EmissionAbsorption, ScatteredSourcesAreSeenAsEmittedOnesAre) {
     const Medium medium = make_medium(slab(0.05));
-    const std::vector<Rgb> single(medium.lattice.node_count(), Rgb(2.0f)), multiple(single.size(), Rgb(5.0f));
-    const NodeSources sources{single, multiple, {}, {}};
+    const auto even = [&](float radiance) { return std::vector<Rgb>(medium.lattice.node_count(), Rgb(radiance)); };
+    const NodeSources sources{even(2.0f), even(5.0f), even(3.0f), even(7.0f)};
     const SourceField field(medium, sources);
     const RaySum sum = integrate(field, {dvec3(medium.local_of_world({0.0, 0.0, -5.0})), {0, 0, 1}}, 2);
     const double opacity = -std::expm1(-32.0 * 0.05);
     EXPECT_NEAR(sum.cells.at(Cell::V).x / opacity, 1.0, 1e-4);
     EXPECT_NEAR(sum.cells.at(Cell::MV).x / opacity, 2.0, 2e-4);
     EXPECT_NEAR(sum.cells.at(Cell::MM).x / opacity, 5.0, 5e-4);
+    EXPECT_NEAR(sum.cells.at(Cell::MS).x / opacity, 3.0, 3e-4);
+    EXPECT_NEAR(sum.cells.at(Cell::MA).x / opacity, 7.0, 7e-4);
+}
+
+std::vector<Rgb> colours_of_noise(const Medium& medium, int seed) {
+    std::vector<Rgb> out;
+    for (std::size_t i = 0; i < medium.lattice.node_count(); ++i) {
+        const ivec3 n = medium.lattice.node(i);
+        out.emplace_back(testing::noise(n, seed), testing::noise(n, seed + 1), testing::noise(n, seed + 2));
+    }
+    return out;
+}
+
+struct Summed {
+    dvec3 single{0.0}, from_emitters{0.0};
+    double through = 1.0;
+};
+
+// In every voxel by two Gauss points of the field as it is sampled.
+Summed sum_of_two_points(const SourceField& field, const Ray& ray) {
+    Summed sum;
+    walk_voxels(field, ray, [&](const VoxelSegment& s) {
+        for (const double part : {0.21132487, 0.78867513}) {
+            const vec3 p = position_in_brick(s, s.begin + part * (s.end - s.begin));
+            const SourceRecord own = field.sample(s.brick, p);
+            const SurroundingsRecord around = field.has_outside() ? field.sample_outside(s.brick, p)
+                                                                  : SurroundingsRecord{};
+            const double tau = 0.5 * (s.end - s.begin) * double(own.value[SourceRecord::Extinction]),
+                         opacity = sum.through * -std::expm1(-tau);
+            sum.through -= opacity;
+            for (int c = 0; c < 3; ++c) {
+                sum.single[c] += opacity * own.value[SourceRecord::MV + c];
+                sum.from_emitters[c] += opacity * around.value[SurroundingsRecord::MA + c];
+            }
+        }
+        return true;
+    });
+    return sum;
+}
+
+// Colours and cells stay apart, whatever the direction, with light of the surroundings or without.
+TEST(EmissionAbsorption, VoxelsAreSummedByTwoPointsOfTheField) {
+    Recipe r = slab(0.1);
+    r.density = [](const ivec3& n) { return testing::noise(n, 1); };
+    const Medium medium = make_medium(r);
+    for (const bool outside : {false, true}) {
+        const std::vector<Rgb> none;
+        const NodeSources sources{colours_of_noise(medium, 3), colours_of_noise(medium, 6),
+                                  outside ? colours_of_noise(medium, 9) : none,
+                                  outside ? colours_of_noise(medium, 12) : none};
+        const SourceField field(medium, sources);
+        Rng rng(stream_of("voxels summed by two points"), outside);
+        for (int k = 0; k < 50; ++k) {
+            const dvec3 at(rng.next_double() - 0.5, rng.next_double() - 0.5, -1.0),
+                direction(0.4 * rng.next_double(), -0.3 * rng.next_double(), 1.0);
+            const Ray ray{dvec3(medium.local_of_world(at)), glm::normalize(direction)};
+            const RaySum sum = integrate(field, ray, 2);
+            const Summed expected = sum_of_two_points(field, ray);
+            ASSERT_LT(expected.through, 0.6);
+            EXPECT_NEAR(sum.through, expected.through, 1e-5);
+            for (int c = 0; c < 3; ++c) {
+                EXPECT_NEAR(sum.cells.at(Cell::MV)[c], expected.single[c], 1e-5);
+                EXPECT_NEAR(sum.cells.at(Cell::MA)[c], expected.from_emitters[c], 1e-5);
+            }
+        }
+    }
 }
 
 TEST(EmissionAbsorption, FinerStepsThroughNoiseConverge) {

@@ -27,8 +27,9 @@ public:
     double exit() const { return std::min({crossing_.x, crossing_.y, crossing_.z}); }
 
     void advance() {
-        const int a =
-            crossing_.x <= crossing_.y ? (crossing_.x <= crossing_.z ? 0 : 2) : (crossing_.y <= crossing_.z ? 1 : 2);
+        // Which axis it is cannot be foretold: chosen so that compilers need no branch.
+        const int x_or_y = crossing_.x <= crossing_.y ? 0 : 1;
+        const int a = std::min(crossing_.x, crossing_.y) <= crossing_.z ? x_or_y : 2;
         cube[a] += direction_[a] > 0.0 ? 1 : -1;
         crossing_[a] = next_crossing(a);
     }

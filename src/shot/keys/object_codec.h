@@ -1,6 +1,8 @@
 // JSON objects and lists of them to structures, and what is wrong with one that was not accepted.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -133,7 +135,7 @@ Codec<std::vector<T>> list_of(const std::string& what, const Codec<T>& item) {
             if (item.find_mismatch)
                 if (const std::optional<Mismatch> more = item.find_mismatch(json[i]))
                     inner = *more;
-            inner.path = "[" + std::to_string(i) + "]" + inner.path;
+            inner.path.insert(0, fmt::format("[{}]", i));
             return inner;
         }
         return std::nullopt;
