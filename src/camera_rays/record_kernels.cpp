@@ -127,8 +127,8 @@ public:
     }
 
     // Light that is that of one point over a length, at a distance from the ray's origin [m].
-    HWY_INLINE void add(const RecordLanes<SourceRecord::Size>& own, const RecordLanes<SurroundingsRecord::Size>& outside,
-                        float length, float distance) {
+    HWY_INLINE void add(const RecordLanes<SourceRecord::Size>& own,
+                        const RecordLanes<SurroundingsRecord::Size>& outside, float length, float distance) {
         const float extinction = hn::GetLane(own.v[0]), tau = extinction * length, mean = phi1(tau);
         const float path = sums_.transmittance * length * mean, opacity = path * extinction;
         sums_.transmittance *= 1.0f - tau * mean;

@@ -33,8 +33,9 @@ struct RecordSums {
     alignas(64) float emitted[SourceRecord::Size] = {};
 };
 
-// Extinction and source are constant on every part, or on the halves of one that splits. They are integrated in closed form with phi1. `emits`:
-// RecordSums::emitted is wanted. Returns whether what lies behind can be seen; the parts that it cannot are left out.
+// Extinction and source are constant on every part, or on the halves of one that splits. They are integrated in closed
+// form with phi1. `emits`: RecordSums::emitted is wanted. Returns whether what lies behind can be seen; the parts that
+// it cannot are left out.
 bool add_parts(const RayInBrick& ray, bool emits, const RayPart* parts, std::size_t count, RecordSums& sums);
 
 }  // namespace brisance

@@ -14,20 +14,25 @@ namespace {
 constexpr int kErrorSteps = 1401, kMiddleStep = kErrorSteps / 2;
 constexpr double kStep = 0.01;
 
+// Of the model's distribution.
+constexpr double kDegreesOfModel = 3.0;
+
 double error_at(const ExpectedError& expected, int k) {
     return expected.error * std::exp(kStep * (k - kMiddleStep));
 }
 
+// Logarithm of the density of Student's t, up to a constant.
+double log_student(double t, double degrees_of_freedom) {
+    return -0.5 * (degrees_of_freedom + 1.0) * std::log1p(t * t / degrees_of_freedom);
+}
+
 // Logarithm of the probability density of the error, up to a constant, over its logarithm.
 double log_density(const ExpectedError& expected, const CertifiedError* sampled, double error) {
-    const double off = std::log(error / expected.error) / expected.spread;
-    double out = -0.5 * off * off;
+    double out = log_student(std::log(error / expected.error) / expected.spread, kDegreesOfModel);
     if (sampled && std::isfinite(sampled->square) && sampled->square_deviation > 0.0 &&
-        std::isfinite(sampled->square_deviation)) {
-        const double n = double(std::max<std::size_t>(sampled->strata, 1));
-        const double t = (sampled->square - error * error) / sampled->square_deviation;
-        out -= 0.5 * (n + 1.0) * std::log1p(t * t / n);
-    }
+        std::isfinite(sampled->square_deviation))
+        out += log_student((sampled->square - error * error) / sampled->square_deviation,
+                           std::max(sampled->degrees_of_freedom, 1.0));
     return out;
 }
 

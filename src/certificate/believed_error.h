@@ -2,10 +2,11 @@
 // unbiased samples.
 //
 // The model knows errors to a factor. A survey of few samples is right on average, whatever the model leaves out, but
-// noisy where errors are small. Bayes' theorem joins them. The model is a log-normal distribution of the error e about
-// the expected one. The survey's squared error is e^2 and noise that follows Student's t with the survey's degrees of
-// freedom. What is believed is the median of the distribution that results, and its interval holds 95 % of it. A survey
-// without noise decides alone, and so does the model without samples.
+// noisy where errors are small. Bayes' theorem joins them. The model is a distribution of the logarithm of the error e
+// about that of the expected one: Student's t with three degrees of freedom, for a picture unlike those that the model
+// was made from errs as no normal distribution allows. The survey's squared error is e^2 and noise that follows
+// Student's t with the survey's degrees of freedom. What is believed is the median of the distribution that results,
+// and its interval holds 95 % of it. A survey without noise decides alone, and so does the model without samples.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -20,8 +21,11 @@ namespace brisance {
 struct ExpectedError {
     std::string cell;     // of the ledger; empty: the picture
     double error = 0.0;   // ||I - R|| / ||R||, as CertifiedError
-    double spread = 0.0;  // standard deviation of the error's logarithm; 0: the error is known
+    double spread = 0.0;  // scale of the distribution of the error's logarithm; 0: the error is known
 };
+
+// Half the interval of the model alone, over its spread.
+constexpr double kHalfWidthOfModel = 3.182;
 
 struct BelievedError {
     std::string cell;

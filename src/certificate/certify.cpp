@@ -163,7 +163,7 @@ void estimate_error(CertifiedError& e, const SurveyedSums& s, double norm) {
     e.error = std::sqrt(std::max(0.0, e.square));
     e.error_interval = {0.0, kInfinity};
     e.largest_share = s.largest_share;
-    e.strata = s.strata;
+    e.degrees_of_freedom = s.degrees_of_freedom;
     if (below > 0.0)
         e.square_deviation = std::sqrt(std::max(0.0, s.aa + e.square * (2.0 * s.ab + e.square * s.bb))) / below;
     // Fieller's interval holds all q for which a - q below is within t standard errors of 0:

@@ -54,7 +54,7 @@ PixelSurvey::PixelSurvey(const std::vector<double>& size, int width, std::size_t
 SurveyedSums surveyed_sums(const std::vector<double>& a, const std::vector<double>& b) {
     SurveyedSums s;
     s.strata = a.size() / 2;
-    double largest = 0.0;
+    double largest = 0.0, fourth = 0.0;
     for (std::size_t i = 0; i + 1 < a.size(); i += 2) {
         s.a += a[i] + a[i + 1];
         s.b += b[i] + b[i + 1];
@@ -64,8 +64,13 @@ SurveyedSums surveyed_sums(const std::vector<double>& a, const std::vector<doubl
         s.ab += da * db;
         s.bb += db * db;
         largest = std::max(largest, da * da);
+        fourth += da * da * da * da;
     }
     s.largest_share = s.aa > 0.0 ? largest / s.aa : 0.0;
+    // A third of the strata makes it, by that count, where differences are normally distributed: their fourth moment is
+    // three times the square of the second.
+    const double strata_that_make_it = fourth > 0.0 ? s.aa * s.aa / fourth : double(s.strata);
+    s.degrees_of_freedom = std::min(double(s.strata), 3.0 * strata_that_make_it - 2.0);
     return s;
 }
 

@@ -36,6 +36,9 @@ struct SurveyedSums {
     double aa = 0.0, ab = 0.0, bb = 0.0;  // variances and covariance of the sums
     std::size_t strata = 0;
     double largest_share = 0.0;  // of `aa`, the greatest from one stratum
+    // Of `aa`, about: `strata` where differences are normally distributed, down to 1 where one stratum makes all of it.
+    // After F. E. Satterthwaite, An Approximate Distribution of Estimates of Variance Components, Biometrics 1946.
+    double degrees_of_freedom = 0.0;
 };
 
 SurveyedSums surveyed_sums(const std::vector<double>& a, const std::vector<double>& b);

@@ -118,7 +118,7 @@ CertifiedError CorrectedLayer::before() const {
     out.square = residual / square;
     out.error = std::sqrt(std::max(0.0, out.square));
     out.square_deviation = std::sqrt(variance) / square;
-    out.strata = kStrata;
+    out.degrees_of_freedom = kStrata;
     return out;
 }
 

@@ -16,13 +16,15 @@ constexpr double kErrorOfMaps = 0.01, kResolutionOfMaps = 12.0, kPowerOfMaps = 4
 // The orders of scattering err with the optical depth of a voxel of their lattice. After a bounce on the light's own
 // lattice this counts less, and the gather on that lattice remains.
 constexpr double kErrorOfLattice = 0.045, kErrorOfLatticeBefore = 0.0105, kErrorOfFineBounce = 0.066;
-// Fire seen directly: the camera's samples, and beyond them voxels that hide what burns in them.
-constexpr double kErrorOfRays = 0.001, kErrorOfBurningVoxels = 0.002;
-// Of light that surfaces send on or receive, and of scattering methods with random samples: not modelled.
-constexpr double kErrorOfSurfaces = 0.02, kErrorOfOtherMethods = 0.05;
+// Fire seen directly: the camera's samples, over lighting.error, which they follow; and beyond them voxels that hide
+// what burns in them.
+constexpr double kErrorOfRays = 0.12, kErrorOfBurningVoxels = 0.002;
+// Of light that surfaces and lamps send on or receive, as usual where their light is noise, or smoke is cut by a floor;
+// and of scattering methods with random samples: not modelled.
+constexpr double kErrorOfSurfaces = 0.05, kErrorOfSurfacesOnSmoke = 0.1, kErrorOfOtherMethods = 0.05;
 
-// Standard deviations of the logarithm of an error.
-constexpr double kSpread = 0.7, kSpreadOfRest = 1.2;
+// ExpectedError::spread of what the model knows, of fire seen directly, and of what it guesses.
+constexpr double kSpread = 0.35, kSpreadOfRays = 0.5, kSpreadOfRest = 0.8;
 
 double square(double x) {
     return x * x;
@@ -41,6 +43,12 @@ double noted(const Statistics& statistics, const std::string& stage, const char*
         if (s.name == stage && s.detail.contains(key) && s.detail[key].is_number())
             return s.detail[key].get<double>();
     return 0.0;
+}
+
+// What noise leaves in light that surfaces keep for themselves: the root of the sum of squares over pixels and channels
+// [W/(m^2 sr)].
+double error_of_shading(const Statistics& statistics) {
+    return noted(statistics, "camera", "error_of_shading");
 }
 
 // What noise leaves in light that pixels share: the root of the sum of squares over pixels and channels, which the
@@ -71,7 +79,8 @@ public:
           depth_(voxel_depth(frame.medium)),
           orders_(depth_ * std::exp2(smoke_level) *
                   error_of_orders(std::exp2(lattice_level - smoke_level), fine_bounces)),
-          remainder_(remainder) {
+          remainder_(remainder),
+          rays_(kErrorOfRays * frame.shot.lighting.error) {
         const LightingSettings& settings = frame.shot.lighting;
         if (settings.shadows == ShadowMethod::Maps)
             maps_ = kErrorOfMaps * std::pow(kResolutionOfMaps / shadow_resolution(settings), kPowerOfMaps);
@@ -80,7 +89,7 @@ public:
     ExpectedError of(const std::string& cell) const {
         const double gathered = square(maps_) + square(interpolation_);
         if (cell == "V" || cell == "A")
-            return {cell, limited(kErrorOfRays + kErrorOfBurningVoxels * std::pow(depth_, 3.0)), kSpreadOfRest};
+            return {cell, limited(rays_ + kErrorOfBurningVoxels * std::pow(depth_, 3.0)), kSpreadOfRays};
         if ((cell == "MV" && plan_.on_rays.contains(Cell::MV)) || (cell == "SV" && plan_.fire_lights_on_surfaces()))
             return {cell, kErrorOfOtherMethods, kSpreadOfRest};
         if (cell == "MV")
@@ -88,7 +97,7 @@ public:
                     kSpread};
         if (cell == "MM")
             return mixed({cell, limited(std::sqrt(gathered + square(orders_)) + remainder_), kSpread});
-        const ExpectedError rest{cell, kErrorOfSurfaces, kSpreadOfRest};
+        const ExpectedError rest{cell, cell == "MS" ? kErrorOfSurfacesOnSmoke : kErrorOfSurfaces, kSpreadOfRest};
         return cell == "SM" ? mixed(rest) : rest;
     }
 
@@ -107,7 +116,7 @@ private:
     }
 
     const Plan& plan_;
-    double coarse_light_, interpolation_, depth_, orders_, remainder_, maps_ = 0.0;
+    double coarse_light_, interpolation_, depth_, orders_, remainder_, rays_, maps_ = 0.0;
 };
 
 // The cell that is taken for the picture where nothing is known of their shares.
@@ -135,7 +144,8 @@ std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFra
         noted(statistics, lattice, "smoke_lattice_level"), noted(statistics, kSeries, "lattice_level"),
         noted(statistics, kSeries, "share_of_fine_bounces"), noted(statistics, kSeries, "estimated_remainder"));
     std::vector<ExpectedError> out(1);
-    double errors = 0.0, spreads = 0.0, light = 0.0;
+    const double shading = error_of_shading(statistics);
+    double errors = square(shading), spreads = square(errors * kSpread), light = 0.0;
     for (const std::string& cell : frame.plan.cells())
         for (const Layer& layer : image.layers)
             if (const double part = layer.name == cell ? sum_of_squares(layer) : 0.0; part > 0.0) {
@@ -144,15 +154,17 @@ std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFra
                     out.back().error = limited(std::hypot(out.back().error, shared / std::sqrt(part)));
                 if (change)
                     change(out.back());
-                errors += part * square(out.back().error);
-                spreads += part * square(out.back().spread);
+                const double error = part * square(out.back().error);
+                errors += error;
+                spreads += square(error * out.back().spread);
                 light += part;
             }
-    // Errors of cells are taken to be independent. A picture without layers of cells errs as its brightest scattering.
+    // Errors of cells are taken to be independent, and each moves the picture's by the part of it that it makes. A
+    // picture without layers of cells errs as its brightest scattering.
     const double all = sum_of_squares(image.layer(""));
     if (all > 0.0)
-        out[0] = light > 0.0 ? ExpectedError{"", std::sqrt(errors / all), std::sqrt(spreads / light)}
-                             : model.of(brightest(frame.plan));
+        out[0] = light > 0.0 && errors > 0.0 ? ExpectedError{"", std::sqrt(errors / all), std::sqrt(spreads) / errors}
+                                             : model.of(brightest(frame.plan));
     out[0].cell.clear();
     return out;
 }

@@ -19,8 +19,6 @@ namespace {
 constexpr double kFirst = 1.0 / 12.0;
 // Of the error asked for: a little less is aimed at, since the samples' own error is known by chance.
 constexpr double kAim = 0.95;
-// So many that sums over them are normally distributed.
-constexpr std::size_t kManyPixels = 1 << 16;
 
 // A layer's error before the correction: what the model expects, and what the samples measured.
 ExpectedError before(ExpectedError error, const CorrectedLayer& layer) {
@@ -28,7 +26,7 @@ ExpectedError before(ExpectedError error, const CorrectedLayer& layer) {
     const BelievedError measured = believed_error(error, &found);
     if (error.spread > 0.0 && measured.interval.low > 0.0) {
         error.error = measured.error;
-        error.spread = std::log(measured.interval.high / measured.interval.low) / (2.0 * half_width(kManyPixels));
+        error.spread = std::log(measured.interval.high / measured.interval.low) / (2.0 * kHalfWidthOfModel);
     }
     return error;
 }

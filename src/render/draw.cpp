@@ -106,6 +106,8 @@ Drawn draw_lit(const DrawInput& given, const LitStretch* stretch, Statistics& st
                                  {{"samples_per_pixel", out.samples_per_pixel}}});
     if (nlohmann::ordered_json errors = picture.errors_of_shared(); !errors.empty())
         statistics.stages.back().detail["errors_of_shared_light"] = std::move(errors);
+    if (const double error = picture.error_of_shading(); error > 0.0)
+        statistics.stages.back().detail["error_of_shading"] = error;
     if (const PathLengths* const lengths = picture.path_lengths())
         out.light_pictures = picture_lights(input, *lights.virtual_lights(), out.image, *lengths, statistics, progress);
     return out;

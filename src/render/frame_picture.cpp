@@ -261,6 +261,10 @@ nlohmann::ordered_json FramePicture::errors_of_shared() const {
     return json;
 }
 
+double FramePicture::error_of_shading() const {
+    return square_error_of_shading_ > 0.0 ? std::sqrt(square_error_of_shading_) / pictures_ : 0.0;
+}
+
 Image FramePicture::picture(const InScattering* estimator, int number, const MomentLights& lights, const Camera& camera,
                             const Surroundings* surroundings) {
     settings_.pass = number;
@@ -317,6 +321,7 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
     if (reuse)
         add_to_cell(image, Cell::SS, reuse->take_pixels());
     ++pictures_;
+    square_error_of_shading_ += shader.square_error();
     if (shared)
         add_shared(image, *shared);
     if (shared_sky) {

@@ -38,6 +38,8 @@ public:
     // What noise leaves in light that pixels share, as expected from its samples: of each cell, the root of the sum of
     // squares over all pixels and channels.
     nlohmann::ordered_json errors_of_shared() const;
+    // The same of light that surfaces keep for themselves, of all cells together.
+    double error_of_shading() const;
     const PathLengths* path_lengths() const { return lengths_ ? &*lengths_ : nullptr; }
 
 private:
@@ -67,6 +69,7 @@ private:
     std::optional<float> typical_;  // luminance
     BoundTally bound_costs_;
     std::array<double, kCells> square_errors_of_shared_{};  // sums over the pictures
+    double square_error_of_shading_ = 0.0;
     int pictures_ = 0;
     double seconds_on_estimators_ = 0.0;
 };

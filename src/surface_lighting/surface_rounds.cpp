@@ -183,4 +183,12 @@ float SurfaceRounds::stands_for(std::size_t sample) const {
     return quarter_of(sample) < p.quarters ? p.scale / float(p.passes) : 0.0f;
 }
 
+double SurfaceRounds::variance_left() const {
+    double sum = 0.0;
+    for (const Pixel& p : pixels_)
+        if (std::isfinite(p.left))
+            sum += double(p.left);
+    return sum;
+}
+
 }  // namespace brisance

@@ -157,6 +157,7 @@ void SurfaceShader::shade(const Samples& samples, Light& light) {
     for (std::size_t begin = 0; begin < again.size(); begin += kAgainAtOnce)
         shade_again(samples, std::span(again).subspan(begin, std::min(kAgainAtOnce, again.size() - begin)), others,
                     light);
+    variance_left_ += bases.variance_left() + others.variance_left();
 }
 
 // Further passes of some samples, all but what lights bases: other numbers, which the passes of a pixel divide among

@@ -78,6 +78,9 @@ public:
 
     // What it finds about planes is kept for the next call.
     void shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light);
+    // Of all pixels and channels so far, the expected sum of squares of what noise the rounds leave: as if channels
+    // erred alike; 0 where all samples are shaded at once.
+    double square_error() const { return 3.0 * variance_left_; }
 
 private:
     struct ShadedPoint;
@@ -137,8 +140,9 @@ private:
     Mirrors mirrors_;
     PlanarLight planar_;
     LitSmokeAlongRay smoke_of_paths_;
-    bool reflects_;  // narrow lobes show surfaces as mirrors do
-    float walks_;    // of the paths between surfaces, the share that walks through the smoke
+    bool reflects_;               // narrow lobes show surfaces as mirrors do
+    float walks_;                 // of the paths between surfaces, the share that walks through the smoke
+    double variance_left_ = 0.0;  // by the rounds, of luminance
 };
 
 }  // namespace brisance

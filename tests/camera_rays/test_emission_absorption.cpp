@@ -156,8 +156,8 @@ Summed sum_of_two_points(const SourceField& field, const Ray& ray) {
         for (const double part : {0.21132487, 0.78867513}) {
             const vec3 p = position_in_brick(s, s.begin + part * (s.end - s.begin));
             const SourceRecord own = field.sample(s.brick, p);
-            const SurroundingsRecord around = field.has_outside() ? field.sample_outside(s.brick, p)
-                                                                  : SurroundingsRecord{};
+            const SurroundingsRecord around =
+                field.has_outside() ? field.sample_outside(s.brick, p) : SurroundingsRecord{};
             const double tau = 0.5 * (s.end - s.begin) * double(own.value[SourceRecord::Extinction]),
                          opacity = sum.through * -std::expm1(-tau);
             sum.through -= opacity;

@@ -11,20 +11,21 @@ namespace {
 
 const ExpectedError kModel{"", 0.02, 0.7};
 
-CertifiedError sampled(double error_square, double deviation, std::size_t strata = 100) {
+CertifiedError sampled(double error_square, double deviation, double degrees_of_freedom = 100.0) {
     CertifiedError e;
     e.square = error_square;
     e.error = std::sqrt(std::max(0.0, error_square));
     e.square_deviation = deviation;
-    e.strata = strata;
+    e.degrees_of_freedom = degrees_of_freedom;
     return e;
 }
 
 TEST(BelievedError, IsTheModelsWithoutSamples) {
     const BelievedError e = believed_error(kModel, nullptr);
     EXPECT_NEAR(e.error, 0.02, 2e-4);
-    EXPECT_NEAR(e.interval.low, 0.02 * std::exp(-1.96 * 0.7), 2e-4);
-    EXPECT_NEAR(e.interval.high, 0.02 * std::exp(1.96 * 0.7), 2e-3);
+    // Errors beyond a thousand times the expected one are not believed at all.
+    EXPECT_NEAR(e.interval.low / (0.02 * std::exp(-kHalfWidthOfModel * 0.7)), 1.0, 0.05);
+    EXPECT_NEAR(e.interval.high / (0.02 * std::exp(kHalfWidthOfModel * 0.7)), 1.0, 0.05);
 }
 
 TEST(BelievedError, IsTheSamplesWhereThoseAreExact) {
@@ -46,6 +47,16 @@ TEST(BelievedError, StaysBetweenTheModelAndNoisySamples) {
     EXPECT_LT(high, 0.04);
 }
 
+// A deviation that one or two pixels decide is hardly known itself: such samples move the belief less.
+TEST(BelievedError, TrustsFewDegreesOfFreedomLess) {
+    const auto believed = [](double degrees_of_freedom) {
+        const CertifiedError low = sampled(0.2e-4, 0.4e-4, degrees_of_freedom);
+        return believed_error(kModel, &low).error;
+    };
+    EXPECT_LT(believed(100.0), believed(1.0));
+    EXPECT_LT(believed(1.0), kModel.error);
+}
+
 TEST(BelievedError, IgnoresSamplesThatSayNothing) {
     const CertifiedError nothing;
     EXPECT_EQ(believed_error(kModel, &nothing).error, believed_error(kModel, nullptr).error);
@@ -56,11 +67,13 @@ TEST(BelievedError, IgnoresSamplesThatSayNothing) {
 TEST(BelievedError, ItsIntervalHoldsTheTruth) {
     std::mt19937 random(7);
     std::normal_distribution<double> normal;
+    std::student_t_distribution<double> student(3.0);
     int held = 0;
     constexpr int trials = 2000;
     for (int k = 0; k < trials; ++k) {
-        const double truth = kModel.error * std::exp(kModel.spread * normal(random));
-        const CertifiedError s = sampled(truth * truth + 2e-4 * normal(random), 2e-4, 100000);
+        const double truth = kModel.error * std::exp(kModel.spread * student(random));
+        const double deviation = std::max(2e-4, 0.05 * truth * truth);  // not finer than the steps of the belief
+        const CertifiedError s = sampled(truth * truth + deviation * normal(random), deviation, 100000);
         const BelievedError e = believed_error(kModel, &s);
         held += e.interval.low <= truth && truth <= e.interval.high;
     }

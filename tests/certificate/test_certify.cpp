@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <limits>
+#include <random>
 
 #include "certificate/certify.h"
 #include "core/parallel.h"
@@ -369,6 +371,29 @@ TEST(PixelSurvey, SumsAndTheirVariancesHaveNoBias) {
     const double spread = square - mean * mean;
     EXPECT_NEAR(mean, total, 4.0 * std::sqrt(spread / repeats));
     EXPECT_NEAR(variance / spread, 1.0, 4.0 * std::sqrt(2.0 / repeats));
+}
+
+// Strata whose pairs differ by as much count as so many; where one of them makes all of the variance it is known from
+// one difference. Of normally distributed ones the mean over 400 surveys has a standard error below 1.
+TEST(PixelSurvey, DegreesOfFreedomCountTheStrataThatMakeTheVariance) {
+    constexpr std::size_t kStrata = 100;
+    const auto degrees = [](const std::function<double(std::size_t)>& half) {
+        std::vector<double> a;
+        for (std::size_t k = 0; k < kStrata; ++k) {
+            a.push_back(half(k));
+            a.push_back(-half(k));
+        }
+        return surveyed_sums(a, a).degrees_of_freedom;
+    };
+    EXPECT_EQ(degrees([](std::size_t) { return 0.0; }), double(kStrata));
+    EXPECT_EQ(degrees([](std::size_t) { return 3.0; }), double(kStrata));
+    EXPECT_NEAR(degrees([](std::size_t k) { return k == 7 ? 1e6 : 1.0; }), 1.0, 1e-6);
+    std::mt19937 random(3);
+    std::normal_distribution<double> normal;
+    double mean = 0.0;
+    for (int k = 0; k < 400; ++k)
+        mean += degrees([&](std::size_t) { return normal(random); }) / 400.0;
+    EXPECT_GT(mean, 0.8 * double(kStrata));
 }
 
 TEST(PixelSurvey, OfNothingDrawsNothing) {

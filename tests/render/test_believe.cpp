@@ -64,7 +64,7 @@ TEST(Believe, AgreesWithTheCertificate) {
     EXPECT_GT(frame.statistics.believed_error["samples"].get<int>(), 1000);
     ASSERT_TRUE(picture["ratio"].is_number()) << picture.dump();
     EXPECT_GT(picture["ratio"].get<double>(), 0.5);
-    EXPECT_LT(picture["ratio"].get<double>(), 2.0);
+    EXPECT_LT(picture["ratio"].get<double>(), 2.0) << picture.dump();
 }
 
 TEST(Believe, APictureOfPathsHasItsStandardError) {
