@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace brisance {
 
@@ -102,11 +103,6 @@ void SurfaceRounds::measure(Pixel& p, std::span<const float> even, const Found& 
     p.variance = variance * float(p.quarters);
 }
 
-void SurfaceRounds::measure_all(std::span<const float> even, const Found& found) {
-    for (Pixel& p : pixels_)
-        measure(p, even, found);
-}
-
 // By the pixels around, as far as the rows of this call reach.
 SurfaceRounds::Wanted SurfaceRounds::wanted(const Pixel& own, float beside) const {
     const auto at = static_cast<int>(samples_[own.begin].pixel - origin_), width = static_cast<int>(width_);
@@ -139,7 +135,7 @@ std::vector<std::size_t> SurfaceRounds::second(std::span<const float> even, cons
                                                const SurfaceRounds* other) {
     if (pixels_.empty() || !splits_)
         return {};
-    measure_all(even, found);
+    std::ranges::for_each(pixels_, [&](Pixel& p) { measure(p, even, found); });
     std::vector<std::size_t> second;
     for (std::size_t k = 0; k < pixels_.size(); ++k) {
         Pixel& p = pixels_[k];
@@ -161,7 +157,7 @@ std::vector<std::size_t> SurfaceRounds::second(std::span<const float> even, cons
 std::vector<SurfaceRounds::Again> SurfaceRounds::further(std::span<const float> even, const Found& found) {
     if (pixels_.empty() || !splits_)
         return {};
-    measure_all(even, found);
+    std::ranges::for_each(pixels_, [&](Pixel& p) { measure(p, even, found); });
     std::vector<Again> again;
     for (Pixel& p : pixels_) {
         const auto [times, left] = wanted(p, 0.0f);
@@ -184,11 +180,7 @@ float SurfaceRounds::stands_for(std::size_t sample) const {
 }
 
 double SurfaceRounds::variance_left() const {
-    double sum = 0.0;
-    for (const Pixel& p : pixels_)
-        if (std::isfinite(p.left))
-            sum += double(p.left);
-    return sum;
+    return std::accumulate(pixels_.begin(), pixels_.end(), 0.0, [](double sum, const Pixel& p) { return sum + p.left; });
 }
 
 }  // namespace brisance

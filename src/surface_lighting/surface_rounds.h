@@ -82,7 +82,6 @@ private:
     };
     std::uint32_t quarter_of(std::size_t sample) const;
     void shade(Pixel& pixel, std::uint32_t quarters) const;
-    void measure_all(std::span<const float> even, const Found& found);
     void measure(Pixel& pixel, std::span<const float> even, const Found& found) const;
     // How many times as many samples the pixel wants; and the variance that those which it has leave.
     struct Wanted {
