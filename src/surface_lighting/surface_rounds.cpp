@@ -180,7 +180,8 @@ float SurfaceRounds::stands_for(std::size_t sample) const {
 }
 
 double SurfaceRounds::variance_left() const {
-    return std::accumulate(pixels_.begin(), pixels_.end(), 0.0, [](double sum, const Pixel& p) { return sum + p.left; });
+    return std::accumulate(pixels_.begin(), pixels_.end(), 0.0,
+                           [](double sum, const Pixel& p) { return sum + p.left; });
 }
 
 }  // namespace brisance
