@@ -74,21 +74,21 @@ void add_part(RaySum& sum, const SourceField& field, const Part& p) {
     sum.distance_sum += own.opacity * p.distance;
 }
 
-int parts_of(const SourceField& field, const VoxelSegment& s, float length) {
+int parts_of(const SourceField& field, const VoxelSegment& s) {
+    const auto length = static_cast<float>(s.end - s.begin);
     if (field.majorant(s.brick) * length <= kThickVoxel)
         return 1;
     const float depth = field.majorant_of_voxel(s.brick, s.cube) * length;
     return depth <= kThickVoxel ? 1 : (depth <= 2.0f * kThickVoxel ? kThickVoxelParts : kOpaqueVoxelParts);
 }
 
-// Visits the parts of a voxel until visit(distance of its point, length) returns false.
+// Visits a voxel's parts until visit(distance of its point, length) returns false.
 template <class Visit>
-bool visit_parts(const SourceField& field, const VoxelSegment& s, int parts, const Visit& visit) {
+bool visit_parts(const VoxelSegment& s, int parts, const Visit& visit) {
     const double length = s.end - s.begin;
-    const int n = std::max(parts, parts_of(field, s, static_cast<float>(length)));
-    const auto of_part = static_cast<float>(length / n);
-    for (int k = 0; k < n; ++k) {
-        const double t = s.begin + length * position_in_part(k, n);
+    const auto of_part = static_cast<float>(length / parts);
+    for (int k = 0; k < parts; ++k) {
+        const double t = s.begin + length * position_in_part(k, parts);
         if (!visit(t, of_part))
             return false;
     }
@@ -99,7 +99,7 @@ bool visit_parts(const SourceField& field, const VoxelSegment& s, int parts, con
 template <class Visit>
 void walk_parts(const SourceField& field, const Ray& ray, int parts, double end, const Visit& visit) {
     const auto visit_voxel = [&](const VoxelSegment& s) {
-        return visit_parts(field, s, parts, [&](double t, float length) {
+        return visit_parts(s, std::max(parts, parts_of(field, s)), [&](double t, float length) {
             const vec3 p = position_in_brick(s, t);
             Part part{field.sample(s.brick, p), field.sample_similar(s.brick, p), {}, length, static_cast<float>(t)};
             if (field.has_outside())
@@ -127,9 +127,11 @@ public:
         return count_ < kMost || add();
     }
     bool take(const SourceField& field, const VoxelSegment& s, int parts) {
-        if (parts == 2 && parts_of(field, s, static_cast<float>(s.end - s.begin)) == 1)
+        const int of_voxel = parts_of(field, s);
+        if (parts == 2 && of_voxel == 1)
             return take(0.5 * (s.begin + s.end), static_cast<float>(s.end - s.begin), true);
-        return visit_parts(field, s, parts, [&](double t, float length) { return take(t, length, false); });
+        return visit_parts(s, std::max(parts, of_voxel),
+                           [&](double t, float length) { return take(t, length, false); });
     }
     bool add() { return add_parts(ray_, emits_, parts_.data(), std::exchange(count_, 0), sums_); }
 

@@ -77,7 +77,7 @@ struct Places {
     }
 };
 
-// Half the distance between two Gauss points, over the length between which they lie.
+// Half the distance between the two Gauss points of a part, over its length.
 constexpr float kGaussOffset = 0.28867513f;
 
 // The records at the corners of a voxel, and trilinearly between them.

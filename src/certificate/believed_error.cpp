@@ -14,9 +14,6 @@ namespace {
 constexpr int kErrorSteps = 1401, kMiddleStep = kErrorSteps / 2;
 constexpr double kStep = 0.01;
 
-// Of the model's distribution.
-constexpr double kDegreesOfModel = 3.0;
-
 double error_at(const ExpectedError& expected, int k) {
     return expected.error * std::exp(kStep * (k - kMiddleStep));
 }

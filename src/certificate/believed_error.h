@@ -24,8 +24,9 @@ struct ExpectedError {
     double spread = 0.0;  // scale of the distribution of the error's logarithm; 0: the error is known
 };
 
-// Half the interval of the model alone, over its spread.
-constexpr double kHalfWidthOfModel = 3.182;
+// Degrees of freedom of the model's distribution, and half the interval of the model alone, over its spread: 95 % of
+// that distribution.
+constexpr double kDegreesOfModel = 3.0, kHalfWidthOfModel = 3.182;
 
 struct BelievedError {
     std::string cell;

@@ -22,7 +22,7 @@ struct CertifiedError {
     Interval mean_interval;
     double largest_share = 0.0;  // of the squared error's variance, from the pair of pixels that adds most
     double square_deviation = std::numeric_limits<double>::infinity();  // standard error of `square`
-    double degrees_of_freedom = 0.0;                                    // of that
+    double degrees_of_freedom = 0.0;  // of the survey of the squared differences that this is of
 };
 
 struct Certificate {

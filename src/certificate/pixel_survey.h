@@ -37,7 +37,8 @@ struct SurveyedSums {
     std::size_t strata = 0;
     double largest_share = 0.0;  // of `aa`, the greatest from one stratum
     // Of `aa`, about: `strata` where differences are normally distributed, down to 1 where one stratum makes all of it.
-    // After F. E. Satterthwaite, An Approximate Distribution of Estimates of Variance Components, Biometrics 1946.
+    // After F. E. Satterthwaite, An Approximate Distribution of Estimates of Variance Components, Biometrics 1946, such
+    // that both ends are right.
     double degrees_of_freedom = 0.0;
 };
 

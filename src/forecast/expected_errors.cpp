@@ -19,8 +19,8 @@ constexpr double kErrorOfLattice = 0.045, kErrorOfLatticeBefore = 0.0105, kError
 // Fire seen directly: the camera's samples, over lighting.error, which they follow; and beyond them voxels that hide
 // what burns in them.
 constexpr double kErrorOfRays = 0.12, kErrorOfBurningVoxels = 0.002;
-// Of light that surfaces and lamps send on or receive, as usual where their light is noise, or smoke is cut by a floor;
-// and of scattering methods with random samples: not modelled.
+// Of light that surfaces and lamps send on or receive, and of scattering methods with random samples: not modelled, but
+// as it often is in rooms and on floors.
 constexpr double kErrorOfSurfaces = 0.05, kErrorOfSurfacesOnSmoke = 0.1, kErrorOfOtherMethods = 0.05;
 
 // ExpectedError::spread of what the model knows, of fire seen directly, and of what it guesses.
@@ -35,6 +35,9 @@ double limited(double error) {
     return error / (1.0 + error);
 }
 
+// No cell's: errors of the picture that its light on surfaces has for want of samples.
+const std::string kNoiseOfShading = "noise of shading";
+
 const std::string kSeries = "orders of scattering on the coarse lattice";
 
 // A number that a stage noted; 0 where it did not run.
@@ -45,10 +48,10 @@ double noted(const Statistics& statistics, const std::string& stage, const char*
     return 0.0;
 }
 
-// What noise leaves in light that surfaces keep for themselves: the root of the sum of squares over pixels and channels
-// [W/(m^2 sr)].
-double error_of_shading(const Statistics& statistics) {
-    return noted(statistics, "camera", "error_of_shading");
+// What noise leaves on surfaces, over the picture, whose sum of squares is `all`.
+ExpectedError error_of_shading(const Statistics& statistics, double all) {
+    return {kNoiseOfShading, all > 0.0 ? noted(statistics, "camera", "error_of_shading") / std::sqrt(all) : 0.0,
+            kSpread};
 }
 
 // What noise leaves in light that pixels share: the root of the sum of squares over pixels and channels, which the
@@ -144,27 +147,32 @@ std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFra
         noted(statistics, lattice, "smoke_lattice_level"), noted(statistics, kSeries, "lattice_level"),
         noted(statistics, kSeries, "share_of_fine_bounces"), noted(statistics, kSeries, "estimated_remainder"));
     std::vector<ExpectedError> out(1);
-    const double shading = error_of_shading(statistics);
-    double errors = square(shading), spreads = square(errors * kSpread), light = 0.0;
+    const double all = sum_of_squares(image.layer(""));
+    double errors = 0.0, spreads = 0.0, light = 0.0;
+    const auto add = [&](ExpectedError& e, double part) {
+        if (change)
+            change(e);
+        const double error = part * square(e.error);
+        errors += error;
+        spreads += square(error * e.spread);
+    };
     for (const std::string& cell : frame.plan.cells())
         for (const Layer& layer : image.layers)
             if (const double part = layer.name == cell ? sum_of_squares(layer) : 0.0; part > 0.0) {
                 out.push_back(model.of(cell));
                 if (const double shared = error_of_shared(statistics, cell); shared > 0.0)
                     out.back().error = limited(std::hypot(out.back().error, shared / std::sqrt(part)));
-                if (change)
-                    change(out.back());
-                const double error = part * square(out.back().error);
-                errors += error;
-                spreads += square(error * out.back().spread);
+                add(out.back(), part);
                 light += part;
             }
+    ExpectedError shading = error_of_shading(statistics, all);
+    add(shading, all);
     // Errors of cells are taken to be independent, and each moves the picture's by the part of it that it makes. A
     // picture without layers of cells errs as its brightest scattering.
-    const double all = sum_of_squares(image.layer(""));
     if (all > 0.0)
-        out[0] = light > 0.0 && errors > 0.0 ? ExpectedError{"", std::sqrt(errors / all), std::sqrt(spreads) / errors}
-                                             : model.of(brightest(frame.plan));
+        out[0] = light > 0.0
+                     ? ExpectedError{"", std::sqrt(errors / all), errors > 0.0 ? std::sqrt(spreads) / errors : 0.0}
+                     : model.of(brightest(frame.plan));
     out[0].cell.clear();
     return out;
 }

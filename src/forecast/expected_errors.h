@@ -29,7 +29,8 @@ struct ModelledFrame {
 };
 
 // Of a finished picture and of its cells, the picture first. A black picture has an expected error of 0. `change`: of
-// what the model expects of a cell, where more is known; empty: nothing is.
+// what the model expects of a cell, where more is known, and of the noise on surfaces, which is no cell's; empty:
+// nothing is.
 std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFrame& frame, const Statistics& statistics,
                                            const std::function<void(ExpectedError&)>& change = {});
 

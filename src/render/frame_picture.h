@@ -38,7 +38,8 @@ public:
     // What noise leaves in light that pixels share, as expected from its samples: of each cell, the root of the sum of
     // squares over all pixels and channels.
     nlohmann::ordered_json errors_of_shared() const;
-    // The same of light that surfaces keep for themselves, of all cells together.
+    // The same of light on surfaces that pixels do not share, of all cells together; with the little that is expected
+    // of shared light before it is shared.
     double error_of_shading() const;
     const PathLengths* path_lengths() const { return lengths_ ? &*lengths_ : nullptr; }
 

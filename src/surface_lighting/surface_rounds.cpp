@@ -180,8 +180,9 @@ float SurfaceRounds::stands_for(std::size_t sample) const {
 }
 
 double SurfaceRounds::variance_left() const {
-    return std::accumulate(pixels_.begin(), pixels_.end(), 0.0,
-                           [](double sum, const Pixel& p) { return sum + p.left; });
+    return std::accumulate(pixels_.begin(), pixels_.end(), 0.0, [](double sum, const Pixel& p) {
+        return std::isfinite(p.left) ? sum + double(p.left) : sum;
+    });
 }
 
 }  // namespace brisance

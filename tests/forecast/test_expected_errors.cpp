@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 #include "fixtures/media.h"
 #include "forecast/expected_errors.h"
@@ -27,9 +28,9 @@ protected:
         r.settings.smoke.albedo = Rgb(0.8f);
         medium = testing::make_medium(r);
     }
-    std::vector<ExpectedError> of(const Image& image) const {
+    std::vector<ExpectedError> of(const Image& image, const std::function<void(ExpectedError&)>& change = {}) const {
         const Plan plan = plan_cells(shot, medium);
-        return expected_errors(image, {shot, medium, plan}, statistics);
+        return expected_errors(image, {shot, medium, plan}, statistics, change);
     }
 
     Shot shot;
@@ -58,6 +59,19 @@ TEST_F(ExpectedErrors, OfThePictureHoldTheNoiseOfShading) {
     const double without = of(image)[0].error;
     statistics.stages.push_back({"camera", 1.0, 0, {{"error_of_shading", std::sqrt(6.0) * 0.03}}});
     EXPECT_NEAR(of(image)[0].error, std::hypot(without, 0.03), 1e-6);
+}
+
+// Corrections ask for the part of each cell by itself: it holds no noise of shading, and a black cell has none.
+TEST_F(ExpectedErrors, OfOneCellAloneHoldNothingElse) {
+    const Image image = picture_of({{"V", 1.0f}, {"MM", 0.8f}});
+    statistics.stages.push_back({"camera", 1.0, 0, {{"error_of_shading", 0.1}}});
+    const auto alone = [&](const std::string& cell) {
+        return of(image, [&](ExpectedError& e) { e.error = e.cell == cell ? e.error : 0.0; })[0].error;
+    };
+    const std::vector<ExpectedError> errors = of(image);
+    EXPECT_NEAR(alone("V"), errors[1].error / 1.8, 1e-6);
+    EXPECT_NEAR(alone("MM"), 0.8 * errors[2].error / 1.8, 1e-6);
+    EXPECT_EQ(alone("MV"), 0.0);
 }
 
 TEST(AsSolved, IsTheLatticeThatTheFrameTook) {
