@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace brisance {
 
@@ -180,9 +179,10 @@ float SurfaceRounds::stands_for(std::size_t sample) const {
 }
 
 double SurfaceRounds::variance_left() const {
-    return std::accumulate(pixels_.begin(), pixels_.end(), 0.0, [](double sum, const Pixel& p) {
-        return std::isfinite(p.left) ? sum + double(p.left) : sum;
-    });
+    double sum = 0.0;
+    for (const Pixel& p : pixels_)
+        sum += std::isfinite(p.left) ? double(p.left) : 0.0;
+    return sum;
 }
 
 }  // namespace brisance

@@ -78,8 +78,7 @@ public:
 
     // What it finds about planes is kept for the next call.
     void shade(const std::vector<SurfaceSample>& samples, std::vector<CellSum>& light);
-    // Of all pixels and channels so far, the expected sum of squares of the noise that rounds leave, as if all were
-    // grey.
+    // Of all pixels and channels so far: expected sum of squares of the noise that rounds leave, taken to be grey.
     double square_error() const { return 3.0 * variance_left_; }
 
 private:
