@@ -20,8 +20,7 @@ constexpr std::size_t kSamplesAtOnce = 256;
 // Of samples that are shaded once more: their points are large.
 constexpr std::size_t kAgainAtOnce = 1 << 15;
 
-// Above the passes of the picture, in SurfaceSample::number.
-constexpr int kPassesOfPixel = 48;
+constexpr int kPassesOfPixel = 48;  // above the passes of the picture, in SurfaceSample::number
 
 // What a puddle shows of a window is followed to what the window shows. Beyond that, paths find it.
 constexpr int kMostReflections = 2;
