@@ -87,7 +87,8 @@ public:
     using Lanes = RecordLanes<kSize>;
     using V = typename Lanes::V;
 
-    HWY_INLINE Corners(const float* records, int first) {
+    // Of the voxel whose first node that is.
+    HWY_INLINE void load(const float* records, int first) {
         constexpr int kRows[4] = {0, kRecordsAside, kRecordsAside * kRecordsAside, kRecordsAside * (kRecordsAside + 1)};
         for (int r = 0; r < 4; ++r) {
             low_[r].load(records + (first + kRows[r]) * kSize);
@@ -170,13 +171,17 @@ private:
 template <bool kOutside, bool kEmits>
 HWY_INLINE void add_part(const RayInBrick& ray, const RayPart& part, const Places& places, std::size_t at,
                          Sums<kOutside, kEmits>& sums) {
-    const Corners<SourceRecord::Size> own(ray.own->value, places.first[at]);
+    Corners<SourceRecord::Size> own;
+    own.load(ray.own->value, places.first[at]);
+    Corners<SurroundingsRecord::Size> outside;
+    if constexpr (kOutside)
+        outside.load(ray.outside->value, places.first[at]);
     const vec3 middle(places.x[at], places.y[at], places.z[at]);
     const auto add = [&](float offset, float length) HWY_ATTR {
         const vec3 p = middle + offset * ray.per_metre;
         RecordLanes<SurroundingsRecord::Size> around;
         if constexpr (kOutside)
-            around = Corners<SurroundingsRecord::Size>(ray.outside->value, places.first[at]).at(p);
+            around = outside.at(p);
         sums.add(own.at(p), around, length, ray.distance + part.along + offset);
     };
     if (part.splits)
