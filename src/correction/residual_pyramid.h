@@ -41,17 +41,19 @@ struct ResidualEnergy {
     // Of a pixel between two octaves each takes its share, of the variance, too: that is a little more than it has.
     void add(const ResidualEnergy& other, double share);
     // As if there were so many times the samples: the part of the residual's square that is hardly chance, and the gain
-    // of least square error, from 0 to 1.
+    // of least square error, from 0 to 1, if the noise counts for so much.
     double known(double samples = 1.0) const;
-    double gain(double samples = 1.0) const;
+    double gain(double samples = 1.0, double noise_counts = 1.0) const;
     // The root of the former, over that of the weight's square.
     double relative() const;
 };
 
 struct ResidualBand {
     std::vector<ResidualEnergy> octaves;  // of the weight's square, the largest first
+    double noise_counts = 1.0;            // beside the residual, as bands overlap
     ResidualEnergy sum() const;
-    // What gains would leave of the residual's square with so many times the samples, noise included.
+    // What gains would leave of the residual's square with so many times the samples, noise included: rather too much,
+    // as bands overlap.
     double left(double samples = 1.0) const;
     // The part that they take away.
     double gain() const;

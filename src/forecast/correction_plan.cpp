@@ -9,7 +9,11 @@ namespace {
 
 // Errors from which on samples take nothing of a frame's time, and as much as they may.
 constexpr float kNoSamples = 0.02f, kAllSamples = 0.015f;
-constexpr double kMostShare = 3.0, kUsualShare = 2.0;
+// The least error that lights are built for beside samples. Finer ones would take hours, and keep some of it.
+constexpr float kFinestLights = 0.01f;
+constexpr double kMostShare = 8.0;
+// Of the latter at kUsualError. Noise falls with the root of the samples.
+constexpr double kUsualShare = 3.0, kUsualError = 0.01;
 
 // Pixels of the pilot that tells what a sample costs.
 constexpr std::size_t kPilot = 512;
@@ -31,7 +35,7 @@ double part_of_share(const Shot& shot, const Plan& plan) {
 
 float error_of_lights(const Shot& shot, const Plan& plan) {
     const float asked = shot.lighting.error;
-    return is_automatic(shot, plan) ? std::max(asked, std::min(kNoSamples, 2.0f * asked)) : asked;
+    return is_automatic(shot, plan) ? std::max(asked, std::clamp(2.0f * asked, kFinestLights, kNoSamples)) : asked;
 }
 
 Shot shot_of_lights(Shot shot, const Plan& plan) {
@@ -44,7 +48,8 @@ double most_of_correction(const Shot& shot, const Plan& plan) {
 }
 
 double usual_correction(const Shot& shot, const Plan& plan) {
-    return kUsualShare * part_of_share(shot, plan);
+    const double usual = kUsualShare * std::pow(kUsualError / shot.lighting.error, 2.0);
+    return part_of_share(shot, plan) * std::min(usual, kMostShare);
 }
 
 double corrected_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan,

@@ -2,10 +2,10 @@
 //
 // Below some hundredths the error of lighting grids falls slowly: half the error takes several times as long, and some
 // of it stays. Samples of what the picture misses are cheaper there. With correction.samples=auto the lights are
-// therefore built for an error of 0.02, or for twice that which is asked where that is less, and samples follow until
-// the picture is expected to err as little as is asked. They may take up to three times as long as the picture; between
-// 0.02 and 0.015 that share falls to nothing. Only frames whose time is known within a factor of three
-// (grid_is_estimated()) are corrected so: of others it is not known whether samples would tell anything.
+// therefore built for an error of 0.02, or for twice that which is asked where that is less (but not below 0.01), and
+// samples follow until the picture is expected to err as little as is asked. They may take up to eight times as long as
+// the picture; between 0.02 and 0.015 that share falls to nothing. Only frames whose time is known within a factor of
+// three (grid_is_estimated()) are corrected so: of others it is not known whether samples would tell anything.
 #pragma once
 
 #include <cstddef>

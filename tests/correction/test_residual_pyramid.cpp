@@ -57,7 +57,7 @@ TEST(ResidualPyramid, FindsASmoothResidualBelowItsNoise) {
     // Mean squares: the residual's 0.5, of the noise in the mean of both estimates 4.5.
     const SmoothResidual smooth = smooth_residual(residual(1.0f, 3.0f));
     const double error = mean_square(smooth.values, 1.0f);
-    EXPECT_LT(error, 0.125);                      // half the error (measured: 0.088)
+    EXPECT_LT(error, 0.08);                       // measured: 0.072, and 0.088 if bands were taken to be apart
     EXPECT_LT(smooth.bands.front().gain(), 0.1);  // single pixels are noise
     double left = 0.0;
     for (const ResidualBand& band : smooth.bands)
