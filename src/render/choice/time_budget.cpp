@@ -29,8 +29,8 @@ constexpr std::array<Step, 6> kGridSteps = {{{0.1f, 1.0f, 1.0f},
                                              {0.05f, 1.0f, 1.0f},
                                              {0.03f, 1.5f, 1.25f},
                                              {0.02f, 2.0f, 1.5f},
-                                             {0.02f, 2.0f, 1.5f, 0.3, 1.5},
-                                             {0.01f, 3.0f, 2.0f, 1.5, 8.0}}};
+                                             {0.02f, 2.0f, 1.5f, 0.3, 20.0},
+                                             {0.01f, 3.0f, 2.0f, 1.5, 20.0}}};
 
 // Forecasts of the lighting grid are up to 30 % too low (docs/numbers.md).
 constexpr double kMargin = 1.3;
