@@ -11,9 +11,9 @@ namespace {
 constexpr float kNoSamples = 0.02f, kAllSamples = 0.015f;
 // The least error that lights are built for beside samples. Finer ones would take hours, and keep some of it.
 constexpr float kFinestLights = 0.01f;
-constexpr double kMostShare = 8.0;
-// Of the latter at kUsualError. Noise falls with the root of the samples.
-constexpr double kUsualShare = 3.0, kUsualError = 0.01;
+// Seconds of samples over those of the picture: at most, and as they usually are where kUsualError is asked. The square
+// of what noise leaves falls with their number.
+constexpr double kMostShare = 8.0, kUsualShare = 3.0, kUsualError = 0.01;
 
 // Pixels of the pilot that tells what a sample costs.
 constexpr std::size_t kPilot = 512;
