@@ -52,8 +52,8 @@ struct ResidualBand {
     std::vector<ResidualEnergy> octaves;  // of the weight's square, the largest first
     double noise_counts = 1.0;            // beside the residual, as bands overlap
     ResidualEnergy sum() const;
-    // What gains would leave of the residual's square with so many times the samples, noise included: rather too much,
-    // as bands overlap.
+    // What gains would leave of the residual's square with so many times the samples, noise included. As bands overlap,
+    // of a smooth residual it is up to a third too little, and of noise too much.
     double left(double samples = 1.0) const;
     // The part that they take away.
     double gain() const;
