@@ -1,8 +1,8 @@
 #include "certificate/pixel_survey.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <numeric>
 
 #include "core/rng.h"
 
@@ -10,28 +10,41 @@ namespace brisance {
 
 namespace {
 
-std::uint64_t spread_bits(std::uint64_t x) {
-    x &= 0xffff;
-    x = (x | x << 8) & 0x00ff00ff;
-    x = (x | x << 4) & 0x0f0f0f0f;
-    x = (x | x << 2) & 0x33333333;
-    return (x | x << 1) & 0x55555555;
-}
+// Pixels that may be drawn, along a Z-order curve through the picture.
+class ZOrder {
+public:
+    ZOrder(const std::vector<double>& size, int width)
+        : size_(size), columns_(std::size_t(width)), rows_(size.size() / columns_) {
+        add_square(0, 0, std::bit_ceil(std::max(columns_, rows_)));
+    }
+    const std::vector<std::size_t>& pixels() const { return pixels_; }
 
-std::vector<std::size_t> z_order(std::size_t pixels, int width) {
-    std::vector<std::size_t> order(pixels);
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto curve_index = [width](std::size_t p) { return spread_bits(p % width) | spread_bits(p / width) << 1; };
-    std::sort(order.begin(), order.end(),
-              [&](std::size_t a, std::size_t b) { return curve_index(a) < curve_index(b); });
-    return order;
-}
+private:
+    void add_square(std::size_t x, std::size_t y, std::size_t side) {
+        if (x >= columns_ || y >= rows_)
+            return;
+        if (side == 1) {
+            if (size_[y * columns_ + x] > 0.0)
+                pixels_.push_back(y * columns_ + x);
+            return;
+        }
+        const std::size_t half = side / 2;
+        for (const std::size_t down : {std::size_t{0}, half})
+            for (const std::size_t right : {std::size_t{0}, half})
+                add_square(x + right, y + down, half);
+    }
+
+    const std::vector<double>& size_;
+    std::size_t columns_, rows_;
+    std::vector<std::size_t> pixels_;
+};
 
 }  // namespace
 
 PixelSurvey::PixelSurvey(const std::vector<double>& size, int width, std::size_t draws, std::uint64_t seed) {
-    const std::vector<std::size_t> order = z_order(size.size(), width);
-    std::vector<double> upto(size.size());
+    const ZOrder curve(size, width);
+    const std::vector<std::size_t>& order = curve.pixels();
+    std::vector<double> upto(order.size());
     double total = 0.0;
     for (std::size_t k = 0; k < order.size(); ++k)
         upto[k] = total += size[order[k]];

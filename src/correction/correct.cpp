@@ -42,7 +42,7 @@ std::vector<float> weights_of(const EstimatedLayer& layer, std::size_t pixels) {
     std::vector<float> out(pixels, 0.0f);
     for (std::size_t p = 0; p < pixels; ++p)
         if (const float shown = luminance(Rgb(layer.pixel(p))); std::isfinite(shown) && shown > 0.0f)
-            out[p] = std::pow(shown, 0.75f);
+            out[p] = std::sqrt(shown * std::sqrt(shown));  // power 3/4
     return out;
 }
 
@@ -132,11 +132,20 @@ double CorrectedLayer::found() const {
 double CorrectedLayer::left(double error, double samples) const {
     if (!(square > 0.0))
         return error;
-    double left = 0.0;
+    double levels = 0.0, all = 0.0, left = 0.0;
     for (const ResidualBand& band : bands)
-        left += band.left(samples);
-    const double found_square = found() * found();
-    return std::sqrt(std::min(left / square, found_square) + std::max(error * error - found_square, 0.0));
+        levels += band.levels;
+    for (const ResidualBand& band : bands) {
+        ResidualEnergy energy = band.sum();
+        const double expected = band.levels / levels * error * error * square, spread = expected * expected;
+        const double both = spread + energy.variance;
+        energy.residual =
+            both > 0.0 ? std::max(0.0, (spread * energy.residual + energy.variance * expected) / both) : 0.0;
+        const double gain = energy.gain(samples);
+        all += energy.residual;
+        left += (1.0 - gain) * (1.0 - gain) * energy.residual + gain * gain * energy.noise / samples;
+    }
+    return all > 0.0 ? error * std::sqrt(left / all) : error;
 }
 
 const CorrectedLayer* Correction::of(const std::string& cell) const {
@@ -193,28 +202,34 @@ void Corrector::survey(std::size_t samples, const std::function<void(std::size_t
     }
     samples_ += draws.size();
     ++surveys_;
+    for (NoisyResidual& sum : sums_)
+        sum.divisor = sum.samples = double(samples_);
 }
 
-SmoothResidual Corrector::smooth(std::size_t layer) const {
-    NoisyResidual mean = sums_[layer];
-    for (std::vector<Rgb>& estimate : mean.estimates)
-        for (Rgb& sum : estimate)
-            sum /= float(samples_);
-    return smooth_residual(std::move(mean));
+CorrectedLayer Corrector::of(std::size_t layer, std::vector<ResidualBand> bands) const {
+    return {layers_[layer].layer->name, std::move(bands), squares_[layer]};
 }
 
-Correction Corrector::measured() const {
+SmoothResidual Corrector::smooth(std::size_t layer, const BelievableError& believable) const {
+    if (!believable)
+        return smooth_residual(sums_[layer]);
+    return smooth_residual(sums_[layer], [&](const std::vector<ResidualBand>& bands) {
+        return squares_[layer] * std::pow(believable(of(layer, bands)), 2.0);
+    });
+}
+
+Correction Corrector::measured(const BelievableError& believable) const {
     Correction out{samples_, not_finite_, {}};
     for (std::size_t k = 0; k < layers_.size() && samples_ > 0; ++k)
-        out.layers.push_back({layers_[k].layer->name, smooth(k).bands, squares_[k]});
+        out.layers.push_back(of(k, smooth(k, believable).bands));
     return out;
 }
 
-Correction Corrector::correct() {
+Correction Corrector::correct(const BelievableError& believable) {
     Correction out{samples_, not_finite_, {}};
     for (std::size_t k = 0; k < layers_.size() && samples_ > 0; ++k) {
-        SmoothResidual residual = smooth(k);
-        out.layers.push_back({layers_[k].layer->name, std::move(residual.bands), squares_[k]});
+        SmoothResidual residual = smooth(k, believable);
+        out.layers.push_back(of(k, std::move(residual.bands)));
         add_residual(residual.values, layers_[k].layer->name, image_);
     }
     return out;

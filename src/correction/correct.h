@@ -36,8 +36,10 @@ struct CorrectedLayer {
     CertifiedError before() const;
     // The part of it that is above zero in each band.
     double found() const;
-    // What should be left of an error of the layer, relative to it, or would be with so many times the samples. What
-    // the samples have not found of it is detail below their noise, which stays.
+    // What should be left of an error of the layer, relative to it, or would be with so many times the samples. Few
+    // samples hardly tell which bands have it: without them it is taken to be alike in all octaves of wavelength, give
+    // or take as much, and what they measured counts by its variance beside that. Gains are those that such a residual
+    // would have.
     double left(double error, double samples = 1.0) const;
 };
 
@@ -47,6 +49,9 @@ struct Correction {
     const CorrectedLayer* of(const std::string& cell) const;
 };
 
+// The relative error that can be believed of a layer before its correction; empty: all that its samples say.
+using BelievableError = std::function<double(const CorrectedLayer&)>;
+
 class Corrector {
 public:
     // Keeps references. `surroundings`: that of the tracers, whether there is one.
@@ -55,9 +60,9 @@ public:
     // About as many samples more; none of a black picture. The bits do not depend on the number of threads.
     void sample(std::size_t samples, Progress& progress);
     // What they would do.
-    Correction measured() const;
+    Correction measured(const BelievableError& believable = {}) const;
     // Does it, once.
-    Correction correct();
+    Correction correct(const BelievableError& believable = {});
 
     // What it needs besides the picture, of which it corrects so many layers.
     static std::uint64_t bytes_of(int width, int height, std::size_t layers, std::size_t samples);
@@ -65,7 +70,8 @@ public:
 private:
     void survey(std::size_t samples, const std::function<void(std::size_t)>& drawn);
     void add(const PixelSurvey::Draw& draw, bool second, const PathSum& found);
-    SmoothResidual smooth(std::size_t layer) const;
+    SmoothResidual smooth(std::size_t layer, const BelievableError& believable) const;
+    CorrectedLayer of(std::size_t layer, std::vector<ResidualBand> bands) const;
 
     Image& image_;
     const MomentTracers& tracers_;

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/parallel.h"
+#include "correction/plane.h"
 
 namespace brisance {
 
@@ -18,73 +18,16 @@ constexpr int kCoarsest = 4;
 // Octaves of the weight's square that are told apart, below the largest.
 constexpr std::size_t kOctaves = 16;
 
+// A sample's noise is some ten times as large as what pictures miss: a band whose pixels have fewer samples would tell
+// nothing, and takes time.
+constexpr double kFewestSamples = 1.0;
+
 // A residual is known as far as it exceeds so many standard deviations.
 constexpr double kDeviations = 2.0;
 
 // Bands overlap: but for the finest, each holds less of the residual, and more of the noise, than the picture loses or
 // gains by it. Ratios of residuals of any wavelength from 4 pixels to 64 (1.4 to 1.6) and of white noise.
 constexpr double kResidualOfOverlap = 1.5, kNoiseOfOverlap = 0.58;
-
-template <class T>
-struct Plane {
-    int width = 0, height = 0;
-    std::vector<T> values;
-    Plane() = default;
-    Plane(int w, int h) : width(w), height(h), values(std::size_t(w) * std::size_t(h), T(0.0f)) {}
-    T* row(int y) { return values.data() + std::size_t(y) * std::size_t(width); }
-    const T* row(int y) const { return values.data() + std::size_t(y) * std::size_t(width); }
-};
-
-template <class Body>
-void for_rows(int rows, const Body& body) {
-    parallel_for(
-        std::size_t(rows), [&](std::size_t y) { body(static_cast<int>(y)); }, 8);
-}
-
-int half_of(int size) {
-    return (size + 1) / 2;
-}
-
-// Binomial weights over five pixels, nothing beyond the border; every second pixel.
-template <class T>
-Plane<T> reduced(const Plane<T>& from) {
-    constexpr float kBinomial[] = {1.0f / 16.0f, 4.0f / 16.0f, 6.0f / 16.0f, 4.0f / 16.0f, 1.0f / 16.0f};
-    Plane<T> narrow(half_of(from.width), from.height), out(half_of(from.width), half_of(from.height));
-    for_rows(narrow.height, [&](int y) {
-        for (int x = 0; x < narrow.width; ++x)
-            for (int k = -2; k <= 2; ++k)
-                if (const int at = 2 * x + k; at >= 0 && at < from.width)
-                    narrow.row(y)[x] += kBinomial[k + 2] * from.row(y)[at];
-    });
-    for_rows(out.height, [&](int y) {
-        for (int k = -2; k <= 2; ++k)
-            if (const int at = 2 * y + k; at >= 0 && at < from.height)
-                for (int x = 0; x < out.width; ++x)
-                    out.row(y)[x] += kBinomial[k + 2] * narrow.row(at)[x];
-    });
-    return out;
-}
-
-// The inverse of halving: a smooth curve near the values of the coarse level, by the same weights.
-template <class T>
-Plane<T> expanded(const Plane<T>& from, int width, int height) {
-    const auto between = [](int x, int count, const auto& at) {
-        const int i = std::min(x / 2, count - 1), next = std::min(i + 1, count - 1);
-        if (x % 2 == 1)
-            return 0.5f * (at(i) + at(next));
-        return 0.75f * at(i) + 0.125f * (at(std::max(i - 1, 0)) + at(next));
-    };
-    Plane<T> wide(width, from.height), out(width, height);
-    for_rows(wide.height, [&](int y) {
-        for (int x = 0; x < width; ++x)
-            wide.row(y)[x] = between(x, from.width, [&](int i) { return from.row(y)[i]; });
-    });
-    for_rows(height, [&](int y) {
-        for (int x = 0; x < width; ++x)
-            out.row(y)[x] = between(y, from.height, [&](int i) { return wide.row(i)[x]; });
-    });
-    return out;
-}
 
 // One level of the pyramid: sums of the residual and of the weight, then their quotients.
 struct Level {
@@ -122,17 +65,21 @@ private:
     float largest_;
 };
 
+// Of a pixel with two estimates, whose weight has so large a square.
+ResidualEnergy energy_of(const Rgb& a, const Rgb& b, double square = 1.0) {
+    const Rgb half = 0.5f * (a - b);
+    const double noise = square * glm::dot(half, half);
+    // Of noise with a variance s of each estimate, a b has the variance s^2, and (a - b)^4 / 16 the mean 3 s^2 / 4.
+    return {square * glm::dot(a, b), noise, 4.0 / 3.0 * noise * noise, square};
+}
+
 // Of one of the band's pixels, which stands for `pixels` of the finest level.
 ResidualEnergy energy_at(const Level& band, int x, int y, double pixels) {
-    const Rgb &a = band.estimates[0].row(y)[x], &b = band.estimates[1].row(y)[x];
-    const Rgb half = 0.5f * (a - b);
-    const double square = band.square.row(y)[x], noise = pixels * square * glm::dot(half, half);
-    // Of noise with a variance s of each estimate, a b has the variance s^2, and (a - b)^4 / 16 the mean 3 s^2 / 4.
-    return {pixels * square * glm::dot(a, b), noise, 4.0 / 3.0 * noise * noise, pixels * square};
+    return energy_of(band.estimates[0].row(y)[x], band.estimates[1].row(y)[x], pixels * band.square.row(y)[x]);
 }
 
 // Summed in a fixed order.
-ResidualBand energy_of(const Level& band, double pixels) {
+ResidualBand energy_of(const Level& band, double pixels, bool finest) {
     const std::vector<ResidualEnergy> none(kOctaves);
     std::vector<std::vector<ResidualEnergy>> rows(std::size_t(band.square.height), none);
     const Octaves octaves(band);
@@ -144,7 +91,9 @@ ResidualBand energy_of(const Level& band, double pixels) {
             rows[std::size_t(y)][first + 1].add(energy, second);
         }
     });
-    ResidualBand sum{none, pixels > 1.0 ? kNoiseOfOverlap / kResidualOfOverlap : 1.0};
+    ResidualBand sum{none};
+    if (!finest)
+        sum = {none, kResidualOfOverlap, kNoiseOfOverlap};
     for (const std::vector<ResidualEnergy>& row : rows)
         for (std::size_t k = 0; k < row.size(); ++k)
             sum.octaves[k].add(row[k], 1.0);
@@ -169,7 +118,7 @@ void add_band(Plane<Rgb>& sum, const Level& band, const ResidualBand& energy) {
     constexpr double kMost = 4.0;
     std::vector<float> gains, limits;
     for (const ResidualEnergy& octave : energy.octaves) {
-        gains.push_back(float(octave.gain(1.0, energy.noise_counts)));
+        gains.push_back(float(octave.gain(1.0, energy.noise_counts / energy.residual_counts)));
         limits.push_back(float(kMost * octave.relative()) / (1.0f - gains.back()));
     }
     const Octaves octaves(band);
@@ -187,20 +136,102 @@ void add_band(Plane<Rgb>& sum, const Level& band, const ResidualBand& energy) {
     });
 }
 
-std::vector<Level> pyramid(NoisyResidual residual) {
-    std::vector<Level> levels(1);
-    for (int k = 0; k < 2; ++k) {
-        levels[0].estimates[k] = Plane<Rgb>(residual.width, residual.height);
-        levels[0].estimates[k].values = std::move(residual.estimates[k]);
+// What is in all levels before the first that is told apart, as one band of which nothing is known: the square of all
+// less that in the other bands.
+ResidualBand band_before(const ResidualEnergy& all, std::size_t levels, const std::vector<ResidualBand>& bands) {
+    ResidualBand out{{all}, 1.0, 1.0, double(levels)};
+    for (const ResidualBand& band : bands)
+        out.octaves[0].residual -= band.sum().residual;
+    out.octaves[0].believed = 0.0;
+    return out;
+}
+
+// Of the residual itself, not divided into bands.
+ResidualEnergy energy_of(const NoisyResidual& residual) {
+    const double square = 1.0 / (residual.divisor * residual.divisor);
+    std::vector<ResidualEnergy> rows(std::size_t(residual.height));
+    for_rows(residual.height, [&](int y) {
+        for (std::size_t p = std::size_t(y) * residual.width; p < std::size_t(y + 1) * residual.width; ++p)
+            rows[std::size_t(y)].add(energy_of(residual.estimates[0][p], residual.estimates[1][p], square), 1.0);
+    });
+    ResidualEnergy sum;
+    for (const ResidualEnergy& row : rows)
+        sum.add(row, 1.0);
+    return sum;
+}
+
+// No more than so much of what they seem to know.
+void believe(double square, std::vector<ResidualBand>& bands) {
+    double known = 0.0;
+    for (const ResidualBand& band : bands)
+        known += band.known();
+    if (!(known > square))
+        return;
+    for (ResidualBand& band : bands)
+        for (ResidualEnergy& octave : band.octaves)
+            octave.believed = square / known;
+}
+
+// The finest level whose pixels have enough samples.
+std::size_t first_level(const NoisyResidual& residual) {
+    const auto lit = double(std::ranges::count_if(residual.weight, [](float w) { return w > 0.0f; }));
+    std::size_t first = 0;
+    int shorter = std::min(residual.width, residual.height);
+    for (double pixels = 1.0; shorter >= kCoarsest && residual.samples * pixels < kFewestSamples * lit; pixels *= 4.0) {
+        shorter = half_of(shorter);
+        ++first;
     }
-    levels[0].weight = Plane<float>(residual.width, residual.height);
-    levels[0].square = levels[0].weight;
-    levels[0].weight.values = std::move(residual.weight);
-    std::ranges::transform(levels[0].weight.values, levels[0].square.values.begin(), [](float w) { return w * w; });
+    return first;
+}
+
+void divide(Plane<Rgb>& plane, double by) {
+    for (Rgb& value : plane.values)
+        value /= float(by);
+}
+
+Level finest_level(const NoisyResidual& residual) {
+    Level out;
+    for (int k = 0; k < 2; ++k) {
+        out.estimates[k] = Plane<Rgb>(residual.width, residual.height);
+        out.estimates[k].values = residual.estimates[k];
+    }
+    out.weight = Plane<float>(residual.width, residual.height);
+    out.square = out.weight;
+    out.weight.values = residual.weight;
+    std::ranges::transform(residual.weight, out.square.values.begin(), [](float w) { return w * w; });
+    return out;
+}
+
+// Without the finest, of which only the size is known.
+Level second_level(const NoisyResidual& residual) {
+    const auto of = [&](const auto& value) {
+        return brisance::reduced(residual.width, residual.height, [&](int x, int y) {
+            return value(std::size_t(y) * std::size_t(residual.width) + std::size_t(x));
+        });
+    };
+    const auto estimate = [&](int k) { return of([&](std::size_t p) { return residual.estimates[k][p]; }); };
+    return {{estimate(0), estimate(1)}, of([&](std::size_t p) { return residual.weight[p]; }), of([&](std::size_t p) {
+                return residual.weight[p] * residual.weight[p];
+            })};
+}
+
+// Of the residual as it is, from a level on; finer ones have a size alone.
+std::vector<Level> pyramid(const NoisyResidual& residual, std::size_t first) {
+    std::vector<Level> levels;
+    if (first == 0) {
+        levels.push_back(finest_level(residual));
+    } else {
+        levels.emplace_back();
+        levels[0].weight.width = residual.width;
+        levels[0].weight.height = residual.height;
+        levels.push_back(second_level(residual));
+    }
+    for (Plane<Rgb>& estimate : levels.back().estimates)
+        divide(estimate, residual.divisor);
     while (std::min(levels.back().weight.width, levels.back().weight.height) >= kCoarsest)
         levels.push_back(reduced(levels.back()));
-    for (Level& level : levels)
-        divide_by_weight(level);
+    for (std::size_t k = first; k < levels.size(); ++k)
+        divide_by_weight(levels[k]);
     return levels;
 }
 
@@ -215,7 +246,7 @@ void ResidualEnergy::add(const ResidualEnergy& other, double share) {
 
 double ResidualEnergy::known(double samples) const {
     const double chance = kDeviations * kDeviations * variance / (samples * samples);
-    return residual > 0.0 ? std::max(residual - chance / residual, 0.0) : 0.0;
+    return residual > 0.0 ? believed * std::max(residual - chance / residual, 0.0) : 0.0;
 }
 
 double ResidualEnergy::gain(double samples, double noise_counts) const {
@@ -231,17 +262,27 @@ ResidualEnergy ResidualBand::sum() const {
     ResidualEnergy out;
     for (const ResidualEnergy& octave : octaves)
         out.add(octave, 1.0);
+    out.residual *= residual_counts;
+    out.variance *= residual_counts * residual_counts;
+    out.noise *= noise_counts;
     return out;
 }
 
+double ResidualBand::known() const {
+    double sum = 0.0;
+    for (const ResidualEnergy& octave : octaves)
+        sum += residual_counts * octave.known();
+    return sum;
+}
+
 double ResidualBand::left(double samples) const {
-    double left = 0.0, noise = 0.0;
+    double left = 0.0, of_noise = 0.0;
     for (const ResidualEnergy& octave : octaves) {
-        const double gain = octave.gain(samples, noise_counts);
-        left += (1.0 - gain) * (1.0 - gain) * octave.residual;
-        noise += gain * gain * octave.noise / samples;
+        const double gain = octave.gain(samples, noise_counts / residual_counts);
+        left += residual_counts * (1.0 - gain) * (1.0 - gain) * octave.residual;
+        of_noise += noise_counts * gain * gain * octave.noise / samples;
     }
-    return std::max(left, 0.0) + noise;
+    return std::max(left, 0.0) + of_noise;
 }
 
 double ResidualBand::gain() const {
@@ -249,24 +290,34 @@ double ResidualBand::gain() const {
     return all > 0.0 ? std::clamp(1.0 - left() / all, 0.0, 1.0) : 0.0;
 }
 
-SmoothResidual smooth_residual(NoisyResidual residual) {
-    std::vector<Level> levels = pyramid(std::move(residual));
+SmoothResidual smooth_residual(const NoisyResidual& residual, const Believable& believable) {
+    const std::size_t first = first_level(residual);
+    std::vector<Level> levels = pyramid(residual, first);
     SmoothResidual out;
-    double pixels = 1.0;
-    for (std::size_t k = 0; k < levels.size(); ++k, pixels *= 4.0) {
+    double pixels = std::pow(4.0, double(first));
+    for (std::size_t k = first; k < levels.size(); ++k, pixels *= 4.0) {
         if (k + 1 < levels.size())
             subtract(levels[k], levels[k + 1]);
-        out.bands.push_back(energy_of(levels[k], pixels));
+        out.bands.push_back(energy_of(levels[k], pixels, k == first));
     }
+    const std::size_t before = first > 0 ? 1 : 0;
+    if (before > 0)
+        out.bands.insert(out.bands.begin(), band_before(energy_of(residual), first, out.bands));
+    if (believable)
+        believe(believable(out.bands), out.bands);
     Plane<Rgb> sum(levels.back().weight.width, levels.back().weight.height);
     for (std::size_t k = levels.size(); k-- > 0;) {
         if (k + 1 < levels.size())
             sum = expanded(sum, levels[k].weight.width, levels[k].weight.height);
-        add_band(sum, levels[k], out.bands[k]);
+        if (k >= first)
+            add_band(sum, levels[k], out.bands[k - first + before]);
     }
     out.values = std::move(sum.values);
-    for (std::size_t p = 0; p < out.values.size(); ++p)
-        out.values[p] *= levels[0].weight.values[p];
+    for_rows(residual.height, [&](int y) {
+        const std::size_t row = std::size_t(y) * std::size_t(residual.width);
+        for (std::size_t p = row; p < row + std::size_t(residual.width); ++p)
+            out.values[p] *= residual.weight[p];
+    });
     return out;
 }
 

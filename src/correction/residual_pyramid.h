@@ -12,12 +12,15 @@
 // By chance the residual of pure noise seems to be more than nothing half of the time, and where noise is many times
 // the light, even a small gain shows as blotches. What lies below two standard deviations therefore counts as noise,
 // and what lies above counts less (as W. James and C. Stein shrink means, 1961). Samples of paths have heavy tails
-// besides: no pixel moves by more than four times the root mean square of the residual of those like it, which leaves
-// no grains.
+// besides, and there are many bands and octaves, some of which always seem to be known: together they are not taken for
+// more than can be believed of the residual, and no pixel moves by more than four times the root mean square of the
+// residual of those like it, which leaves no grains.
 //
 // Blurs are weighted, so that light does not spread to where the weight is 0, such as the black around smoke.
 #pragma once
 
+#include <functional>
+#include <limits>
 #include <vector>
 
 #include "core/vec.h"
@@ -27,8 +30,11 @@ namespace brisance {
 // Of every pixel, rows from the top.
 struct NoisyResidual {
     int width = 0, height = 0;
-    std::vector<Rgb> estimates[2];  // independent, unbiased
+    std::vector<Rgb> estimates[2];  // independent, unbiased; times the divisor
     std::vector<float> weight;      // not negative; the residual is assumed to be alike relative to it
+    // In all that both estimates are made of: bands that hardly have one in a pixel of theirs are left out.
+    double divisor = 1.0;
+    double samples = std::numeric_limits<double>::infinity();
 };
 
 // Sums over pixels of a band.
@@ -37,11 +43,12 @@ struct ResidualEnergy {
     double noise = 0.0;     // that of the noise in the mean of both estimates
     double variance = 0.0;  // of `residual`
     double weight = 0.0;    // the weight's square
+    double believed = 1.0;  // so much of what seems to be known
 
     // Of a pixel between two octaves each takes its share, of the variance, too: that is a little more than it has.
     void add(const ResidualEnergy& other, double share);
-    // As if there were so many times the samples: the part of the residual's square that is hardly chance, and the gain
-    // of least square error, from 0 to 1, if the noise counts for so much.
+    // As if there were so many times the samples: the part of the residual's square that is hardly chance and is
+    // believed, and the gain of least square error, from 0 to 1, if the noise counts for so much.
     double known(double samples = 1.0) const;
     double gain(double samples = 1.0, double noise_counts = 1.0) const;
     // The root of the former, over that of the weight's square.
@@ -50,20 +57,27 @@ struct ResidualEnergy {
 
 struct ResidualBand {
     std::vector<ResidualEnergy> octaves;  // of the weight's square, the largest first
-    double noise_counts = 1.0;            // beside the residual, as bands overlap
+    // What the picture loses or gains by the residual and by the noise in this band, over their squares: bands overlap.
+    double residual_counts = 1.0, noise_counts = 1.0;
+    double levels = 1.0;  // octaves of wavelength
+
+    // As the picture has them: the residual in all octaves, and the part of its square that is known.
     ResidualEnergy sum() const;
-    // What gains would leave of the residual's square with so many times the samples, noise included. As bands overlap,
-    // of a smooth residual it is up to a third too little, and of noise too much.
+    double known() const;
+    // What gains would leave of the residual's square with so many times the samples, noise included.
     double left(double samples = 1.0) const;
     // The part that they take away.
     double gain() const;
 };
 
+// The square of a residual that can be believed, of all that bands seem to know of it; empty: that.
+using Believable = std::function<double(const std::vector<ResidualBand>&)>;
+
 struct SmoothResidual {
     std::vector<Rgb> values;          // of every pixel; 0 where the weight is
-    std::vector<ResidualBand> bands;  // the finest first
+    std::vector<ResidualBand> bands;  // the finest first, with all that are not told apart
 };
 
-SmoothResidual smooth_residual(NoisyResidual residual);
+SmoothResidual smooth_residual(const NoisyResidual& residual, const Believable& believable = {});
 
 }  // namespace brisance

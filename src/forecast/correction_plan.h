@@ -1,11 +1,14 @@
 // How many unbiased samples correct a picture by many lights (correction/correct.h), decided from counts.
 //
 // Below some hundredths the error of lighting grids falls slowly: half the error takes several times as long, and some
-// of it stays. Samples of what the picture misses are cheaper there. With correction.samples=auto the lights are
-// therefore built for an error of 0.02, or for twice that which is asked where that is less (but not below 0.01), and
-// samples follow until the picture is expected to err as little as is asked. They may take up to eight times as long as
-// the picture; between 0.02 and 0.015 that share falls to nothing. Only frames whose time is known within a factor of
-// three (grid_is_estimated()) are corrected so: of others it is not known whether samples would tell anything.
+// of it stays. Samples of what the picture misses are cheaper there, as it misses alike over many pixels. With
+// correction.samples=auto the lights are therefore built for an error of 0.02, or for twice that which is asked where
+// that is less (but not below 0.01), on lattices that may add up to three times as much as without samples, since that
+// is what samples see best. They follow until the picture is expected to err as little as is asked. They may take twice
+// as long as the picture where 0.02 is asked for, and up to eight times as long for less; from 0.02 to 0.04 all of this
+// fades, and a draft has no samples. Only frames with smoke or fire whose time is known within a factor of three
+// (grid_is_estimated()) are corrected so: of others it is not known whether samples would tell anything. Baselines are
+// not.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +19,7 @@ namespace brisance {
 
 // lighting.error that the lights are built for.
 float error_of_lights(const Shot& shot, const Plan& plan);
-// The shot with that error.
+// The shot with that error, and with what its lattices may add.
 Shot shot_of_lights(Shot shot, const Plan& plan);
 
 // Forecast seconds of the samples over those of the picture that they correct: at most, and as they usually are. 0
@@ -30,6 +33,6 @@ double corrected_seconds(const Shot& shot, const CountedMedium& counted, const P
 
 // Samples that take so many times the forecast seconds of the picture. `shot`: that of the lights.
 std::size_t samples_of_share(double share, const Shot& shot, const CountedMedium& counted, const Plan& plan,
-                             const Camera& camera, const Surroundings* surroundings);
+                             const PathTracer& tracer, const Camera& camera);
 
 }  // namespace brisance

@@ -30,7 +30,8 @@ constexpr double kMapValue = 7e-9, kMapValuesBetween = 75.0, kMapValuesOfOwn = 1
 constexpr double kCoarseNode = 80e-6, kNodesOfParent = 6.0;
 constexpr double kFineBounce = 0.3;  // the evaluations of one, over those of a flight whose nodes gather all
 constexpr double kFrame = 0.25;
-constexpr double kSegment = 1.2e-6;  // of a path: 0.7 to 1.9
+constexpr double kSegment = 1.2e-6;       // of a path: 0.7 to 1.9
+constexpr double kSegmentOfSet = 2.5e-6;  // beside surfaces or lamps: 2.3 to 2.7
 constexpr double kCameraRay = 2.4e-6;
 constexpr double kTrackingOfVoxel = 0.25e-6;  // set-up of the path tracer
 // With a set, a guess from seven (costs.h): lights for surfaces and what those send into smoke, over the lighting of
@@ -151,7 +152,11 @@ double tracer_seconds(const Medium& medium) {
 }
 
 double PathPilot::ray_seconds() const {
-    return kSegment * segments;
+    return segment_seconds * segments;
+}
+
+double PathPilot::lit_ray_seconds() const {
+    return ray_seconds() / lit;
 }
 
 double pilot_seconds(const PathPilot& pilot, std::size_t pixels) {
@@ -179,7 +184,8 @@ PathPilot trace_pilot(const PathTracer& tracer, const Camera& camera, std::size_
     // A black pilot needs no paths. Where noise hides all light, paths are taken to need far too many.
     const double noise = variance > 0.0 ? variance / std::max(square, 1e-12 * variance) : 0.0;
     return {noise, double(segments) / (double(count) * double(kPilotSamples)),
-            double(std::max<std::size_t>(lit, 1)) / double(count)};
+            double(std::max<std::size_t>(lit, 1)) / double(count),
+            tracer.direct().surroundings() ? kSegmentOfSet : kSegment};
 }
 
 }  // namespace brisance

@@ -43,10 +43,12 @@ double tracer_seconds(const Medium& medium);
 
 // The variance and the length of paths.
 struct PathPilot {
-    double square_error = 0.0;   // of a picture of one camera ray per pixel: the square of its relative standard error
-    double segments = 0.0;       // of all paths that one camera ray begins
-    double lit = 1.0;            // share of the pixels in which light was found
-    double ray_seconds() const;  // of a camera ray with its paths
+    double square_error = 0.0;  // of a picture of one camera ray per pixel: the square of its relative standard error
+    double segments = 0.0;      // of all paths that one camera ray begins
+    double lit = 1.0;           // share of the pixels in which light was found
+    double segment_seconds = 0.0;
+    double ray_seconds() const;      // of a camera ray with its paths
+    double lit_ray_seconds() const;  // where there is light
 };
 
 // Traces so many pixels, spread evenly over the picture.

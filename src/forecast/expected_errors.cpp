@@ -89,14 +89,16 @@ public:
             maps_ = kErrorOfMaps * std::pow(kResolutionOfMaps / shadow_resolution(settings), kPowerOfMaps);
     }
 
-    ExpectedError of(const std::string& cell) const {
+    // `share`: of the cell, of the picture's light.
+    ExpectedError of(const std::string& cell, double share = 1.0) const {
         const double gathered = square(maps_) + square(interpolation_);
         if (cell == "V" || cell == "A")
             return {cell, limited(rays_ + kErrorOfBurningVoxels * std::pow(depth_, 3.0)), kSpreadOfRays};
         if ((cell == "MV" && plan_.on_rays.contains(Cell::MV)) || (cell == "SV" && plan_.fire_lights_on_surfaces()))
             return {cell, kErrorOfOtherMethods, kSpreadOfRest};
         if (cell == "MV")
-            return {cell, limited(std::hypot(std::sqrt(gathered), error_of_voxels(float(depth_)) + coarse_light_)),
+            return {cell,
+                    limited(std::hypot(std::sqrt(gathered), error_of_voxels(float(depth_)) + coarse_light(share))),
                     kSpread};
         if (cell == "MM")
             return mixed({cell, limited(std::sqrt(gathered + square(orders_)) + remainder_), kSpread});
@@ -105,6 +107,9 @@ public:
     }
 
 private:
+    // Known of the picture, in which light of the smoke has about as much of it.
+    double coarse_light(double share) const { return std::sqrt(0.5) * coarse_light_ / std::max(share, 0.1); }
+
     // Over the optical depth of a voxel of the light. `width`: of the orders' voxels, in those.
     static double error_of_orders(double width, double fine_bounces) {
         return fine_bounces * std::hypot(kErrorOfFineBounce, kErrorOfLatticeBefore * width) +
@@ -127,6 +132,8 @@ const char* brightest(const Plan& plan) {
     return plan.multiple ? "MM" : plan.single ? "MV" : "V";
 }
 
+}  // namespace
+
 double sum_of_squares(const Layer& layer) {
     double sum = 0.0;
     const std::size_t n = layer.channels.size();
@@ -136,8 +143,6 @@ double sum_of_squares(const Layer& layer) {
                 sum += v * v;
     return sum;
 }
-
-}  // namespace
 
 std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFrame& frame, const Statistics& statistics,
                                            const std::function<void(ExpectedError&)>& change) {
@@ -159,7 +164,7 @@ std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFra
     for (const std::string& cell : frame.plan.cells())
         for (const Layer& layer : image.layers)
             if (const double part = layer.name == cell ? sum_of_squares(layer) : 0.0; part > 0.0) {
-                out.push_back(model.of(cell));
+                out.push_back(model.of(cell, std::sqrt(part / all)));
                 if (const double shared = error_of_shared(statistics, cell); shared > 0.0)
                     out.back().error = limited(std::hypot(out.back().error, shared / std::sqrt(part)));
                 add(out.back(), part);

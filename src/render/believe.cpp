@@ -43,8 +43,8 @@ std::optional<Certificate> survey(const Image& image, const DrawInput& input, co
     const MomentTracers tracers = tracers_of(scene);
     const PathPilot pilot = trace_pilot(tracers.tracer(0), tracers.camera(0), kFirstPixels);
     const double left = seconds - pilot_seconds(pilot, kFirstPixels);
-    const auto samples =
-        static_cast<std::size_t>(std::clamp(left / std::max(pilot.ray_seconds(), 1e-9), 0.0, double(kMaximumSamples)));
+    const auto samples = static_cast<std::size_t>(
+        std::clamp(left / std::max(pilot.lit_ray_seconds(), 1e-9), 0.0, double(kMaximumSamples)));
     if (samples < kFewestSamples)
         return std::nullopt;
     return certify(image, scene, tracers, {draws_for(samples, pilot.square_error, expected), samples, kSeed}, progress);

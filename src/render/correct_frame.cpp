@@ -15,8 +15,9 @@ namespace brisance {
 
 namespace {
 
-// Of the time that samples may take: the first ones, which tell how many are needed.
-constexpr double kFirst = 1.0 / 12.0;
+// The first samples, which tell how many are needed: of the time that samples may take, and at least of the picture's.
+// Fewer know so little that more never seem to help.
+constexpr double kFirst = 1.0 / 12.0, kFirstOfPicture = 0.4;
 // Of the error asked for: a little less is aimed at, since the samples' own error is known by chance.
 constexpr double kAim = 0.95;
 
@@ -31,23 +32,30 @@ ExpectedError before(ExpectedError error, const CorrectedLayer& layer) {
     return error;
 }
 
-// Of a corrected layer, by the error model: its error, and its part of the picture's squared error. The first samples
-// are too few to tell it better: where they have heavy tails, they find too little most of the time.
+// Of a corrected layer: its error before that, and its part of the picture's squared error.
 struct LayerError {
     double error = 0.0, square_of_picture = 0.0;
 };
 
-std::vector<LayerError> layer_errors(const Correction& correction, const RenderedFrame& frame, const DrawInput& input) {
+const ExpectedError* of_cell(const std::vector<ExpectedError>& expected, const std::string& cell) {
+    const auto found = std::ranges::find(expected, cell, &ExpectedError::cell);
+    return found == expected.end() ? nullptr : &*found;
+}
+
+std::vector<LayerError> layer_errors(const Correction& correction, const std::vector<ExpectedError>& expected,
+                                     const Image& image) {
+    const double all = sum_of_squares(image.layer(""));
     std::vector<LayerError> out;
     for (const CorrectedLayer& layer : correction.layers) {
-        double own = 0.0;
-        const auto alone = [&](ExpectedError& e) { e.error = e.cell == layer.name ? own = e.error : 0.0; };
-        const double error =
-            expected_errors(frame.image, {input.shot, input.medium, input.plan}, frame.statistics, alone)[0].error;
-        out.push_back({own > 0.0 ? own : error, error * error});
+        const ExpectedError* const e = of_cell(expected, layer.name);
+        const double error = e && all > 0.0 ? before(*e, layer).error : 0.0;
+        out.push_back({error, error > 0.0 ? error * error * layer.square / all : 0.0});
     }
     return out;
 }
+
+// What samples that do not reach the wanted error may leave more of it than the most would, which take longer.
+constexpr double kHardlyMore = 1.1;
 
 // How many times the samples that there are leave no more than `wanted`; at most `most`.
 double samples_for(double wanted, const Correction& correction, const std::vector<LayerError>& errors, double most) {
@@ -59,33 +67,41 @@ double samples_for(double wanted, const Correction& correction, const std::vecto
                        std::pow(correction.layers[k].left(errors[k].error, samples) / errors[k].error, 2);
         return sum;
     };
+    const double square = std::max(wanted * wanted, kHardlyMore * kHardlyMore * square_left(most));
     double enough = most, too_few = 1.0;
-    if (!(square_left(most) < wanted * wanted))
-        return most;
     for (int step = 0; step < 30; ++step) {
         const double middle = std::sqrt(too_few * enough);
-        (square_left(middle) < wanted * wanted ? enough : too_few) = middle;
+        (square_left(middle) < square ? enough : too_few) = middle;
     }
     return enough;
 }
 
-void sample(Corrector& corrector, const RenderedFrame& frame, const DrawInput& input, const Shot& asked,
-            Progress& progress) {
+// The largest error that the model and the samples hold for likely together.
+BelievableError believable_by(const std::vector<ExpectedError>& expected) {
+    return [&](const CorrectedLayer& layer) {
+        const CertifiedError found = layer.before();
+        const ExpectedError* const e = of_cell(expected, layer.name);
+        return e ? believed_error(*e, &found).interval.high : found.error;
+    };
+}
+
+void sample(Corrector& corrector, const MomentTracers& tracers, const RenderedFrame& frame, const DrawInput& input,
+            const Shot& asked, const std::vector<ExpectedError>& expected, Progress& progress) {
     if (asked.correction.samples > 0) {
         corrector.sample(static_cast<std::size_t>(asked.correction.samples), progress);
         return;
     }
     const Shot solved = as_solved(input.shot, frame.statistics);
+    const double share = most_of_correction(asked, input.plan);
     const std::size_t most =
-        samples_of_share(most_of_correction(asked, input.plan), solved, CountedMedium(input.medium), input.plan,
-                         input.camera, input.surroundings);
-    const auto first = static_cast<std::size_t>(kFirst * double(most));
+        samples_of_share(share, solved, CountedMedium(input.medium), input.plan, tracers.tracer(0), tracers.camera(0));
+    const auto first = static_cast<std::size_t>(std::clamp(kFirstOfPicture / share, kFirst, 1.0) * double(most));
     if (first == 0)
         return;
     corrector.sample(first, progress);
-    const Correction first_look = corrector.measured();
-    const double times = samples_for(kAim * asked.lighting.error, first_look, layer_errors(first_look, frame, input),
-                                     double(most) / double(first));
+    const Correction first_look = corrector.measured(believable_by(expected));
+    const double times = samples_for(kAim * asked.lighting.error, first_look,
+                                     layer_errors(first_look, expected, frame.image), double(most) / double(first));
     if (const double more = (times - 1.0) * double(first); more >= 2.0)
         corrector.sample(static_cast<std::size_t>(more), progress);
 }
@@ -93,11 +109,15 @@ void sample(Corrector& corrector, const RenderedFrame& frame, const DrawInput& i
 void note(const Correction& correction, StageCost& cost) {
     cost.detail["samples"] = correction.samples;
     for (const CorrectedLayer& layer : correction.layers) {
-        nlohmann::ordered_json gains = nlohmann::ordered_json::array();
-        for (const ResidualBand& band : layer.bands)
+        nlohmann::ordered_json gains = nlohmann::ordered_json::array(), squares = gains;
+        for (const ResidualBand& band : layer.bands) {
             gains.push_back(band.gain());
-        cost.detail[layer.name.empty() ? "picture" : layer.name] = {
-            {"error_found", layer.found()}, {"left_of_that", layer.left(0.0)}, {"gains", gains}};
+            squares.push_back(layer.square > 0.0 ? band.sum().residual / layer.square : 0.0);
+        }
+        cost.detail[layer.name.empty() ? "picture" : layer.name] = {{"error_found", layer.found()},
+                                                                    {"left_of_that", layer.left(0.0)},
+                                                                    {"square_errors_found", squares},
+                                                                    {"gains", gains}};
     }
 }
 
@@ -122,8 +142,10 @@ Correction correct_frame(RenderedFrame& frame, const DrawInput& input, const Sho
     const double cpu = process_cpu_seconds();
     const MomentTracers tracers = tracers_of(certified_scene(input));
     Corrector corrector(frame.image, tracers, input.surroundings != nullptr);
-    sample(corrector, frame, input, asked, progress);
-    const Correction correction = corrector.correct();
+    const std::vector<ExpectedError> expected =
+        expected_errors(frame.image, {input.shot, input.medium, input.plan}, frame.statistics);
+    sample(corrector, tracers, frame, input, asked, expected, progress);
+    const Correction correction = corrector.correct(believable_by(expected));
     if (correction.not_finite > 0)
         progress.warning("correction",
                          fmt::format("{} samples were not finite and are left out", correction.not_finite));

@@ -1,4 +1,4 @@
-// Frames that are asked for less than the lighting grid reaches are corrected, with a set or without, and no others.
+// Frames by the lighting grid are corrected, with a set or without, and drafts are not.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,20 +49,32 @@ double certified(const RenderedFrame& frame) {
     return frame.statistics.certificate["picture"]["error"];
 }
 
+Shot by_lights_alone(Shot shot) {
+    shot.correction.samples = 0;
+    return shot;
+}
+
 TEST(CorrectedFrames, ErrLessWhenLessIsAskedFor) {
     Shot usual = shot_of(0.02f), fine = shot_of(0.01f);
     usual.certify.enabled = fine.certify.enabled = true;
     fine.certify.belief = 0.03;
-    const RenderedFrame plain = render(usual), corrected = render(fine);
+    const RenderedFrame plain = render(by_lights_alone(usual)), some = render(usual), corrected = render(fine);
     EXPECT_EQ(samples_of(plain), 0.0);
+    EXPECT_GT(samples_of(some), 0.0);
     EXPECT_GT(samples_of(corrected), 4096.0);
-    std::printf("certified: %.4f, corrected %.4f\n", certified(plain), certified(corrected));
+    std::printf("certified: %.4f, corrected %.4f and %.4f\n", certified(plain), certified(some),
+                certified(corrected));
+    EXPECT_LT(certified(some), certified(plain));
     EXPECT_LT(certified(corrected), 0.6 * certified(plain));
     // What it believes of its own error comes from the samples that corrected it.
     const auto& believed = corrected.statistics.believed_error;
     EXPECT_EQ(believed["samples"], 0);
     EXPECT_GT(believed["picture"]["error"].get<double>(), 0.5 * certified(corrected));
     EXPECT_LT(believed["picture"]["error"].get<double>(), 2.0 * certified(corrected));
+}
+
+TEST(CorrectedFrames, DraftsAreNot) {
+    EXPECT_EQ(samples_of(render(shot_of(0.05f))), 0.0);
 }
 
 TEST(CorrectedFrames, TakeAsManySamplesAsTheShotStates) {
@@ -133,7 +145,6 @@ Shot shot_over_floor(float error) {
 TEST(CorrectedFrames, OfSetsStillAddUp) {
     const Surroundings set = floor_under(true);
     Shot shot = shot_over_floor(0.02f);
-    EXPECT_EQ(samples_of(render(shot, &set)), 0.0);
     shot.correction.samples = 5000;
     const RenderedFrame frame = render(shot, &set);
     EXPECT_EQ(samples_of(frame), 5000.0);
@@ -145,11 +156,11 @@ TEST(CorrectedFrames, OfSetsStillAddUp) {
     }
 }
 
-TEST(CorrectedFrames, OfSetsErrLessWhenLessIsAskedFor) {
+TEST(CorrectedFrames, OfSetsErrLessThanByLightsAlone) {
     const Surroundings set = floor_under();
-    Shot usual = shot_over_floor(0.02f), fine = shot_over_floor(0.018f);
-    usual.certify.enabled = fine.certify.enabled = true;
-    const RenderedFrame plain = render(usual, &set), corrected = render(fine, &set);
+    Shot shot = shot_over_floor(0.02f);
+    shot.certify.enabled = true;
+    const RenderedFrame plain = render(by_lights_alone(shot), &set), corrected = render(shot, &set);
     EXPECT_EQ(samples_of(plain), 0.0);
     EXPECT_GT(samples_of(corrected), 4096.0);
     std::printf("certified: %.4f, corrected %.4f\n", certified(plain), certified(corrected));

@@ -33,6 +33,7 @@ Shot small_shot(const std::string& sampling) {
     shot.tracing.samples = 256;
     shot.virtual_lights.count = 0;
     shot.certify.belief = 0.0;
+    shot.correction.samples = 0;  // by lights alone
     shot.scattering_methods.method = kLightingGridMethod;
     shot.fire_lights.sampling = sampling;
     shot.fire_lights.points = 8;

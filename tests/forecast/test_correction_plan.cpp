@@ -1,6 +1,9 @@
 // What an error that is asked for means for the lights and for the samples that correct them.
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <vector>
+
 #include "fixtures/media.h"
 #include "forecast/correction_plan.h"
 
@@ -47,15 +50,44 @@ TEST(CorrectionPlan, LightsAreCoarserThanAskedAndNeverHopelesslyFine) {
 }
 
 TEST(CorrectionPlan, SamplesTakeMoreTimeTheLessErrorIsAskedFor) {
-    EXPECT_EQ(most_for(0.02f), 0.0);
+    EXPECT_EQ(most_for(0.04f), 0.0);
     double before = 0.0;
-    for (const float error : {0.019f, 0.017f, 0.015f, 0.01f, 0.007f}) {
+    for (const float error : {0.039f, 0.03f, 0.02f, 0.017f, 0.015f, 0.01f, 0.007f}) {
         const double usual = usual_for(error);
         EXPECT_GT(usual, before) << error;
         EXPECT_LE(usual, most_for(error)) << error;
         before = usual;
     }
     EXPECT_EQ(usual_for(0.0001f), most_for(0.0001f));
+}
+
+float lattice_for(float error, const std::function<void(Shot&)>& change = {}) {
+    Asked a = asked(error);
+    if (change)
+        change(a.shot);
+    return shot_of_lights(a.shot, a.plan).lighting.lattice_error;
+}
+
+// What samples find best may be coarse: three times as much beside them, and no more than they reach. It fades in.
+TEST(CorrectionPlan, LatticesMayAddMoreBesideSamples) {
+    EXPECT_FLOAT_EQ(lattice_for(0.02f), 0.03f);
+    EXPECT_FLOAT_EQ(lattice_for(0.01f), 0.015f);
+    EXPECT_LT(lattice_for(0.05f), 0.0f);  // as it is by default
+    EXPECT_NEAR(lattice_for(0.0399f), 0.5f * 0.0399f, 2e-4f);
+    EXPECT_NEAR(lattice_for(0.0201f), 0.03f, 2e-4f);
+    EXPECT_FLOAT_EQ(lattice_for(0.02f, [](Shot& s) { s.lighting.lattice_error = 0.005f; }), 0.005f);
+    EXPECT_LT(lattice_for(0.02f, [](Shot& s) { s.correction.samples = 0; }), 0.0f);
+}
+
+TEST(CorrectionPlan, BaselinesHaveNoSamples) {
+    for (const auto& change : std::vector<std::function<void(Shot&)>>{
+             [](Shot& s) { s.lighting.clusters = 4; }, [](Shot& s) { s.lighting.shadows = ShadowMethod::Exact; },
+             [](Shot& s) { s.virtual_lights.kind = "point"; }, [](Shot& s) { s.virtual_lights.sampling = "power"; }}) {
+        Asked a = asked(0.02f);
+        EXPECT_GT(most_of_correction(a.shot, a.plan), 0.0);
+        change(a.shot);
+        EXPECT_EQ(most_of_correction(a.shot, a.plan), 0.0);
+    }
 }
 
 // A number of samples that the shot states leaves its lights as they are.

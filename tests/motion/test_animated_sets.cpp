@@ -59,7 +59,8 @@ public:
         shot.camera.width = 80;
         shot.camera.height = 40;
         shot.shutter.most_moments = 64;
-        shot.certify.belief = 0.0f;
+        shot.certify.belief = 0.0;
+        shot.correction.samples = 0;  // by lights alone
         return shot;
     }
 

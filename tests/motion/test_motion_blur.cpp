@@ -26,7 +26,8 @@ Shot shot_of(int width, double shutter) {
     shot.shutter.most_moments = 32;
     shot.lighting.error = 0.05f;
     shot.scattering.bounces = 1;
-    shot.certify.belief = 0.0f;
+    shot.certify.belief = 0.0;
+    shot.correction.samples = 0;  // by lights alone
     return shot;
 }
 

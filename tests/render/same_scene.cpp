@@ -26,7 +26,8 @@ SameScene scene_of(const std::string& name, const Recipe& recipe, const CameraSe
     scene.shot.camera = camera;
     scene.shot.camera_given = true;
     scene.shot.output.cell_layers = true;
-    scene.shot.certify.belief = 0.0;  // nobody looks at it
+    scene.shot.certify.belief = 0.0;    // nobody looks at it
+    scene.shot.correction.samples = 0;  // by lights alone
     return scene;
 }
 

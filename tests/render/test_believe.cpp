@@ -27,6 +27,7 @@ Shot shot_of(RenderMethod method, double belief) {
     shot.camera.width = shot.camera.height = 48;
     shot.camera.samples_per_axis = 2;
     shot.certify.belief = belief;
+    shot.correction.samples = 0;  // whose samples would say what is believed
     shot.tracing.samples = 16;
     return shot;
 }

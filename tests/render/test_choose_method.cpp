@@ -62,14 +62,19 @@ TEST(ChooseMethod, PathsCostMoreWithPixelsAndLessError) {
     EXPECT_LT(finer.grid_seconds, 3.0 * one.grid_seconds);
 }
 
-// The samples of a correction count for the grid's picture, which is lit as for the default error.
+// The samples of a correction count for the grid's picture, which is lit on what lattices may add beside them.
 TEST(ChooseMethod, CorrectionsTakeTheirTime) {
     const Medium medium = glow(16);
-    const double usual = forecast(shot_of(128, 0.02f), medium).grid_seconds;
-    EXPECT_NEAR(forecast(shot_of(128, 0.01f), medium).grid_seconds / usual, 4.0, 1e-6);
-    EXPECT_NEAR(forecast(by_lights_alone(shot_of(128, 0.02f)), medium).grid_seconds / usual, 1.0, 1e-6);
-    EXPECT_GT(forecast(shot_of(128, 0.019f), medium).grid_seconds, usual);
-    EXPECT_LT(forecast(shot_of(128, 0.019f), medium).grid_seconds, 1.5 * usual);
+    const auto alone = [&](float lattice_error) {
+        Shot shot = by_lights_alone(shot_of(128, 0.02f));
+        shot.lighting.lattice_error = lattice_error;
+        return forecast(shot, medium).grid_seconds;
+    };
+    EXPECT_NEAR(forecast(shot_of(128, 0.01f), medium).grid_seconds / alone(0.015f), 4.0, 1e-6);
+    EXPECT_NEAR(forecast(shot_of(128, 0.02f), medium).grid_seconds / alone(0.03f), 1.75, 1e-6);
+    EXPECT_NEAR(forecast(shot_of(128, 0.04f), medium).grid_seconds /
+                    forecast(by_lights_alone(shot_of(128, 0.04f)), medium).grid_seconds,
+                1.0, 1e-6);
 }
 
 // The pilot ignores that the path tracer's samples are stratified, which need up to a half fewer.

@@ -48,6 +48,7 @@ Shot small_shot(RenderMethod method, const std::string& scattering = RayLightsMe
     shot.lighting.error = 0.2f;
     shot.virtual_lights.photons = 30000;
     shot.certify.belief = 0.0;
+    shot.correction.samples = 0;  // by lights alone
     shot.scattering_methods.method = scattering;
     rays_of(shot).paths = 4000;
     rays_of(shot).count = 30000;

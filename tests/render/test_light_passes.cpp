@@ -25,6 +25,7 @@ struct CornerWithFire {
         shot.camera.width = shot.camera.height = 12;
         shot.camera.samples_per_axis = 2;
         shot.certify.belief = 0.0;
+        shot.correction.samples = 0;  // by lights alone
         shot.scattering_methods.method = kLightingGridMethod;
         shot.virtual_lights = instant_radiosity("sphere", 60, 3000);
     }

@@ -42,6 +42,7 @@ Shot read(const MediaScene& scene, const std::vector<std::string>& more) {
                                     "virtual_lights.count=1500",
                                     "virtual_lights.photons=200000",
                                     "certify.belief=0",
+                                    "correction.samples=0",
                                     "output.layers.cells=true"};
     set.insert(set.end(), scene.more.begin(), scene.more.end());
     set.insert(set.end(), more.begin(), more.end());

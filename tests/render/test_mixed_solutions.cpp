@@ -26,6 +26,7 @@ Shot lamp_in_haze(float escape) {
     shot.camera.width = shot.camera.height = 16;
     shot.camera.samples_per_axis = 3;
     shot.certify.belief = 0.0;
+    shot.correction.samples = 0;  // by lights alone
     shot.scattering.escape = escape;
     shot.scattering_methods.get<VolumetricPhotonSettings>().paths = 30000;
     return shot;

@@ -40,7 +40,8 @@ Shot shot_of(RenderMethod method) {
     shot.camera.width = kWidth;
     shot.camera.height = kHeight;
     shot.tracing.samples = 256;
-    shot.certify.belief = 0.0;  // nobody looks at it
+    shot.certify.belief = 0.0;    // nobody looks at it
+    shot.correction.samples = 0;  // by lights alone
     shot.virtual_lights.count = 1000;
     shot.virtual_lights.photons = 100000;
     return shot;

@@ -45,6 +45,7 @@ Shot fire_over_floor(const TempFolder& folder) {
     shot.camera.width = 32;
     shot.camera.height = 24;
     shot.certify.belief = 0.0;
+    shot.correction.samples = 0;  // by lights alone
     shot.scattering.bounces = 1;
     shot.virtual_lights.count = 0;
     return shot;
@@ -115,6 +116,7 @@ Shot lit_corner() {
     shot.camera.height = 24;
     shot.camera.samples_per_axis = 1;
     shot.certify.belief = 0.0;
+    shot.correction.samples = 0;  // by lights alone
     shot.virtual_lights.count = 300;
     shot.virtual_lights.photons = 20000;
     shot.virtual_lights.sharing_radius = 0.0;  // its blur is the same with all seeds

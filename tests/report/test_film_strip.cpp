@@ -99,6 +99,7 @@ Shot looking_at_the_ball(RenderMethod method, int samples) {
     shot.camera_given = true;
     shot.tracing.samples = samples;
     shot.certify.belief = 0.0;
+    shot.correction.samples = 0;  // by lights alone
     return shot;
 }
 

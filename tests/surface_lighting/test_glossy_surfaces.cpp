@@ -63,7 +63,8 @@ Shot shot_of(RenderMethod method, double sharing, std::uint32_t seed, bool close
     shot.camera.height = 30;
     shot.camera.samples_per_axis = 4;
     shot.tracing.samples = 256;
-    shot.certify.belief = 0.0;  // nobody looks at it
+    shot.certify.belief = 0.0;    // nobody looks at it
+    shot.correction.samples = 0;  // by lights alone
     shot.virtual_lights.count = 1500;
     shot.virtual_lights.photons = 200000;
     shot.virtual_lights.sharing_radius = sharing;

@@ -30,6 +30,7 @@ Shot small_shot(const std::string& sampling) {
     shot.camera.width = shot.camera.height = 8;
     shot.camera.samples_per_axis = 2;
     shot.certify.belief = 0.0;
+    shot.correction.samples = 0;  // by lights alone
     shot.scattering_methods.method = kLightingGridMethod;
     shot.virtual_lights = instant_radiosity("point", 200, 5000);
     shot.unified_lights.sampling = sampling;

@@ -60,7 +60,8 @@ Shot shot_of(const VirtualLightSettings& settings) {
     shot.camera.width = kWidth;
     shot.camera.height = kHeight;
     shot.camera.samples_per_axis = 2;
-    shot.certify.belief = 0.0;  // nobody looks at it
+    shot.certify.belief = 0.0;    // nobody looks at it
+    shot.correction.samples = 0;  // by lights alone
     shot.virtual_lights = settings;
     shot.output.bound_layers = true;
     return shot;

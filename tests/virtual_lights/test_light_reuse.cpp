@@ -43,7 +43,8 @@ Shot shot_of(const VirtualLightSettings& settings, const Picture& picture) {
     shot.camera.width = picture.width;
     shot.camera.height = picture.height;
     shot.camera.samples_per_axis = picture.samples;
-    shot.certify.belief = 0.0;  // nobody looks at it
+    shot.certify.belief = 0.0;    // nobody looks at it
+    shot.correction.samples = 0;  // by lights alone
     shot.virtual_lights = settings;
     return shot;
 }

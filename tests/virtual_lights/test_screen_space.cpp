@@ -115,7 +115,8 @@ Shot shot_of(const VirtualLightSettings& settings, int width, int height, int sa
     shot.camera.width = width;
     shot.camera.height = height;
     shot.camera.samples_per_axis = samples;
-    shot.certify.belief = 0.0;  // nobody looks at it
+    shot.certify.belief = 0.0;    // nobody looks at it
+    shot.correction.samples = 0;  // by lights alone
     shot.virtual_lights = settings;
     return shot;
 }

@@ -54,6 +54,8 @@ const PlannedRun& first_run(const std::vector<PlannedMethod>& methods, const Met
 Image rendered(const Shot& given, const FrameInput& input, Progress& progress) {
     Shot shot = given;
     shot.certify.belief = 0.0;
+    if (shot.correction.samples == kAutomaticCorrection)
+        shot.correction.samples = 0;  // the path tracer's work
     return render_medium(shot, input.medium, progress, input.surroundings.get()).image;
 }
 

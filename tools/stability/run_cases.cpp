@@ -19,6 +19,8 @@ RenderedFrame rendered_once(const Scene& scene, const Method& method, int seed, 
     Shot shot = scene.shot;
     method.apply_to(shot, seed, paths);
     shot.certify.belief = 0.0;  // its samples would count as the method's time
+    if (shot.correction.samples == kAutomaticCorrection)
+        shot.correction.samples = 0;  // the path tracer's work
     Progress silent;
     return render_medium(shot, scene.medium, silent, scene.surroundings.get());
 }

@@ -32,8 +32,9 @@ constexpr float kErrorOfSmallFire = 0.45f;
 // Of lighting.error: what light on a coarser lattice may add, and what the interpolation of its nodes may.
 constexpr float kShareOfLattice = 0.5f, kShareOfInterpolation = 0.25f;
 
-// Beyond this many times what is allowed, the next coarser lattice does not count, and no node is interpolated.
-constexpr float kNearlyAllowed = 1.5f;
+// Beyond this many times what is allowed, the next coarser lattice does not count; and no node is interpolated.
+// Between, light is gathered on both lattices, which is dear.
+constexpr float kNearlyAllowed = 1.3f, kNearlyInterpolated = 1.5f;
 
 // What is left of the error of voxels where the light of their detail is restored on the lattice twice as fine
 // (light_of_detail.h). Pictures of the built-in explosion refined 2 and 4 times err by 0.6 and 0.9 % more on the voxels
@@ -65,6 +66,19 @@ float albedo_met(const Medium& medium) {
         all += weight;
     }
     return all > 0.0 ? float(sum / all) : 0.0f;
+}
+
+// Of lighting.lattice_error, or what it is by default.
+float allowed_of_first(const LightingSettings& settings) {
+    return settings.lattice_error >= 0.0f ? settings.lattice_error : kShareOfLattice * settings.error;
+}
+
+// Where more is allowed, other errors grow, too.
+float allowed_of_smoke(const LightingSettings& settings) {
+    constexpr float kUsual = 0.02f;
+    if (settings.lattice_error >= 0.0f)
+        return settings.lattice_error / kShareOfLattice;
+    return settings.error <= kUsual ? settings.error : std::sqrt(kUsual * settings.error);
 }
 
 // Errors of light on ever coarser lattices. What they need of the medium is looked for when it is asked for, and once.
@@ -202,7 +216,9 @@ private:
 
 // Light of a lattice and the next coarser one, whose errors are known.
 LightingLevel between(int level, float error, float of_coarser, float allowed) {
-    return {level, 1.0f - glm::smoothstep(1.0f, kNearlyAllowed, of_coarser / allowed), error, of_coarser};
+    const float share =
+        of_coarser > 0.0f ? 1.0f - glm::smoothstep(allowed, kNearlyAllowed * allowed, of_coarser) : 1.0f;
+    return {level, share, error, of_coarser};
 }
 
 ToleratedInterpolation interpolation_of(LatticeErrors& errors, const LightingSettings& settings, int level) {
@@ -232,10 +248,14 @@ LightingLevel without_traces(const LightingLevel& light) {
     return {light.level, at - float(light.level), light.error, light.error_of_coarser};
 }
 
+LightingLevel stated_level(LatticeErrors& errors, int level) {
+    return level > 0 ? LightingLevel{level, 0.0f, errors.of_first(level)} : LightingLevel{};
+}
+
 LightingLevel level_of_first(LatticeErrors& errors, const LightingSettings& settings) {
     if (settings.lattice_level >= 0 || settings.interpolation >= 0.0f)
-        return {std::max(0, settings.lattice_level)};
-    const float allowed = kShareOfLattice * settings.error;
+        return stated_level(errors, settings.lattice_level);
+    const float allowed = allowed_of_first(settings);
     if (!(allowed > 0.0f))
         return {};
     int level = 0;
@@ -250,15 +270,9 @@ LightingLevel level_of_first(LatticeErrors& errors, const LightingSettings& sett
     }
 }
 
-// What the voxels of the smoke's light may add. Where more than usual is allowed, other errors grow, too.
-float allowed_of_smoke(float error) {
-    constexpr float kUsual = 0.02f;
-    return error <= kUsual ? error : std::sqrt(kUsual * error);
-}
-
 // The widest voxels that the error of the smoke's light allows, from a level on.
 LightingLevel smoke_by_error(LatticeErrors& errors, const LightingSettings& settings, int from, float widest) {
-    const float most = allowed_of_smoke(settings.error);
+    const float most = allowed_of_smoke(settings);
     int allowed = from;
     float error = errors.of_smoke(allowed), next = errors.of_smoke(allowed + 1);
     while (float(allowed) < widest && next <= most) {
@@ -315,7 +329,7 @@ LightingLevels lighting_levels(const Medium& medium, const LightingSettings& set
 }
 
 float ToleratedInterpolation::of(float share) const {
-    return most * (1.0f - glm::smoothstep(1.0f, kNearlyAllowed, share * of_coarser));
+    return most * (1.0f - glm::smoothstep(1.0f, kNearlyInterpolated, share * of_coarser));
 }
 
 ToleratedInterpolation tolerated_interpolation(const Medium& medium, const LightingSettings& settings) {

@@ -19,18 +19,19 @@ namespace brisance {
 
 namespace {
 
-// From coarse to fine. Errors below 0.02 are reached by a correction (correction/correct.h).
+// From coarse to fine. The finest are followed by a correction (correction/correct.h).
 struct Step {
     float error, alpha, scattering_alpha;
-    // Seconds of unbiased samples over those of the picture: at least and at most.
+    // Beside a correction: what lattices may add, and seconds of samples over those of the picture, at least and at
+    // most.
+    float lattice_error = 0.0f;
     double least_correction = 0.0, most_correction = 0.0;
 };
-constexpr std::array<Step, 6> kGridSteps = {{{0.1f, 1.0f, 1.0f},
+constexpr std::array<Step, 5> kGridSteps = {{{0.1f, 1.0f, 1.0f},
                                              {0.05f, 1.0f, 1.0f},
                                              {0.03f, 1.5f, 1.25f},
-                                             {0.02f, 2.0f, 1.5f},
-                                             {0.02f, 2.0f, 1.5f, 0.3, 20.0},
-                                             {0.01f, 3.0f, 2.0f, 1.5, 20.0}}};
+                                             {0.02f, 2.0f, 1.5f, 0.03f, 0.2, 20.0},
+                                             {0.01f, 3.0f, 2.0f, 0.015f, 1.5, 20.0}}};
 
 // Forecasts of the lighting grid are up to 30 % too low (docs/numbers.md).
 constexpr double kMargin = 1.3;
@@ -77,6 +78,8 @@ Option grid_option(const Timing& t, const Plan& plan, const Surroundings* surrou
     for (int step = step_count() - 1; step >= 0; --step) {
         const Step& of_step = kGridSteps.at(static_cast<std::size_t>(step));
         out.shot = with_step(t.shot, step);
+        if (corrects && of_step.most_correction > 0.0 && t.shot.lighting.lattice_error < 0.0f)
+            out.shot.lighting.lattice_error = of_step.lattice_error;
         CameraSettings camera = t.camera;
         if (step == 0)
             camera.samples_per_axis = 1;
@@ -89,9 +92,11 @@ Option grid_option(const Timing& t, const Plan& plan, const Surroundings* surrou
             break;
     }
     out.shot.method = RenderMethod::LightingGrid;
-    if (corrects)
-        out.shot.correction.samples = static_cast<int>(
-            samples_of_share(share, out.shot, counted, plan, Camera(t.camera, t.medium), surroundings));
+    if (corrects) {
+        const PathTracer tracer(t.medium, t.shot.tracing, t.shot.scattering.bounces, surroundings);
+        out.shot.correction.samples =
+            static_cast<int>(samples_of_share(share, out.shot, counted, plan, tracer, Camera(t.camera, t.medium)));
+    }
     out.error = expected_error({out.shot, t.medium, plan}).error * std::pow(1.0 + share, -kCorrected);
     out.text = fmt::format(
         "the lighting grid with lighting.error={:.3g}, lighting.alpha={:.2g} and {}correction", out.shot.lighting.error,

@@ -5,10 +5,15 @@ namespace brisance {
 void add_lighting_keys(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "lighting.error",
-        "relative error that may be added to the picture by each of shadow maps, lattices and series of bounces; below "
-        "0.02 "
-        "a correction by unbiased samples reaches it (correction.samples)",
+        "relative error that is asked of the picture: each of shadow maps, lattices and series of bounces may add so "
+        "much; below 0.04 a correction by unbiased samples helps to reach it (correction.samples)",
         real_float({0.0, 1.0, true}), [](Shot & s) -> auto& { return s.lighting.error; }));
+    keys.push_back(make_key(
+        "lighting.lattice_error",
+        "relative error that light on wider voxels may add to the picture, and twice that for light that smoke "
+        "scatters "
+        "on to smoke; auto: half of lighting.error, or up to three times that where a correction follows",
+        or_word(real_float({0.0, 1.0}), "auto", -1.0f), [](Shot & s) -> auto& { return s.lighting.lattice_error; }));
     keys.push_back(make_key(
         "lighting.interpolation",
         "relative error of the light in smoke up to which it is interpolated from coarser nodes; 0: every node is lit; "
@@ -16,12 +21,12 @@ void add_lighting_keys(std::vector<Key>& keys) {
         or_word(real_float({0.0, 1.0}), "auto", -1.0f), [](Shot & s) -> auto& { return s.lighting.interpolation; }));
     keys.push_back(make_key(
         "lighting.lattice_level",
-        "light in smoke is gathered on voxels 2^n wide; auto: as wide as lighting.error allows",
+        "light in smoke is gathered on voxels 2^n wide; auto: as wide as lighting.lattice_error allows",
         or_word(whole(0, 8), "auto", -1), [](Shot & s) -> auto& { return s.lighting.lattice_level; }));
     keys.push_back(make_key(
         "lighting.smoke_lattice_level",
         "the same for light that smoke scatters on to smoke, on no finer ones; auto: as lighting.lattice_level where "
-        "that is stated, or as wide as lighting.error allows",
+        "that is stated, or as wide as lighting.lattice_error allows",
         or_word(whole(0, 8), "auto", -1), [](Shot & s) -> auto& { return s.lighting.smoke_lattice_level; }));
     keys.push_back(make_key(
         "lighting.alpha", "a light of level l serves up to about alpha spacings of its level: larger is more exact",
