@@ -88,7 +88,9 @@ std::size_t samples_of_share(double share, const Shot& shot, const CountedMedium
     if (!(share > 0.0))
         return 0;
     const PathPilot pilot = trace_pilot(tracer, camera, kPilot);
-    const double seconds = share * grid_seconds(shot, counted, plan, camera.settings()) -
+    Plan smoke = plan;
+    smoke.surfaces = smoke.emitters = false;
+    const double seconds = share * grid_seconds(shot, counted, smoke, camera.settings()) -
                            tracer_seconds(counted.medium) - pilot_seconds(pilot, kPilot);
     const double samples = seconds / std::max(pilot.lit_ray_seconds(), 1e-9);
     return samples < kFewest ? 0 : static_cast<std::size_t>(std::min(samples, kMost));

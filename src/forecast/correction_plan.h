@@ -31,7 +31,8 @@ double usual_correction(const Shot& shot, const Plan& plan);
 double corrected_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan,
                          const CameraSettings& camera);
 
-// Samples that take so many times the forecast seconds of the picture. `shot`: that of the lights.
+// Samples that take so many times the forecast seconds of the picture, of its smoke alone where there is a set: what
+// the lights of a set miss is mostly too fine for samples. `shot`: that of the lights.
 std::size_t samples_of_share(double share, const Shot& shot, const CountedMedium& counted, const Plan& plan,
                              const PathTracer& tracer, const Camera& camera);
 

@@ -16,8 +16,9 @@ namespace brisance {
 namespace {
 
 // The first samples, which tell how many are needed: of the time that samples may take, and at least of the picture's.
-// Fewer know so little that more never seem to help.
-constexpr double kFirst = 1.0 / 12.0, kFirstOfPicture = 0.4;
+// Fewer know so little that more never seem to help. No more than so many where an error of 0.02 is asked for, as they
+// may be enough.
+constexpr double kFirst = 1.0 / 12.0, kFirstOfPicture = 0.4, kMostFirst = 32768.0, kErrorOfMostFirst = 0.02;
 // Of the error asked for: a little less is aimed at, since the samples' own error is known by chance.
 constexpr double kAim = 0.95;
 
@@ -85,6 +86,11 @@ BelievableError believable_by(const std::vector<ExpectedError>& expected) {
     };
 }
 
+std::size_t first_of(std::size_t most, double share, double error) {
+    const double enough = kMostFirst * std::pow(kErrorOfMostFirst / error, 2.0);
+    return static_cast<std::size_t>(std::min(std::clamp(kFirstOfPicture / share, kFirst, 1.0) * double(most), enough));
+}
+
 void sample(Corrector& corrector, const MomentTracers& tracers, const RenderedFrame& frame, const DrawInput& input,
             const Shot& asked, const std::vector<ExpectedError>& expected, Progress& progress) {
     if (asked.correction.samples > 0) {
@@ -95,7 +101,7 @@ void sample(Corrector& corrector, const MomentTracers& tracers, const RenderedFr
     const double share = most_of_correction(asked, input.plan);
     const std::size_t most =
         samples_of_share(share, solved, CountedMedium(input.medium), input.plan, tracers.tracer(0), tracers.camera(0));
-    const auto first = static_cast<std::size_t>(std::clamp(kFirstOfPicture / share, kFirst, 1.0) * double(most));
+    const std::size_t first = first_of(most, share, asked.lighting.error);
     if (first == 0)
         return;
     corrector.sample(first, progress);

@@ -70,11 +70,39 @@ void copy_rgb(const Medium& medium, const std::vector<Rgb>& field, const ivec3& 
         out[i] = {box[i], box[kRecords + i], box[2 * kRecords + i]};
 }
 
-// Whether a node of a brick glows: by its own emission, or as the source of what absorbs around it.
-bool glows(const Medium& medium, const ivec3& node) {
-    const std::int64_t n = medium.lattice.find_node(node);
-    return n >= 0 && ((!medium.source.empty() && medium.source[n] != Rgb(0.0f)) ||
-                      (!medium.emission.empty() && medium.emission[n] != Rgb(0.0f)));
+// Whether a node of the medium glows: by its own emission, or as the source of what absorbs around it.
+bool glows(const Medium& medium, std::size_t node) {
+    return (!medium.source.empty() && medium.source[node] != Rgb(0.0f)) ||
+           (!medium.emission.empty() && medium.emission[node] != Rgb(0.0f));
+}
+
+// Of the medium's bricks, those with a node that glows.
+std::vector<std::uint8_t> glowing_bricks(const Medium& medium) {
+    std::vector<std::uint8_t> out(medium.lattice.brick_count());
+    if (medium.emits())
+        parallel_for(
+            out.size(),
+            [&](std::size_t b) {
+                for (std::size_t n = b * BrickLattice::kNodes; !out[b] && n < (b + 1) * BrickLattice::kNodes; ++n)
+                    out[b] = glows(medium, n);
+            },
+            64);
+    return out;
+}
+
+// Whether a record of a brick glows, whose first node is `low`. Most bricks are known by the medium's.
+bool any_glows(const Medium& medium, const std::vector<std::uint8_t>& glowing, const ivec3& low) {
+    bool may = false;
+    for (int k = 0; k < 8; ++k) {
+        const int b = medium.lattice.find((low >> 3) + ivec3(k >> 2, k >> 1 & 1, k & 1));
+        may = may || (b >= 0 && glowing[b]);
+    }
+    for (int i = 0; may && i < kRecords; ++i) {
+        const std::int64_t n = medium.lattice.find_node(low + ivec3(i / (kSide * kSide), i / kSide % kSide, i % kSide));
+        if (n >= 0 && glows(medium, n))
+            return true;
+    }
+    return false;
 }
 
 }  // namespace
@@ -89,7 +117,8 @@ TrackingField::TrackingField(const Medium& medium)
       minimum_(bricks_.brick_count()),
       majorant_(bricks_.brick_count()),
       mean_(bricks_.brick_count()) {
-    parallel_for(bricks_.brick_count(), [&](std::size_t b) { copy_brick(b); });
+    const std::vector<std::uint8_t> glowing = glowing_bricks(medium);
+    parallel_for(bricks_.brick_count(), [&](std::size_t b) { copy_brick(b, glowing); });
     std::int32_t burning = 0;
     for (std::int32_t& f : fire_index_)
         f = f < 0 ? -1 : burning++;
@@ -99,7 +128,7 @@ TrackingField::TrackingField(const Medium& medium)
     parallel_for(bricks_.brick_count(), [&](std::size_t b) { copy_fire(b); });
 }
 
-void TrackingField::copy_brick(std::size_t brick) {
+void TrackingField::copy_brick(std::size_t brick, const std::vector<std::uint8_t>& glowing) {
     const Medium& medium = *medium_;
     const ivec3 low = bricks_.first_node(brick);
     float* sigma = &extinction_[brick * kRecords];
@@ -108,15 +137,11 @@ void TrackingField::copy_brick(std::size_t brick) {
     minimum_[brick] = *least;
     majorant_[brick] = *greatest;
     mean_[brick] = float(std::accumulate(sigma, sigma + kRecords, 0.0) / kRecords);
-    for (int i = 0; i < kRecords; ++i) {
-        const ivec3 node = low + ivec3(i / (kSide * kSide), i / kSide % kSide, i % kSide);
-        if (!albedo_.empty()) {
-            const std::int64_t n = medium.lattice.find_node(node);
-            albedo_[brick * kRecords + i] = n < 0 ? medium.albedo : medium.albedo_nodes[n];
-        }
-        if (fire_index_[brick] < 0 && glows(medium, node))
-            fire_index_[brick] = 0;
+    for (int i = 0; !albedo_.empty() && i < kRecords; ++i) {
+        const std::int64_t n = medium.lattice.find_node(low + ivec3(i / (kSide * kSide), i / kSide % kSide, i % kSide));
+        albedo_[brick * kRecords + i] = n < 0 ? medium.albedo : medium.albedo_nodes[n];
     }
+    fire_index_[brick] = any_glows(medium, glowing, low) ? 0 : -1;
 }
 
 void TrackingField::copy_fire(std::size_t brick) {
@@ -124,16 +149,19 @@ void TrackingField::copy_fire(std::size_t brick) {
     if (fire < 0)
         return;
     const ivec3 low = bricks_.first_node(brick);
+    const std::size_t first = fire * std::size_t(kRecords);
     if (!source_.empty())
-        copy_rgb(*medium_, medium_->source, low, &source_[fire * std::size_t(kRecords)]);
+        copy_rgb(*medium_, medium_->source, low, &source_[first]);
     if (!emission_.empty())
-        copy_rgb(*medium_, medium_->emission, low, &emission_[fire * std::size_t(kRecords)]);
+        copy_rgb(*medium_, medium_->emission, low, &emission_[first]);
+    const auto record_glows = [&](const ivec3& p) {
+        const std::size_t i = first + (p.x * kSide + p.y) * kSide + p.z;
+        return (!source_.empty() && source_[i] != Rgb(0.0f)) || (!emission_.empty() && emission_[i] != Rgb(0.0f));
+    };
     for (int c = 0; c < BrickLattice::kNodes; ++c)
-        for (int k = 0; k < 8; ++k) {
-            const ivec3 corner = BrickLattice::node_in_brick(c) + ivec3(k >> 2, k >> 1 & 1, k & 1);
-            if (glows(*medium_, low + corner))
+        for (int k = 0; k < 8; ++k)
+            if (record_glows(BrickLattice::node_in_brick(c) + ivec3(k >> 2, k >> 1 & 1, k & 1)))
                 burning_voxel_[fire * std::size_t(BrickLattice::kNodes) + c] = 1;
-        }
 }
 
 float TrackingField::extinction(std::size_t brick, const vec3& p) const {

@@ -56,7 +56,7 @@ public:
     bool has_emission() const { return !emission_.empty(); }
 
 private:
-    void copy_brick(std::size_t brick);
+    void copy_brick(std::size_t brick, const std::vector<std::uint8_t>& glowing);
     void copy_fire(std::size_t brick);
 
     const Medium* medium_;

@@ -62,8 +62,7 @@ TEST(CorrectedFrames, ErrLessWhenLessIsAskedFor) {
     EXPECT_EQ(samples_of(plain), 0.0);
     EXPECT_GT(samples_of(some), 0.0);
     EXPECT_GT(samples_of(corrected), 4096.0);
-    std::printf("certified: %.4f, corrected %.4f and %.4f\n", certified(plain), certified(some),
-                certified(corrected));
+    std::printf("certified: %.4f, corrected %.4f and %.4f\n", certified(plain), certified(some), certified(corrected));
     EXPECT_LT(certified(some), certified(plain));
     EXPECT_LT(certified(corrected), 0.6 * certified(plain));
     // What it believes of its own error comes from the samples that corrected it.
