@@ -21,6 +21,9 @@ constexpr std::size_t kDrawsAtOnce = 1 << 16;
 // Of one survey: more samples are several.
 constexpr std::size_t kDrawsOfSurvey = 1 << 22;
 
+// In one task.
+constexpr std::size_t kPixelsAtOnce = 1 << 14;
+
 // Degrees of freedom of what they measure: sums over many pixels are nearly normal.
 constexpr std::size_t kStrata = 64;
 
@@ -29,33 +32,42 @@ std::size_t pixels_of(const Image& image) {
 }
 
 double square_of(const EstimatedLayer& layer, std::size_t pixels) {
-    double sum = 0.0;
-    for (std::size_t p = 0; p < pixels; ++p)
-        if (const double own = glm::dot(layer.pixel(p), layer.pixel(p)); std::isfinite(own))
-            sum += own;
-    return sum;
+    std::vector<double> sums(pixels / kPixelsAtOnce + 1, 0.0);
+    parallel_blocks(pixels, kPixelsAtOnce, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t p = begin; p < end; ++p)
+            if (const double own = glm::dot(layer.pixel(p), layer.pixel(p)); std::isfinite(own))
+                sums[begin / kPixelsAtOnce] += own;
+    });
+    return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
 // Between even and the layer's luminance: errors are neither the same in the dark as in the light, nor in proportion to
 // it. 0 where there is no light, or none that is known.
 std::vector<float> weights_of(const EstimatedLayer& layer, std::size_t pixels) {
     std::vector<float> out(pixels, 0.0f);
-    for (std::size_t p = 0; p < pixels; ++p)
-        if (const float shown = luminance(Rgb(layer.pixel(p))); std::isfinite(shown) && shown > 0.0f)
-            out[p] = std::sqrt(shown * std::sqrt(shown));  // power 3/4
+    parallel_for(
+        pixels,
+        [&](std::size_t p) {
+            if (const float shown = luminance(Rgb(layer.pixel(p))); std::isfinite(shown) && shown > 0.0f)
+                out[p] = std::sqrt(shown * std::sqrt(shown));  // power 3/4
+        },
+        kPixelsAtOnce);
     return out;
 }
 
 // By which pixels are drawn: the root of the luminance of scattered light. What is seen directly has hardly an error.
 std::vector<double> sizes_of(const std::vector<EstimatedLayer>& layers, std::size_t pixels) {
     std::vector<double> out(pixels, 0.0);
-    for (const EstimatedLayer& layer : layers)
-        if (layer.layer->name != name_of(Cell::V) && layer.layer->name != name_of(Cell::A))
-            for (std::size_t p = 0; p < pixels; ++p)
-                if (const double shown = luminance(Rgb(layer.pixel(p))); std::isfinite(shown) && shown > 0.0)
-                    out[p] += shown;
-    for (double& size : out)
-        size = std::sqrt(size);
+    parallel_for(
+        pixels,
+        [&](std::size_t p) {
+            for (const EstimatedLayer& layer : layers)
+                if (layer.layer->name != name_of(Cell::V) && layer.layer->name != name_of(Cell::A))
+                    if (const double shown = luminance(Rgb(layer.pixel(p))); std::isfinite(shown) && shown > 0.0)
+                        out[p] += shown;
+            out[p] = std::sqrt(out[p]);
+        },
+        kPixelsAtOnce);
     return out;
 }
 

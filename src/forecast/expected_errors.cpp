@@ -1,7 +1,10 @@
 #include "forecast/expected_errors.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "core/parallel.h"
 #include "gathering/map_layouts.h"
 #include "medium/extinction_met.h"
 #include "medium_lighting/levels/lighting_level.h"
@@ -135,13 +138,17 @@ const char* brightest(const Plan& plan) {
 }  // namespace
 
 double sum_of_squares(const Layer& layer) {
-    double sum = 0.0;
-    const std::size_t n = layer.channels.size();
-    for (std::size_t p = 0; p + 2 < layer.pixels.size(); p += n)
-        for (std::size_t c = 0; c < 3; ++c)
-            if (const double v = layer.pixels[p + c]; std::isfinite(v))
-                sum += v * v;
-    return sum;
+    constexpr std::size_t kBlock = 1 << 16;
+    const std::size_t n = layer.channels.size(), pixels = layer.pixels.size() / n;
+    std::vector<double> sums(pixels / kBlock + 1, 0.0);
+    parallel_blocks(pixels, kBlock, [&](std::size_t begin, std::size_t end) {
+        double& sum = sums[begin / kBlock];
+        for (std::size_t p = begin; p < end; ++p)
+            for (std::size_t c = 0; c < std::min<std::size_t>(n, 3); ++c)
+                if (const double v = layer.pixels[p * n + c]; std::isfinite(v))
+                    sum += v * v;
+    });
+    return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
 std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFrame& frame, const Statistics& statistics,

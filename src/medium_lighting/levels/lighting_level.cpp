@@ -68,17 +68,21 @@ float albedo_met(const Medium& medium) {
     return all > 0.0 ? float(sum / all) : 0.0f;
 }
 
-// Of lighting.lattice_error, or what it is by default.
+// Of lighting.lattice_error, or what it is by default: a draft of 0.04 may be as coarse as the lights of a final
+// picture, whose samples do the rest (forecast/correction_plan.h).
 float allowed_of_first(const LightingSettings& settings) {
-    return settings.lattice_error >= 0.0f ? settings.lattice_error : kShareOfLattice * settings.error;
+    constexpr float kFinal = 0.02f, kDraft = 0.04f, kAllowedInDraft = 0.03f;
+    if (settings.lattice_error >= 0.0f)
+        return settings.lattice_error;
+    const float usual = kShareOfLattice * settings.error;
+    if (settings.error <= kFinal)
+        return usual;
+    const float of_draft = (settings.error - kFinal) / (kDraft - kFinal);
+    return std::max(usual, std::lerp(kShareOfLattice * kFinal, kAllowedInDraft, std::min(of_draft, 1.0f)));
 }
 
-// Where more is allowed, other errors grow, too.
 float allowed_of_smoke(const LightingSettings& settings) {
-    constexpr float kUsual = 0.02f;
-    if (settings.lattice_error >= 0.0f)
-        return settings.lattice_error / kShareOfLattice;
-    return settings.error <= kUsual ? settings.error : std::sqrt(kUsual * settings.error);
+    return allowed_of_first(settings) / kShareOfLattice;
 }
 
 // Errors of light on ever coarser lattices. What they need of the medium is looked for when it is asked for, and once.

@@ -42,7 +42,9 @@ constexpr double kCorrected = 0.45;
 // What lights of a set may take of the time, by a forecast that may err by a factor of three; and their finest step.
 constexpr double kLightsOfSet = 0.3;
 constexpr int kFinestOfSet = 3;
-constexpr double kWriting = 0.02;  // of the time, for alpha, depth and files
+// Of the time, for alpha, depth and files, and seconds for each pixel of the picture; the same for the blurs of a
+// correction.
+constexpr double kWriting = 0.02, kWritingOfPixel = 0.3e-6, kCorrectionOfPixel = 0.3e-6;
 constexpr std::size_t kTimedPixels = 512;
 constexpr const char* kStage = "choice for the time";
 
@@ -59,7 +61,10 @@ struct Timing {
     const Medium& medium;
     const CameraSettings& camera;
     const TimeBudget& budget;
-    double end() const { return (1.0 - kWriting) * budget.seconds; }
+    double end() const {
+        const double pixels = double(camera.width) * camera.height;
+        return (1.0 - kWriting) * budget.seconds - kWritingOfPixel * pixels;
+    }
     double left() const { return end() - budget.spent; }
 };
 
@@ -74,6 +79,7 @@ Option grid_option(const Timing& t, const Plan& plan, const Surroundings* surrou
     Option out;
     const CountedMedium counted(t.medium);
     const bool corrects = t.shot.correction.samples == kAutomaticCorrection;
+    const double blurs = kCorrectionOfPixel * double(t.camera.width) * t.camera.height;
     double share = 0.0;
     for (int step = step_count() - 1; step >= 0; --step) {
         const Step& of_step = kGridSteps.at(static_cast<std::size_t>(step));
@@ -85,9 +91,10 @@ Option grid_option(const Timing& t, const Plan& plan, const Surroundings* surrou
             camera.samples_per_axis = 1;
         const double alone =
             kMargin * (1.0 + t.shot.certify.belief) * grid_seconds(out.shot, counted, plan, camera) / t.budget.speed;
-        const double more = t.left() / alone - 1.0;  // of that time is left for samples
+        // Of that time is left for samples.
+        const double more = (t.left() - (corrects ? blurs : 0.0)) / alone - 1.0;
         share = corrects ? std::clamp(more, 0.0, of_step.most_correction) : 0.0;
-        out.seconds = (1.0 + share) * alone;
+        out.seconds = (1.0 + share) * alone + (share > 0.0 ? blurs : 0.0);
         if (more >= (corrects ? of_step.least_correction : 0.0))
             break;
     }
