@@ -170,7 +170,7 @@ Medium large_smooth_fire(float extinction) {
     return make_medium(r);
 }
 
-// From thin to dense, whatever the first light alone would be content with. Drafts allow sqrt(0.02 * 0.05).
+// From thin to dense, whatever the first light alone would be content with. Drafts allow 0.06.
 TEST(LightingLevel, NoLatticeIsWiderThanLightOfTheSmokeAllows) {
     bool wider = false;
     for (float extinction = 0.5f; extinction < 64.0f; extinction *= 1.3f) {

@@ -85,12 +85,23 @@ float allowed_of_smoke(const LightingSettings& settings) {
     return allowed_of_first(settings) / kShareOfLattice;
 }
 
+// Where more is allowed than usual, for the sake of a correction or in a draft: errors beside walls and lamps are too
+// narrow for its samples and are seen as leaks, and count for half as much more.
+float narrow_errors_count(const LightingSettings& settings) {
+    const float usual = kShareOfLattice * settings.error;
+    return usual > 0.0f ? 0.5f + 0.5f * std::max(1.0f, allowed_of_first(settings) / usual) : 1.0f;
+}
+
 // Errors of light on ever coarser lattices. What they need of the medium is looked for when it is asked for, and once.
 class LatticeErrors {
 public:
     // `surfaces`: null: none reaches into the medium.
-    LatticeErrors(const Medium& medium, const Occluders* surfaces, const Surroundings* surroundings = nullptr)
-        : medium_(medium), surfaces_(surfaces), depth_(medium.spacing * float(extinction_met(medium.extinction))) {
+    LatticeErrors(const Medium& medium, const LightingSettings& settings, const Occluders* surfaces,
+                  const Surroundings* surroundings = nullptr)
+        : medium_(medium),
+          surfaces_(surfaces),
+          narrow_errors_count_(narrow_errors_count(settings)),
+          depth_(medium.spacing * float(extinction_met(medium.extinction))) {
         if (surroundings && !surroundings->emitters().points().empty())
             lamps_ = LampsInSmoke(*surroundings, medium, fire_power());
     }
@@ -99,21 +110,22 @@ public:
     float of_first_without_detail(int level) { return std::hypot(of_detail(level), of_small_fire(level)); }
     float of_first(int level) {
         const float left = medium_.emits() ? kLeftByDetail : 1.0f;  // not measured without fire
-        return std::hypot(left * of_detail(level), of_small_fire(level), std::hypot(of_walls(level), of_lamps(level)));
+        return std::hypot(left * of_detail(level), of_small_fire(level), narrow(level));
     }
     float of_smoke(int level) {
         if (!albedo_)
             albedo_ = albedo_met(medium_);
         const float depth = std::exp2(float(level)) * depth_of_smoke();
         return std::hypot(kErrorOfSmoke * *albedo_ * *albedo_ * depth * depth,
-                          kErrorOfEmissionInSmoke * unresolved_emission(level),
-                          std::hypot(of_walls(level), of_lamps(level)));
+                          kErrorOfEmissionInSmoke * unresolved_emission(level), narrow(level));
     }
 
     int widest_of_first() const { return medium_.emits() ? kWidest : kWidestWithoutFire; }
     float widest_of_smoke() const { return float(medium_.emits() ? kSmokeWider : kSmokeWiderWithoutFire); }
 
 private:
+    float narrow(int level) { return narrow_errors_count_ * std::hypot(of_walls(level), of_lamps(level)); }
+
     float of_detail(int level) {
         const float voxels = error_of_voxels(std::exp2(float(level)) * depth_) - error_of_voxels(depth_);
         return std::hypot(voxels, kErrorOfEmission * unresolved_emission(level));
@@ -210,6 +222,7 @@ private:
     const Medium& medium_;
     const Occluders* surfaces_;
     LampsInSmoke lamps_;
+    float narrow_errors_count_;
     float depth_;  // of a voxel
     std::optional<float> albedo_;
     std::optional<float> fire_radius_;  // in voxels
@@ -327,9 +340,9 @@ float error_of_voxels(float depth) {
 LightingLevels lighting_levels(const Medium& medium, const LightingSettings& settings,
                                const Surroundings* surroundings) {
     if (!surfaces_reach_into(surroundings, medium))
-        return levels_by({medium, nullptr, surroundings}, settings);
+        return levels_by({medium, settings, nullptr, surroundings}, settings);
     const SurfaceOccluders surfaces(surroundings->intersector(), medium.spacing);
-    return levels_by({medium, &surfaces, surroundings}, settings);
+    return levels_by({medium, settings, &surfaces, surroundings}, settings);
 }
 
 float ToleratedInterpolation::of(float share) const {
@@ -337,7 +350,7 @@ float ToleratedInterpolation::of(float share) const {
 }
 
 ToleratedInterpolation tolerated_interpolation(const Medium& medium, const LightingSettings& settings) {
-    LatticeErrors errors(medium, nullptr);
+    LatticeErrors errors(medium, settings, nullptr);
     return interpolation_of(errors, settings, 0);
 }
 

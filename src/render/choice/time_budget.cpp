@@ -223,6 +223,7 @@ TimedSettings settings_for_time(const Shot& shot, const Medium& medium, const Su
                  {"machine_speed", given.speed},
                  {"method", out.shot.method == RenderMethod::Path ? "path" : "lighting_grid"},
                  {"lighting_error", out.shot.lighting.error},
+                 {"lattice_error", out.shot.lighting.lattice_error},
                  {"lighting_alpha", out.shot.lighting.alpha},
                  {"tracing_seconds", out.shot.tracing.seconds}}};
     return out;
