@@ -26,7 +26,8 @@ constexpr double kFewestSamples = 1.0;
 constexpr double kDeviations = 2.0;
 
 // Bands overlap: but for the finest, each holds less of the residual, and more of the noise, than the picture loses or
-// gains by it. Ratios of residuals of any wavelength from 4 pixels to 64 (1.4 to 1.6) and of white noise.
+// gains by it. Ratios of residuals of any wavelength from 4 pixels to 64 (1.4 to 1.6) and of white noise. The coarsest
+// band has all of what is even.
 constexpr double kResidualOfOverlap = 1.5, kNoiseOfOverlap = 0.58;
 
 // One level of the pyramid: sums of the residual and of the weight, then their quotients.
@@ -79,7 +80,7 @@ ResidualEnergy energy_at(const Level& band, int x, int y, double pixels) {
 }
 
 // Summed in a fixed order.
-ResidualBand energy_of(const Level& band, double pixels, bool finest) {
+ResidualBand energy_of(const Level& band, double pixels) {
     const std::vector<ResidualEnergy> none(kOctaves);
     std::vector<std::vector<ResidualEnergy>> rows(std::size_t(band.square.height), none);
     const Octaves octaves(band);
@@ -92,8 +93,6 @@ ResidualBand energy_of(const Level& band, double pixels, bool finest) {
         }
     });
     ResidualBand sum{none};
-    if (!finest)
-        sum = {none, kResidualOfOverlap, kNoiseOfOverlap};
     for (const std::vector<ResidualEnergy>& row : rows)
         for (std::size_t k = 0; k < row.size(); ++k)
             sum.octaves[k].add(row[k], 1.0);
@@ -298,7 +297,11 @@ SmoothResidual smooth_residual(const NoisyResidual& residual, const Believable& 
     for (std::size_t k = first; k < levels.size(); ++k, pixels *= 4.0) {
         if (k + 1 < levels.size())
             subtract(levels[k], levels[k + 1]);
-        out.bands.push_back(energy_of(levels[k], pixels, k == first));
+        out.bands.push_back(energy_of(levels[k], pixels));
+        if (k > first)
+            out.bands.back().noise_counts = kNoiseOfOverlap;
+        if (k > first && k + 1 < levels.size())
+            out.bands.back().residual_counts = kResidualOfOverlap;
     }
     const std::size_t before = first > 0 ? 1 : 0;
     if (before > 0)

@@ -140,6 +140,25 @@ TEST(Corrector, LeavesWhatItHasNotFound) {
     EXPECT_LT(layer.left(0.0), layer.found());
 }
 
+// Where the noise of two bands is known, and what they have of an error of 1 is not.
+CorrectedLayer two_bands(ResidualEnergy first, ResidualEnergy second) {
+    return {"MM", {{{first}}, {{second}}}, 1.0};
+}
+
+TEST(CorrectedLayer, KeepsAnErrorOfWhichSamplesTellNothing) {
+    const ResidualEnergy chance{-3.0, 10.0, 100.0};
+    EXPECT_NEAR(two_bands(chance, chance).left(1.0), 1.0, 1e-6);
+    EXPECT_NEAR(two_bands(chance, chance).left(0.1), 0.1, 1e-6);
+    EXPECT_LT(two_bands(chance, chance).left(1.0, 100.0), 0.5);  // a hundred times as many would
+}
+
+// Half of the error's square is in a band without noise. Of the other band Wiener's gain is 0.5 / (0.5 + 1).
+TEST(CorrectedLayer, LosesWhatSamplesKnow) {
+    const ResidualEnergy clear{0.5, 0.0, 0.0}, noisy{0.5, 1.0, 0.0};
+    EXPECT_NEAR(std::pow(two_bands(clear, noisy).left(1.0), 2.0), 0.5 * (1.0 - 0.5 / 1.5), 1e-9);
+    EXPECT_NEAR(two_bands(clear, {0.0, 1.0, 0.0}).left(1.0), 0.0, 1e-9);
+}
+
 // Of a right picture there is nothing to say: what noise does to it is far less than a path-traced picture of as many
 // samples has, which is 9 % of MM (measured).
 TEST(Corrector, LeavesARightPictureAlone) {

@@ -110,6 +110,63 @@ TEST(ResidualPyramid, TakesNoChanceForAResidual) {
     EXPECT_NEAR(known.gain(), 1.6 / 4.6, 1e-12);
 }
 
+double known(const std::vector<ResidualBand>& bands) {
+    double sum = 0.0;
+    for (const ResidualBand& band : bands)
+        sum += band.known();
+    return sum;
+}
+
+double square_of(const SmoothResidual& smooth) {
+    return mean_square(smooth.values, 0.0f);
+}
+
+// With noise of a tenth of the residual, whose mean square is 0.5, over three channels.
+TEST(ResidualPyramid, TakesNoMoreThanIsBelieved) {
+    const NoisyResidual clear = residual(1.0f, 0.1f);
+    double seen = 0.0;
+    const SmoothResidual all = smooth_residual(clear, [&](const std::vector<ResidualBand>& bands) {
+        seen = known(bands);
+        return 10.0 * seen;
+    });
+    EXPECT_NEAR(seen / (3.0 * kPixels), 0.5, 0.1);
+    EXPECT_EQ(all.values, smooth_residual(clear).values);
+    const double some = 1e-4 * seen;
+    const SmoothResidual little = smooth_residual(clear, [&](const auto&) { return some; });
+    EXPECT_NEAR(known(little.bands), some, 1e-9 * some);
+    EXPECT_LT(square_of(little), 0.05 * square_of(all));
+    EXPECT_EQ(square_of(smooth_residual(clear, [](const auto&) { return 0.0; })), 0.0);
+}
+
+// One sample for 64 pixels: three octaves of wavelength are one band of which nothing is known. The waves are found
+// nevertheless, and no light is lost between the bands.
+TEST(ResidualPyramid, TellsNoBandsApartThatHaveNoSamples) {
+    NoisyResidual few = residual(1.0f, 0.2f);
+    const SmoothResidual all = smooth_residual(few);
+    few.samples = double(kPixels) / 64.0;
+    const SmoothResidual some = smooth_residual(few);
+    ASSERT_EQ(some.bands.size() + 2, all.bands.size());
+    EXPECT_EQ(some.bands[0].levels, 3.0);
+    EXPECT_EQ(some.bands[0].known(), 0.0);
+    double found = 0.0, product = 0.0;
+    for (const ResidualBand& band : some.bands)
+        found += band.sum().residual;
+    for (std::size_t p = 0; p < kPixels; ++p)
+        product += glm::dot(few.estimates[0][p], few.estimates[1][p]);
+    EXPECT_NEAR(found, product, 1e-3 * product);
+    EXPECT_LT(mean_square(some.values, 1.0f), 0.25);  // of 0.5
+}
+
+TEST(ResidualPyramid, TakesSumsOverTheirDivisor) {
+    NoisyResidual sums = residual(1.0f, 0.5f);
+    const SmoothResidual means = smooth_residual(sums);
+    sums.divisor = 8.0;
+    for (std::vector<Rgb>& estimate : sums.estimates)
+        for (Rgb& value : estimate)
+            value *= 8.0f;
+    EXPECT_EQ(smooth_residual(sums).values, means.values);
+}
+
 // Small pictures have few levels or one.
 TEST(ResidualPyramid, TakesPicturesOfAnySize) {
     for (const auto& [width, height] : {std::pair(1, 1), std::pair(3, 50), std::pair(5, 4), std::pair(17, 9)}) {
