@@ -114,6 +114,31 @@ void add_residual(const std::vector<Rgb>& residual, const std::string& name, Ima
         4096);
 }
 
+// A residual of that square, by band: alike in all octaves of wavelength, give or take as much; by what the samples say
+// of each band; and with that sum. All distributions are normal.
+std::vector<ResidualEnergy> divided(double square, const std::vector<ResidualBand>& bands) {
+    std::vector<ResidualEnergy> out;
+    std::vector<double> variances;
+    double levels = 0.0, missing = square, doubt = 0.0;
+    for (const ResidualBand& band : bands)
+        levels += band.levels;
+    for (const ResidualBand& band : bands) {
+        out.push_back(band.sum());
+        double& residual = out.back().residual;
+        const double expected = band.levels / levels * square, spread = expected * expected;
+        const double weight = spread > 0.0 ? spread / (spread + out.back().variance) : 0.0;
+        residual = std::lerp(expected, residual, weight);
+        variances.push_back(weight * out.back().variance);
+        missing -= residual;
+        doubt += variances.back();
+    }
+    for (std::size_t k = 0; k < out.size(); ++k) {
+        const double share = doubt > 0.0 ? variances[k] / doubt : 0.0;
+        out[k].residual = std::max(0.0, out[k].residual + share * missing);
+    }
+    return out;
+}
+
 }  // namespace
 
 CertifiedError CorrectedLayer::before() const {
@@ -144,20 +169,12 @@ double CorrectedLayer::found() const {
 double CorrectedLayer::left(double error, double samples) const {
     if (!(square > 0.0))
         return error;
-    double levels = 0.0, all = 0.0, left = 0.0;
-    for (const ResidualBand& band : bands)
-        levels += band.levels;
-    for (const ResidualBand& band : bands) {
-        ResidualEnergy energy = band.sum();
-        const double expected = band.levels / levels * error * error * square, spread = expected * expected;
-        const double both = spread + energy.variance;
-        energy.residual =
-            both > 0.0 ? std::max(0.0, (spread * energy.residual + energy.variance * expected) / both) : 0.0;
-        const double gain = energy.gain(samples);
-        all += energy.residual;
-        left += (1.0 - gain) * (1.0 - gain) * energy.residual + gain * gain * energy.noise / samples;
+    double left = 0.0;
+    for (const ResidualEnergy& band : divided(error * error * square, bands)) {
+        const double gain = band.gain(samples);
+        left += (1.0 - gain) * (1.0 - gain) * band.residual + gain * gain * band.noise / samples;
     }
-    return all > 0.0 ? error * std::sqrt(left / all) : error;
+    return std::sqrt(left / square);
 }
 
 const CorrectedLayer* Correction::of(const std::string& cell) const {

@@ -19,6 +19,7 @@ namespace {
 // Fewer know so little that more never seem to help. No more than so many where an error of 0.02 is asked for, as they
 // may be enough.
 constexpr double kFirst = 1.0 / 12.0, kFirstOfPicture = 0.4, kMostFirst = 32768.0, kErrorOfMostFirst = 0.02;
+constexpr double kFewestFirst = 4096.0;
 // Of the error asked for: a little less is aimed at, since the samples' own error is known by chance.
 constexpr double kAim = 0.95;
 
@@ -87,8 +88,9 @@ BelievableError believable_by(const std::vector<ExpectedError>& expected) {
 }
 
 std::size_t first_of(std::size_t most, double share, double error) {
+    const double wanted = std::clamp(kFirstOfPicture / share, kFirst, 1.0) * double(most);
     const double enough = kMostFirst * std::pow(kErrorOfMostFirst / error, 2.0);
-    return static_cast<std::size_t>(std::min(std::clamp(kFirstOfPicture / share, kFirst, 1.0) * double(most), enough));
+    return std::min(most, static_cast<std::size_t>(std::clamp(wanted, kFewestFirst, enough)));
 }
 
 void sample(Corrector& corrector, const MomentTracers& tracers, const RenderedFrame& frame, const DrawInput& input,

@@ -161,7 +161,7 @@ TEST(CorrectedFrames, OfSetsErrLessThanByLightsAlone) {
     shot.certify.enabled = true;
     const RenderedFrame plain = render(by_lights_alone(shot), &set), corrected = render(shot, &set);
     EXPECT_EQ(samples_of(plain), 0.0);
-    EXPECT_GT(samples_of(corrected), 4096.0);
+    EXPECT_GE(samples_of(corrected), 4096.0);
     std::printf("certified: %.4f, corrected %.4f\n", certified(plain), certified(corrected));
     EXPECT_LT(certified(corrected), 0.7 * certified(plain));
 }

@@ -129,12 +129,13 @@ TEST(ResidualPyramid, TakesNoMoreThanIsBelieved) {
         seen = known(bands);
         return 10.0 * seen;
     });
-    EXPECT_NEAR(seen / (3.0 * kPixels), 0.5, 0.1);
+    EXPECT_GT(seen / (3.0 * kPixels), 0.25);  // of 0.5: borders, and the overlap of long waves, count for too little
+    EXPECT_LT(seen / (3.0 * kPixels), 0.5);
     EXPECT_EQ(all.values, smooth_residual(clear).values);
-    const double some = 1e-4 * seen;
+    const double some = 1e-7 * seen;
     const SmoothResidual little = smooth_residual(clear, [&](const auto&) { return some; });
     EXPECT_NEAR(known(little.bands), some, 1e-9 * some);
-    EXPECT_LT(square_of(little), 0.05 * square_of(all));
+    EXPECT_LT(square_of(little), 0.01 * square_of(all));
     EXPECT_EQ(square_of(smooth_residual(clear, [](const auto&) { return 0.0; })), 0.0);
 }
 
