@@ -169,12 +169,16 @@ double CorrectedLayer::found() const {
 double CorrectedLayer::left(double error, double samples) const {
     if (!(square > 0.0))
         return error;
-    double left = 0.0;
-    for (const ResidualEnergy& band : divided(error * error * square, bands)) {
-        const double gain = band.gain(samples);
+    const std::vector<ResidualEnergy> energies = divided(error * error * square, bands);
+    double all = 0.0, left = 0.0;
+    for (std::size_t k = 0; k < bands.size(); ++k) {
+        const ResidualEnergy& band = energies[k];
+        const double known = samples > 1.0 ? samples * band.known(samples) : bands[k].known();
+        const double gain = known > 0.0 ? known / (known + band.noise) : 0.0;
+        all += band.residual;
         left += (1.0 - gain) * (1.0 - gain) * band.residual + gain * gain * band.noise / samples;
     }
-    return std::sqrt(left / square);
+    return all > 0.0 ? error * std::sqrt(left / all) : error;
 }
 
 const CorrectedLayer* Correction::of(const std::string& cell) const {
