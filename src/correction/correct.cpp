@@ -114,8 +114,9 @@ void add_residual(const std::vector<Rgb>& residual, const std::string& name, Ima
         4096);
 }
 
-// A residual of that square, by band: alike in all octaves of wavelength, give or take as much; by what the samples say
-// of each band; and with that sum. All distributions are normal.
+// A residual of that square, by band: alike in all octaves of wavelength, give or take as much, and by what the
+// samples say of each band. What is missing of it after that is in bands of which little is known. All distributions
+// are normal.
 std::vector<ResidualEnergy> divided(double square, const std::vector<ResidualBand>& bands) {
     std::vector<ResidualEnergy> out;
     std::vector<double> variances;
@@ -134,7 +135,7 @@ std::vector<ResidualEnergy> divided(double square, const std::vector<ResidualBan
     }
     for (std::size_t k = 0; k < out.size(); ++k) {
         const double share = doubt > 0.0 ? variances[k] / doubt : 0.0;
-        out[k].residual = std::max(0.0, out[k].residual + share * missing);
+        out[k].residual = std::max(0.0, out[k].residual + share * std::max(0.0, missing));
     }
     return out;
 }

@@ -38,8 +38,9 @@ struct CorrectedLayer {
     double found() const;
     // What should be left of an error of the layer, relative to it, or would be with so many times the samples. Few
     // samples hardly tell which bands have it: without them it is taken to be alike in all octaves of wavelength, give
-    // or take as much, and what they measured counts by its variance beside that. Gains are those that such a residual
-    // would have. An error that was not found is in bands of which little is known, and stays.
+    // or take as much, and what they measured counts by its variance beside that. Gains are those that there are; with
+    // more samples, those that such a residual would have. What was not found is in bands of which little is known, and
+    // stays.
     double left(double error, double samples = 1.0) const;
 };
 
