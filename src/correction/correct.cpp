@@ -24,6 +24,9 @@ constexpr std::size_t kDrawsOfSurvey = 1 << 22;
 // In one task.
 constexpr std::size_t kPixelsAtOnce = 1 << 14;
 
+// Of a band the light is mostly in so many octaves of the weight. Each has to be told from chance by itself.
+constexpr double kOctavesOfLight = 3.0;
+
 // Degrees of freedom of what they measure: sums over many pixels are nearly normal.
 constexpr std::size_t kStrata = 64;
 
@@ -173,7 +176,8 @@ double CorrectedLayer::left(double error, double samples) const {
     const std::vector<ResidualEnergy> energies = divided(error * error * square, bands);
     double all = 0.0, left = 0.0;
     for (std::size_t k = 0; k < bands.size(); ++k) {
-        const ResidualEnergy& band = energies[k];
+        ResidualEnergy band = energies[k];
+        band.variance *= kOctavesOfLight;
         const double known = samples > 1.0 ? samples * band.known(samples) : bands[k].known();
         const double gain = known > 0.0 ? known / (known + band.noise) : 0.0;
         all += band.residual;

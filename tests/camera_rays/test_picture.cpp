@@ -139,6 +139,7 @@ TEST(Picture, ForwardScatteringStandsInItsOwnLayer) {
     shot.camera = front();
     shot.camera_given = true;
     shot.camera.samples_per_axis = 2;  // second looks follow the whole picture
+    shot.correction.samples = 0;       // by lights alone
     Progress silent;
     const Image all = render_medium(shot, medium, silent).image;
     shot.scattering.bounces = 1;
