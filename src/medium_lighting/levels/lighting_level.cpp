@@ -32,9 +32,10 @@ constexpr float kErrorOfSmallFire = 0.45f;
 // Of lighting.error: what light on a coarser lattice may add, and what the interpolation of its nodes may.
 constexpr float kShareOfLattice = 0.5f, kShareOfInterpolation = 0.25f;
 
-// Beyond this many times what is allowed, the next coarser lattice does not count; and no node is interpolated.
-// Between, light is gathered on both lattices, which is dear.
-constexpr float kNearlyAllowed = 1.3f, kNearlyInterpolated = 1.5f;
+// Beyond this many times what is allowed, the next coarser lattice does not count, and no node is interpolated.
+// Between, light is gathered on both lattices, which is dear: beside samples, which leave little of the difference, the
+// stretch is shorter.
+constexpr float kNearlyAllowed = 1.5f, kNearlyAllowedOfMore = 1.3f;
 
 // What is left of the error of voxels where the light of their detail is restored on the lattice twice as fine
 // (light_of_detail.h). Pictures of the built-in explosion refined 2 and 4 times err by 0.6 and 0.9 % more on the voxels
@@ -68,28 +69,33 @@ float albedo_met(const Medium& medium) {
     return all > 0.0 ? float(sum / all) : 0.0f;
 }
 
-// Of lighting.lattice_error, or what it is by default: a draft of 0.04 may be as coarse as the lights of a final
-// picture, whose samples do the rest (forecast/correction_plan.h).
+// Of lighting.lattice_error, or what it is by default.
 float allowed_of_first(const LightingSettings& settings) {
-    constexpr float kFinal = 0.02f, kDraft = 0.04f, kAllowedInDraft = 0.03f;
-    if (settings.lattice_error >= 0.0f)
-        return settings.lattice_error;
-    const float usual = kShareOfLattice * settings.error;
-    if (settings.error <= kFinal)
-        return usual;
-    const float of_draft = (settings.error - kFinal) / (kDraft - kFinal);
-    return std::max(usual, std::lerp(kShareOfLattice * kFinal, kAllowedInDraft, std::min(of_draft, 1.0f)));
+    return settings.lattice_error >= 0.0f ? settings.lattice_error : kShareOfLattice * settings.error;
 }
 
+// Where more than usual is allowed, other errors grow, too.
 float allowed_of_smoke(const LightingSettings& settings) {
-    return allowed_of_first(settings) / kShareOfLattice;
+    constexpr float kUsual = 0.02f;
+    if (settings.lattice_error >= 0.0f)
+        return settings.lattice_error / kShareOfLattice;
+    return settings.error <= kUsual ? settings.error : std::sqrt(kUsual * settings.error);
 }
 
-// Where more is allowed than usual, for the sake of a correction or in a draft: errors beside walls and lamps are too
-// narrow for its samples and are seen as leaks, and count for half as much more.
-float narrow_errors_count(const LightingSettings& settings) {
+// Over the usual: at least 1.
+float allowed_over_usual(const LightingSettings& settings) {
     const float usual = kShareOfLattice * settings.error;
-    return usual > 0.0f ? 0.5f + 0.5f * std::max(1.0f, allowed_of_first(settings) / usual) : 1.0f;
+    return usual > 0.0f ? std::max(1.0f, allowed_of_first(settings) / usual) : 1.0f;
+}
+
+// Where more is allowed than usual, for the sake of a correction: errors beside walls and lamps are too narrow for its
+// samples and are seen as leaks, and count for half as much more.
+float narrow_errors_count(const LightingSettings& settings) {
+    return 0.5f + 0.5f * allowed_over_usual(settings);
+}
+
+float nearly_allowed(const LightingSettings& settings) {
+    return std::max(kNearlyAllowedOfMore, kNearlyAllowed - 0.5f * (allowed_over_usual(settings) - 1.0f));
 }
 
 // Errors of light on ever coarser lattices. What they need of the medium is looked for when it is asked for, and once.
@@ -232,9 +238,8 @@ private:
 };
 
 // Light of a lattice and the next coarser one, whose errors are known.
-LightingLevel between(int level, float error, float of_coarser, float allowed) {
-    const float share =
-        of_coarser > 0.0f ? 1.0f - glm::smoothstep(allowed, kNearlyAllowed * allowed, of_coarser) : 1.0f;
+LightingLevel between(int level, float error, float of_coarser, float allowed, float nearly) {
+    const float share = of_coarser > 0.0f ? 1.0f - glm::smoothstep(allowed, nearly * allowed, of_coarser) : 1.0f;
     return {level, share, error, of_coarser};
 }
 
@@ -280,7 +285,7 @@ LightingLevel level_of_first(LatticeErrors& errors, const LightingSettings& sett
     for (;;) {
         const float next = errors.of_first(level + 1);
         if (next > allowed)
-            return without_traces(between(level, error, next, allowed));
+            return without_traces(between(level, error, next, allowed, nearly_allowed(settings)));
         error = next;
         if (++level == errors.widest_of_first())
             return {level, 0.0f, error};
@@ -296,7 +301,7 @@ LightingLevel smoke_by_error(LatticeErrors& errors, const LightingSettings& sett
         ++allowed;
         error = std::exchange(next, errors.of_smoke(allowed + 1));
     }
-    return between(allowed, error, next, most);
+    return between(allowed, error, next, most, nearly_allowed(settings));
 }
 
 // Light of the smoke follows from that on the lattice of the first, and has nothing finer.
@@ -346,7 +351,7 @@ LightingLevels lighting_levels(const Medium& medium, const LightingSettings& set
 }
 
 float ToleratedInterpolation::of(float share) const {
-    return most * (1.0f - glm::smoothstep(1.0f, kNearlyInterpolated, share * of_coarser));
+    return most * (1.0f - glm::smoothstep(1.0f, kNearlyAllowed, share * of_coarser));
 }
 
 ToleratedInterpolation tolerated_interpolation(const Medium& medium, const LightingSettings& settings) {

@@ -19,17 +19,16 @@ namespace brisance {
 
 namespace {
 
-// From coarse to fine. The finest are followed by a correction (correction/correct.h).
+// From coarse to fine. The finest are followed by a correction (correction/correct.h), and are by lights alone without.
 struct Step {
     float error, alpha, scattering_alpha;
-    // Beside a correction: what lattices may add, and seconds of samples over those of the picture, at least and at
-    // most.
-    float lattice_error = 0.0f;
+    float lattice_error;
+    // Seconds of samples over those of the picture, at least and at most.
     double least_correction = 0.0, most_correction = 0.0;
 };
-constexpr std::array<Step, 5> kGridSteps = {{{0.1f, 1.0f, 1.0f},
-                                             {0.05f, 1.0f, 1.0f},
-                                             {0.03f, 1.5f, 1.25f},
+constexpr std::array<Step, 5> kGridSteps = {{{0.1f, 1.0f, 1.0f, 0.05f},
+                                             {0.05f, 1.0f, 1.0f, 0.03f},
+                                             {0.03f, 1.5f, 1.25f, 0.03f},
                                              {0.02f, 2.0f, 1.5f, 0.03f, 0.2, 20.0},
                                              {0.01f, 3.0f, 2.0f, 0.015f, 1.5, 20.0}}};
 
@@ -84,7 +83,8 @@ Option grid_option(const Timing& t, const Plan& plan, const Surroundings* surrou
     for (int step = step_count() - 1; step >= 0; --step) {
         const Step& of_step = kGridSteps.at(static_cast<std::size_t>(step));
         out.shot = with_step(t.shot, step);
-        if (corrects && of_step.most_correction > 0.0 && t.shot.lighting.lattice_error < 0.0f)
+        const bool by_lights_alone = !corrects && of_step.most_correction > 0.0;
+        if (!by_lights_alone && t.shot.lighting.lattice_error < 0.0f)
             out.shot.lighting.lattice_error = of_step.lattice_error;
         CameraSettings camera = t.camera;
         if (step == 0)
