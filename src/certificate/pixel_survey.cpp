@@ -14,7 +14,7 @@ namespace {
 class ZOrder {
 public:
     ZOrder(const std::vector<double>& size, int width)
-        : size_(size), columns_(std::size_t(width)), rows_(size.size() / columns_) {
+        : size_(size), columns_(std::size_t(width)), rows_(columns_ > 0 ? size.size() / columns_ : 0) {
         add_square(0, 0, std::bit_ceil(std::max(columns_, rows_)));
     }
     const std::vector<std::size_t>& pixels() const { return pixels_; }

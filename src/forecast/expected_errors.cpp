@@ -110,7 +110,8 @@ public:
     }
 
 private:
-    // Known of the picture, in which light of the smoke has about as much of it.
+    // Relative to the cell. The coarse lattice's error is that of the picture, and light of the smoke has half of its
+    // square. Of a cell that the picture hardly shows it is not known.
     double coarse_light(double share) const { return std::sqrt(0.5) * coarse_light_ / std::max(share, 0.1); }
 
     // Over the optical depth of a voxel of the light. `width`: of the orders' voxels, in those.

@@ -14,8 +14,8 @@ enum class ShadowMethod {
 struct LightingSettings {
     // Relative error that shadow maps may add to the picture. Their resolution follows from it where it is not given.
     float error = 0.02f;
-    // Relative error that light on voxels wider than the medium's own may add to the picture before it has scattered,
-    // and half of what light of the smoke may. Below 0: half of `error`.
+    // Relative error that light on voxels wider than the medium's own may add to the picture before it has scattered;
+    // that of light of the smoke goes in proportion. Below 0: half of `error`.
     float lattice_error = -1.0f;
     // Relative error of the light that the picture shows up to which nodes are interpolated from coarser ones. 0: none
     // are, every node is lit by itself. Below 0: up to a quarter of `error`, where voxels twice as wide would serve

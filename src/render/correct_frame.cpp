@@ -57,7 +57,7 @@ std::vector<LayerError> layer_errors(const Correction& correction, const std::ve
     return out;
 }
 
-// What samples that do not reach the wanted error may leave more of it than the most would, which take longer.
+// Where even the most samples do not reach the wanted error: what fewer may leave, over what the most would.
 constexpr double kHardlyMore = 1.05;
 
 // How many times the samples that there are leave no more than `wanted`; at most `most`.
@@ -105,8 +105,6 @@ void sample(Corrector& corrector, const MomentTracers& tracers, const RenderedFr
     const std::size_t most =
         samples_of_share(share, solved, CountedMedium(input.medium), input.plan, tracers.tracer(0), tracers.camera(0));
     const std::size_t first = first_of(most, share, asked.lighting.error);
-    if (first == 0)
-        return;
     corrector.sample(first, progress);
     const Correction first_look = corrector.measured(believable_by(expected));
     const double times = samples_for(kAim * asked.lighting.error, first_look,
@@ -124,7 +122,7 @@ void note(const Correction& correction, StageCost& cost) {
             squares.push_back(layer.square > 0.0 ? band.sum().residual / layer.square : 0.0);
         }
         cost.detail[layer.name.empty() ? "picture" : layer.name] = {{"error_found", layer.found()},
-                                                                    {"left_of_that", layer.left(0.0)},
+                                                                    {"left_of_that", layer.left(layer.found())},
                                                                     {"square_errors_found", squares},
                                                                     {"gains", gains}};
     }

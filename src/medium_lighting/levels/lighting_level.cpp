@@ -74,28 +74,28 @@ float allowed_of_first(const LightingSettings& settings) {
     return settings.lattice_error >= 0.0f ? settings.lattice_error : kShareOfLattice * settings.error;
 }
 
-// Where more than usual is allowed, other errors grow, too.
-float allowed_of_smoke(const LightingSettings& settings) {
-    constexpr float kUsual = 0.02f;
-    if (settings.lattice_error >= 0.0f)
-        return settings.lattice_error / kShareOfLattice;
-    return settings.error <= kUsual ? settings.error : std::sqrt(kUsual * settings.error);
-}
-
-// Over the usual: at least 1.
+// Over the default.
 float allowed_over_usual(const LightingSettings& settings) {
     const float usual = kShareOfLattice * settings.error;
-    return usual > 0.0f ? std::max(1.0f, allowed_of_first(settings) / usual) : 1.0f;
+    return usual > 0.0f ? allowed_of_first(settings) / usual : 1.0f;
+}
+
+// In proportion. Where lighting.error is more than usual, other errors grow, too.
+float allowed_of_smoke(const LightingSettings& settings) {
+    constexpr float kUsual = 0.02f;
+    const float usual = settings.error <= kUsual ? settings.error : std::sqrt(kUsual * settings.error);
+    return allowed_over_usual(settings) * usual;
 }
 
 // Where more is allowed than usual, for the sake of a correction: errors beside walls and lamps are too narrow for its
-// samples and are seen as leaks, and count for half as much more.
+// samples and are seen as leaks. They count twice as much where three times as much is allowed.
 float narrow_errors_count(const LightingSettings& settings) {
-    return 0.5f + 0.5f * allowed_over_usual(settings);
+    return 0.5f + 0.5f * std::max(1.0f, allowed_over_usual(settings));
 }
 
 float nearly_allowed(const LightingSettings& settings) {
-    return std::max(kNearlyAllowedOfMore, kNearlyAllowed - 0.5f * (allowed_over_usual(settings) - 1.0f));
+    const float more = std::max(1.0f, allowed_over_usual(settings)) - 1.0f;
+    return std::max(kNearlyAllowedOfMore, kNearlyAllowed - 0.5f * more);
 }
 
 // Errors of light on ever coarser lattices. What they need of the medium is looked for when it is asked for, and once.
@@ -270,13 +270,15 @@ LightingLevel without_traces(const LightingLevel& light) {
     return {light.level, at - float(light.level), light.error, light.error_of_coarser};
 }
 
-LightingLevel stated_level(LatticeErrors& errors, int level) {
-    return level > 0 ? LightingLevel{level, 0.0f, errors.of_first(level)} : LightingLevel{};
+// `error`: of a level.
+template <class Error>
+LightingLevel stated_level(int level, const Error& error) {
+    return level > 0 ? LightingLevel{level, 0.0f, error(level)} : LightingLevel{};
 }
 
 LightingLevel level_of_first(LatticeErrors& errors, const LightingSettings& settings) {
     if (settings.lattice_level >= 0 || settings.interpolation >= 0.0f)
-        return stated_level(errors, settings.lattice_level);
+        return stated_level(settings.lattice_level, [&](int level) { return errors.of_first(level); });
     const float allowed = allowed_of_first(settings);
     if (!(allowed > 0.0f))
         return {};
@@ -319,7 +321,8 @@ LightingLevel no_wider_than_smoke(LatticeErrors& errors, const LightingSettings&
 
 LightingLevel level_of_smoke(LatticeErrors& errors, const LightingSettings& settings, const LightingLevel& first) {
     if (settings.smoke_lattice_level >= 0)
-        return {std::max(settings.smoke_lattice_level, first.level)};
+        return stated_level(std::max(settings.smoke_lattice_level, first.level),
+                            [&](int level) { return errors.of_smoke(level); });
     if (settings.lattice_level >= 0 || settings.interpolation >= 0.0f)
         return {first.level};
     const float finest = position(first), widest = finest + errors.widest_of_smoke();

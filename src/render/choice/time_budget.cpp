@@ -26,9 +26,9 @@ struct Step {
     // Seconds of samples over those of the picture, at least and at most.
     double least_correction = 0.0, most_correction = 0.0;
 };
-constexpr std::array<Step, 5> kGridSteps = {{{0.1f, 1.0f, 1.0f, 0.05f},
-                                             {0.05f, 1.0f, 1.0f, 0.03f},
-                                             {0.03f, 1.5f, 1.25f, 0.03f},
+constexpr std::array<Step, 5> kGridSteps = {{{0.1f, 1.0f, 1.0f, 0.1f},
+                                             {0.05f, 1.0f, 1.0f, 0.05f},
+                                             {0.03f, 1.5f, 1.25f, 0.04f},
                                              {0.02f, 2.0f, 1.5f, 0.03f, 0.2, 20.0},
                                              {0.01f, 3.0f, 2.0f, 0.015f, 1.5, 20.0}}};
 
@@ -91,15 +91,17 @@ Option grid_option(const Timing& t, const Plan& plan, const Surroundings* surrou
             camera.samples_per_axis = 1;
         const double alone =
             kMargin * (1.0 + t.shot.certify.belief) * grid_seconds(out.shot, counted, plan, camera) / t.budget.speed;
-        // Of that time is left for samples.
-        const double more = (t.left() - (corrects ? blurs : 0.0)) / alone - 1.0;
+        // Times as long, which are left for samples.
+        const double more = (t.left() - (corrects && of_step.most_correction > 0.0 ? blurs : 0.0)) / alone - 1.0;
         share = corrects ? std::clamp(more, 0.0, of_step.most_correction) : 0.0;
         out.seconds = (1.0 + share) * alone + (share > 0.0 ? blurs : 0.0);
         if (more >= (corrects ? of_step.least_correction : 0.0))
             break;
     }
     out.shot.method = RenderMethod::LightingGrid;
-    if (corrects) {
+    if (corrects)
+        out.shot.correction.samples = 0;
+    if (share > 0.0) {
         const PathTracer tracer(t.medium, t.shot.tracing, t.shot.scattering.bounces, surroundings);
         out.shot.correction.samples =
             static_cast<int>(samples_of_share(share, out.shot, counted, plan, tracer, Camera(t.camera, t.medium)));
@@ -223,7 +225,9 @@ TimedSettings settings_for_time(const Shot& shot, const Medium& medium, const Su
                  {"machine_speed", given.speed},
                  {"method", out.shot.method == RenderMethod::Path ? "path" : "lighting_grid"},
                  {"lighting_error", out.shot.lighting.error},
-                 {"lattice_error", out.shot.lighting.lattice_error},
+                 {"lattice_error", out.shot.lighting.lattice_error >= 0.0f
+                                       ? nlohmann::ordered_json(out.shot.lighting.lattice_error)
+                                       : nlohmann::ordered_json("auto")},
                  {"lighting_alpha", out.shot.lighting.alpha},
                  {"tracing_seconds", out.shot.tracing.seconds}}};
     return out;

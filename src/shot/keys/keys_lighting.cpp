@@ -10,9 +10,8 @@ void add_lighting_keys(std::vector<Key>& keys) {
         real_float({0.0, 1.0, true}), [](Shot & s) -> auto& { return s.lighting.error; }));
     keys.push_back(make_key(
         "lighting.lattice_error",
-        "relative error that light on wider voxels may add to the picture, and twice that for light of the smoke; "
-        "auto: "
-        "half of lighting.error, up to three times that where a correction follows",
+        "relative error that light on wider voxels may add to the picture before it has scattered; that of light of "
+        "the smoke goes in proportion; auto: half of lighting.error, up to three times that beside a correction",
         or_word(real_float({0.0, 1.0}), "auto", -1.0f), [](Shot & s) -> auto& { return s.lighting.lattice_error; }));
     keys.push_back(make_key(
         "lighting.interpolation",
