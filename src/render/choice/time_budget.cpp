@@ -83,8 +83,7 @@ Option grid_option(const Timing& t, const Plan& plan, const Surroundings* surrou
     for (int step = step_count() - 1; step >= 0; --step) {
         const Step& of_step = kGridSteps.at(static_cast<std::size_t>(step));
         out.shot = with_step(t.shot, step);
-        const bool by_lights_alone = !corrects && of_step.most_correction > 0.0;
-        if (!by_lights_alone && t.shot.lighting.lattice_error < 0.0f)
+        if (corrects && of_step.most_correction > 0.0 && t.shot.lighting.lattice_error < 0.0f)
             out.shot.lighting.lattice_error = of_step.lattice_error;
         CameraSettings camera = t.camera;
         if (step == 0)
@@ -180,7 +179,10 @@ int step_count() {
 }
 
 Shot with_step(Shot shot, int step) {
-    shot = with_lights(std::move(shot), kGridSteps.at(static_cast<std::size_t>(step)));
+    const Step& of_step = kGridSteps.at(static_cast<std::size_t>(step));
+    shot = with_lights(std::move(shot), of_step);
+    if (!(of_step.most_correction > 0.0) && shot.lighting.lattice_error < 0.0f)
+        shot.lighting.lattice_error = of_step.lattice_error;
     if (step == 0) {
         shot.camera.samples_per_axis = 1;
         shot.camera.edge_refinement = 1;
