@@ -60,14 +60,17 @@ std::vector<float> weights_of(const EstimatedLayer& layer, std::size_t pixels) {
 
 // By which pixels are drawn: the root of the luminance of scattered light. What is seen directly has hardly an error.
 std::vector<double> sizes_of(const std::vector<EstimatedLayer>& layers, std::size_t pixels) {
+    std::vector<const EstimatedLayer*> scattered;
+    for (const EstimatedLayer& layer : layers)
+        if (layer.layer->name != name_of(Cell::V) && layer.layer->name != name_of(Cell::A))
+            scattered.push_back(&layer);
     std::vector<double> out(pixels, 0.0);
     parallel_for(
         pixels,
         [&](std::size_t p) {
-            for (const EstimatedLayer& layer : layers)
-                if (layer.layer->name != name_of(Cell::V) && layer.layer->name != name_of(Cell::A))
-                    if (const double shown = luminance(Rgb(layer.pixel(p))); std::isfinite(shown) && shown > 0.0)
-                        out[p] += shown;
+            for (const EstimatedLayer* layer : scattered)
+                if (const double shown = luminance(Rgb(layer->pixel(p))); std::isfinite(shown) && shown > 0.0)
+                    out[p] += shown;
             out[p] = std::sqrt(out[p]);
         },
         kPixelsAtOnce);

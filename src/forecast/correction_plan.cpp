@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "medium_lighting/levels/lighting_level.h"
+
 namespace brisance {
 
 namespace {
@@ -15,15 +17,14 @@ constexpr float kCoarsestLights = 0.02f, kFinestLights = 0.01f;
 // What lattices may add to the picture over the error that is asked for, and over what they may add by default: on
 // voxels twice as wide pictures of four volumes take a half to two thirds of the time, and 20,000 samples leave less of
 // their error than the finer voxels had.
-constexpr float kLatticeOfAsked = 1.5f, kMostLattice = 3.0f, kUsualLattice = 0.5f;
+constexpr float kLatticeOfAsked = 1.5f, kMostLattice = 3.0f;
 // Seconds of samples over those of the picture: at most, and as they usually are where kUsualError is asked. The square
 // of what noise leaves falls with their number.
 constexpr double kMostShare = 8.0, kUsualShare = 3.0, kUsualError = 0.01;
 
 // Pixels of the pilot that tells what a sample costs.
 constexpr std::size_t kPilot = 512;
-// Fewer tell nothing that is worth their set-up.
-constexpr double kFewest = 4096.0, kMost = double(1 << 28);
+constexpr double kMost = double(1 << 28);
 
 // Baselines are rendered for what they are, errors and all.
 bool is_baseline(const Shot& shot) {
@@ -63,7 +64,7 @@ Shot shot_of_lights(Shot shot, const Plan& plan) {
     const float asked = shot.lighting.error, part = float(part_of_share(shot, plan));
     shot.lighting.error = error_of_lights(shot, plan);
     if (part > 0.0f && shot.lighting.lattice_error < 0.0f) {
-        const float usual = kUsualLattice * shot.lighting.error;
+        const float usual = kShareOfLattice * shot.lighting.error;
         shot.lighting.lattice_error =
             std::lerp(usual, std::clamp(kLatticeOfAsked * asked, usual, kMostLattice * usual), part);
     }
@@ -93,7 +94,7 @@ std::size_t samples_of_share(double share, const Shot& shot, const CountedMedium
     const double seconds = share * grid_seconds(shot, counted, smoke, camera.settings()) -
                            tracer_seconds(counted.medium) - pilot_seconds(pilot, kPilot);
     const double samples = seconds / std::max(pilot.lit_ray_seconds(), 1e-9);
-    return samples < kFewest ? 0 : static_cast<std::size_t>(std::min(samples, kMost));
+    return samples < kFewestCorrections ? 0 : static_cast<std::size_t>(std::min(samples, kMost));
 }
 
 }  // namespace brisance

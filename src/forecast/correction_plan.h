@@ -17,6 +17,9 @@
 
 namespace brisance {
 
+// Fewer samples tell nothing that is worth their set-up.
+constexpr double kFewestCorrections = 4096.0;
+
 // lighting.error that the lights are built for.
 float error_of_lights(const Shot& shot, const Plan& plan);
 // The shot with that error, and with what its lattices may add.

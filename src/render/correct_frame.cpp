@@ -19,7 +19,6 @@ namespace {
 // Fewer know so little that more never seem to help. No more than so many where an error of 0.02 is asked for, as they
 // may be enough.
 constexpr double kFirst = 1.0 / 12.0, kFirstOfPicture = 0.4, kMostFirst = 32768.0, kErrorOfMostFirst = 0.02;
-constexpr double kFewestFirst = 4096.0;
 // Of the error asked for: what samples leave is believed to be 0.75 to 1 times what certificates find
 // (docs/numbers.md).
 constexpr double kAim = 0.85;
@@ -91,7 +90,7 @@ BelievableError believable_by(const std::vector<ExpectedError>& expected) {
 std::size_t first_of(std::size_t most, double share, double error) {
     const double wanted = std::clamp(kFirstOfPicture / share, kFirst, 1.0) * double(most);
     const double enough = kMostFirst * std::pow(kErrorOfMostFirst / error, 2.0);
-    return std::min(most, static_cast<std::size_t>(std::clamp(wanted, kFewestFirst, enough)));
+    return std::min(most, static_cast<std::size_t>(std::clamp(wanted, kFewestCorrections, enough)));
 }
 
 void sample(Corrector& corrector, const MomentTracers& tracers, const RenderedFrame& frame, const DrawInput& input,
@@ -102,8 +101,10 @@ void sample(Corrector& corrector, const MomentTracers& tracers, const RenderedFr
     }
     const Shot solved = as_solved(input.shot, frame.statistics);
     const double share = most_of_correction(asked, input.plan);
-    const std::size_t most =
-        samples_of_share(share, solved, CountedMedium(input.medium), input.plan, tracers.tracer(0), tracers.camera(0));
+    // Lattices count on samples, however little time the picture takes.
+    const std::size_t most = std::max(
+        static_cast<std::size_t>(kFewestCorrections),
+        samples_of_share(share, solved, CountedMedium(input.medium), input.plan, tracers.tracer(0), tracers.camera(0)));
     const std::size_t first = first_of(most, share, asked.lighting.error);
     corrector.sample(first, progress);
     const Correction first_look = corrector.measured(believable_by(expected));

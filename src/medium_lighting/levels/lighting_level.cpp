@@ -29,8 +29,8 @@ constexpr float kErrorOfEmission = 0.1f;
 // wide changed MV by 2 % where a small fire in thin smoke had 18 voxels across, and four times as wide by 11 %.
 constexpr float kErrorOfSmallFire = 0.45f;
 
-// Of lighting.error: what light on a coarser lattice may add, and what the interpolation of its nodes may.
-constexpr float kShareOfLattice = 0.5f, kShareOfInterpolation = 0.25f;
+// Of lighting.error: what the interpolation of nodes may add.
+constexpr float kShareOfInterpolation = 0.25f;
 
 // Beyond this many times what is allowed, the next coarser lattice does not count, and no node is interpolated.
 // Between, light is gathered on both lattices, which is dear: beside samples, which leave little of the difference, the

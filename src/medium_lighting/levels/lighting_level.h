@@ -19,6 +19,9 @@
 
 namespace brisance {
 
+// lighting.lattice_error over lighting.error, by default.
+constexpr float kShareOfLattice = 0.5f;
+
 struct LightingLevel {
     int level = 0;                  // voxels 2^level wide
     float share_of_coarser = 0.0f;  // of the light of level + 1, in [0, 1)
