@@ -9,7 +9,6 @@
 #include "core/parallel.h"
 #include "gathering/gather.h"
 #include "gathering/map_layouts.h"
-#include "medium_lighting/levels/lighting_level.h"
 #include "medium_lighting/lit_lattice.h"
 #include "reference/trace_picture.h"
 
@@ -105,9 +104,15 @@ LatticeChoice forecast_lattice(const Shot& shot, const Medium& medium, int smoke
 }
 
 double lighting_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan) {
-    const LightingLevels levels = lighting_levels(counted.medium, shot.lighting);
+    const std::optional<LightingLevels> stated = stated_levels(shot.lighting);
+    return lighting_seconds(shot, counted, plan, stated ? *stated : lighting_levels(counted.medium, shot.lighting));
+}
+
+double lighting_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan,
+                        const LightingLevels& levels) {
     const auto nodes_of = [&](const LightingLevel& level) {
-        return counted.lit_nodes / std::pow(kNodesOfParent, level.level);
+        const double parents = level.share_of_coarser > 0.0f ? 1.0 / kNodesOfParent : 0.0;
+        return counted.lit_nodes / std::pow(kNodesOfParent, level.level) * (1.0 + parents);
     };
     const double nodes = nodes_of(levels.first), of_smoke = plan.multiple ? nodes_of(levels.smoke) : 0.0;
     const double own = own_share_of(shot.lighting, counted.medium.mean_cosine);
@@ -135,8 +140,11 @@ double lighting_seconds(const Shot& shot, const CountedMedium& counted, const Pl
 }
 
 double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan, const CameraSettings& camera) {
-    return lighting_seconds(shot, counted, plan) + kCameraRay * camera_rays(shot, counted, camera) +
-           kSurfaceRay * surface_rays(plan, camera);
+    return lighting_seconds(shot, counted, plan) + camera_seconds(shot, counted, plan, camera);
+}
+
+double camera_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan, const CameraSettings& camera) {
+    return kCameraRay * camera_rays(shot, counted, camera) + kSurfaceRay * surface_rays(plan, camera);
 }
 
 bool grid_is_forecast(const Plan& plan) {

@@ -6,6 +6,7 @@
 #include "camera/camera.h"
 #include "forecast/plan.h"
 #include "medium/medium.h"
+#include "medium_lighting/levels/lighting_level.h"
 #include "reference/path_tracer.h"
 #include "scattering/lattice_level.h"
 #include "shot/shot.h"
@@ -32,6 +33,9 @@ LatticeChoice forecast_lattice(const Shot& shot, const Medium& medium, int smoke
 double grid_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan, const CameraSettings& camera);
 // Of these, all but the camera's.
 double lighting_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan);
+double lighting_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan, const LightingLevels& levels);
+// The camera's.
+double camera_seconds(const Shot& shot, const CountedMedium& counted, const Plan& plan, const CameraSettings& camera);
 
 // Whether that is known for pictures of the plan: not with surfaces, lamps and methods other than the hierarchy's.
 bool grid_is_forecast(const Plan& plan);

@@ -41,14 +41,16 @@ double limited(double error) {
 // No cell's: errors of the picture that its light on surfaces has for want of samples.
 const std::string kNoiseOfShading = "noise of shading";
 
+const std::string kLattice = "lattice of the light";
 const std::string kSeries = "orders of scattering on the coarse lattice";
 
-// A number that a stage noted; 0 where it did not run.
-double noted(const Statistics& statistics, const std::string& stage, const char* key) {
+// A number that a stage noted.
+double noted(const Statistics& statistics, const std::string& stage, const char* key,
+             double where_it_did_not_run = 0.0) {
     for (const StageCost& s : statistics.stages)
         if (s.name == stage && s.detail.contains(key) && s.detail[key].is_number())
             return s.detail[key].get<double>();
-    return 0.0;
+    return where_it_did_not_run;
 }
 
 // What noise leaves on surfaces, over the picture, whose sum of squares is `all`.
@@ -154,10 +156,9 @@ double sum_of_squares(const Layer& layer) {
 
 std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFrame& frame, const Statistics& statistics,
                                            const std::function<void(ExpectedError&)>& change) {
-    const std::string lattice = "lattice of the light";
     const ErrorModel model(
-        frame, noted(statistics, lattice, "error"), noted(statistics, lattice, "interpolation"),
-        noted(statistics, lattice, "smoke_lattice_level"), noted(statistics, kSeries, "lattice_level"),
+        frame, noted(statistics, kLattice, "error"), noted(statistics, kLattice, "interpolation"),
+        noted(statistics, kLattice, "smoke_lattice_level"), noted(statistics, kSeries, "lattice_level"),
         noted(statistics, kSeries, "share_of_fine_bounces"), noted(statistics, kSeries, "estimated_remainder"));
     std::vector<ExpectedError> out(1);
     const double all = sum_of_squares(image.layer(""));
@@ -192,6 +193,12 @@ std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFra
 
 Shot as_solved(const Shot& shot, const Statistics& statistics) {
     Shot out = shot;
+    const auto state = [&](int& level, const char* key, const char* share) {
+        if (noted(statistics, kLattice, share, 1.0) == 0.0)
+            level = static_cast<int>(noted(statistics, kLattice, key));
+    };
+    state(out.lighting.lattice_level, "lattice_level", "share_of_coarser_level");
+    state(out.lighting.smoke_lattice_level, "smoke_lattice_level", "smoke_share_of_coarser_level");
     if (noted(statistics, kSeries, "nodes") > 0.0)
         out.scattering.lattice_level = static_cast<int>(noted(statistics, kSeries, "lattice_level"));
     return out;

@@ -37,8 +37,8 @@ double sum_of_squares(const Layer& layer);
 std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFrame& frame, const Statistics& statistics,
                                            const std::function<void(ExpectedError&)>& change = {});
 
-// The shot of a frame that has been rendered, with the lattice on which its orders of scattering were solved: before
-// that is known, grid_seconds() can only guess where the light is.
+// The shot of a frame that has been rendered, with the lattices of its light, and that on which its orders of
+// scattering were solved: before that is known, grid_seconds() can only guess where the light is.
 Shot as_solved(const Shot& shot, const Statistics& statistics);
 
 // Of a picture that is not rendered yet.

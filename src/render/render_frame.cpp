@@ -182,7 +182,8 @@ void render_into(RenderedFrame& out, const Shot& given, const FrameView& frame, 
     const Surroundings* const surroundings = frame.surroundings;
     const Shot asked = with_chosen_method(given, medium, surroundings, frame.camera, out, progress);
     const Plan plan = plan_cells(asked, medium, surroundings);
-    const Shot shot = asked.method == RenderMethod::Path ? asked : shot_of_lights(asked, plan);
+    const Shot shot =
+        asked.method == RenderMethod::Path ? asked : shot_of_lights(asked, plan, {medium, surroundings, frame.camera});
     add_plan(plan, out.statistics);
     warn_of_darkness(medium, surroundings, progress);
     const Camera camera(frame.camera, medium);

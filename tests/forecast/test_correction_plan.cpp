@@ -14,15 +14,18 @@ using namespace testing;
 
 struct Asked {
     Shot shot;
+    Medium medium;
     Plan plan;
 };
 
-Asked asked(float error) {
-    Recipe r = glowing_ball(8, 1.0f);
+// `radius` [voxels]
+Asked asked(float error, int radius = 8) {
+    Recipe r = glowing_ball(radius, 1.0f);
     r.settings.smoke.albedo = Rgb(0.8f);
     Asked out;
     out.shot.lighting.error = error;
-    out.plan = plan_cells(out.shot, make_medium(r));
+    out.medium = make_medium(r);
+    out.plan = plan_cells(out.shot, out.medium);
     return out;
 }
 
@@ -61,11 +64,14 @@ TEST(CorrectionPlan, SamplesTakeMoreTimeTheLessErrorIsAskedFor) {
     EXPECT_EQ(usual_for(0.0001f), most_for(0.0001f));
 }
 
+// Of a small picture of a large fire: its light is dearer than its camera.
 float lattice_for(float error, const std::function<void(Shot&)>& change = {}) {
-    Asked a = asked(error);
+    Asked a = asked(error, 40);
+    a.shot.camera.width = 160;
+    a.shot.camera.height = 120;
     if (change)
         change(a.shot);
-    return shot_of_lights(a.shot, a.plan).lighting.lattice_error;
+    return shot_of_lights(a.shot, a.plan, {a.medium, nullptr, a.shot.camera}).lighting.lattice_error;
 }
 
 // What samples find best may be coarse: three times as much beside them, and no more than they reach. It fades in.
@@ -77,6 +83,30 @@ TEST(CorrectionPlan, LatticesMayAddMoreBesideSamples) {
     EXPECT_NEAR(lattice_for(0.0201f), 0.03f, 2e-4f);
     EXPECT_FLOAT_EQ(lattice_for(0.02f, [](Shot& s) { s.lighting.lattice_error = 0.005f; }), 0.005f);
     EXPECT_LT(lattice_for(0.02f, [](Shot& s) { s.correction.samples = 0; }), 0.0f);
+}
+
+// Samples take longer in a large picture, of which wider lattices save as much. Where nothing may be wider, nothing is
+// saved.
+TEST(CorrectionPlan, LatticesAddMoreWhereThatSavesMoreThanSamplesTake) {
+    const auto of_width = [](int width) {
+        return lattice_for(0.02f, [&](Shot& s) {
+            s.camera.width = width;
+            s.camera.height = width * 3 / 4;
+        });
+    };
+    float before = of_width(160);
+    EXPECT_FLOAT_EQ(before, 0.03f);
+    bool fades = false;
+    for (int width = 200; width < 12000; width = width * 5 / 4) {
+        const float error = of_width(width);
+        EXPECT_LE(error, before) << width;
+        fades = fades || (error > 0.0101f && error < 0.0299f);
+        before = error;
+    }
+    EXPECT_FLOAT_EQ(before, 0.01f);
+    EXPECT_TRUE(fades);
+    EXPECT_FLOAT_EQ(lattice_for(0.02f, [](Shot& s) { s.lighting.lattice_level = s.lighting.smoke_lattice_level = 0; }),
+                    0.01f);
 }
 
 TEST(CorrectionPlan, BaselinesHaveNoSamples) {

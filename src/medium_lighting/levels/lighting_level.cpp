@@ -102,15 +102,15 @@ float nearly_allowed(const LightingSettings& settings) {
 class LatticeErrors {
 public:
     // `surfaces`: null: none reaches into the medium.
-    LatticeErrors(const Medium& medium, const LightingSettings& settings, const Occluders* surfaces,
-                  const Surroundings* surroundings = nullptr)
-        : medium_(medium),
-          surfaces_(surfaces),
-          narrow_errors_count_(narrow_errors_count(settings)),
-          depth_(medium.spacing * float(extinction_met(medium.extinction))) {
+    explicit LatticeErrors(const Medium& medium, const Occluders* surfaces = nullptr,
+                           const Surroundings* surroundings = nullptr)
+        : medium_(medium), surfaces_(surfaces), depth_(medium.spacing * float(extinction_met(medium.extinction))) {
         if (surroundings && !surroundings->emitters().points().empty())
             lamps_ = LampsInSmoke(*surroundings, medium, fire_power());
     }
+
+    // For how much errors beside walls and lamps count.
+    void count_narrow_errors(float times) { narrow_errors_count_ = times; }
 
     // Relative, of the picture, on voxels 2^level wide; and with the light of their detail.
     float of_first_without_detail(int level) { return std::hypot(of_detail(level), of_small_fire(level)); }
@@ -228,7 +228,7 @@ private:
     const Medium& medium_;
     const Occluders* surfaces_;
     LampsInSmoke lamps_;
-    float narrow_errors_count_;
+    float narrow_errors_count_ = 1.0f;
     float depth_;  // of a voxel
     std::optional<float> albedo_;
     std::optional<float> fire_radius_;  // in voxels
@@ -333,7 +333,8 @@ LightingLevel level_of_smoke(LatticeErrors& errors, const LightingSettings& sett
             level == by_error.level ? by_error.error_of_coarser : errors.of_smoke(level + 1)};
 }
 
-LightingLevels levels_by(LatticeErrors errors, const LightingSettings& settings) {
+LightingLevels levels_by(LatticeErrors& errors, const LightingSettings& settings) {
+    errors.count_narrow_errors(narrow_errors_count(settings));
     const LightingLevel first = no_wider_than_smoke(errors, settings, level_of_first(errors, settings));
     return {first, level_of_smoke(errors, settings, first),
             interpolation_of(errors, settings, first.level).of(1.0f - first.share_of_coarser)};
@@ -345,12 +346,27 @@ float error_of_voxels(float depth) {
     return kErrorOfVoxels * depth * depth;
 }
 
+std::vector<LightingLevels> levels_for_each(const Medium& medium, std::span<const LightingSettings> settings,
+                                            const Surroundings* surroundings) {
+    std::optional<SurfaceOccluders> surfaces;
+    if (surfaces_reach_into(surroundings, medium))
+        surfaces.emplace(surroundings->intersector(), medium.spacing);
+    LatticeErrors errors(medium, surfaces ? &*surfaces : nullptr, surroundings);
+    std::vector<LightingLevels> out;
+    for (const LightingSettings& s : settings)
+        out.push_back(levels_by(errors, s));
+    return out;
+}
+
 LightingLevels lighting_levels(const Medium& medium, const LightingSettings& settings,
                                const Surroundings* surroundings) {
-    if (!surfaces_reach_into(surroundings, medium))
-        return levels_by({medium, settings, nullptr, surroundings}, settings);
-    const SurfaceOccluders surfaces(surroundings->intersector(), medium.spacing);
-    return levels_by({medium, settings, &surfaces, surroundings}, settings);
+    return levels_for_each(medium, std::span(&settings, 1), surroundings).front();
+}
+
+std::optional<LightingLevels> stated_levels(const LightingSettings& settings) {
+    if (settings.lattice_level < 0 || settings.smoke_lattice_level < 0)
+        return std::nullopt;
+    return LightingLevels{{settings.lattice_level}, {std::max(settings.lattice_level, settings.smoke_lattice_level)}};
 }
 
 float ToleratedInterpolation::of(float share) const {
@@ -358,7 +374,7 @@ float ToleratedInterpolation::of(float share) const {
 }
 
 ToleratedInterpolation tolerated_interpolation(const Medium& medium, const LightingSettings& settings) {
-    LatticeErrors errors(medium, settings, nullptr);
+    LatticeErrors errors(medium);
     return interpolation_of(errors, settings, 0);
 }
 

@@ -15,6 +15,10 @@
 // - Lamps without extent inside of smoke need the finest voxels around them (lamps_in_smoke.h).
 #pragma once
 
+#include <optional>
+#include <span>
+#include <vector>
+
 #include "medium_lighting/input.h"
 
 namespace brisance {
@@ -44,6 +48,11 @@ LightingLevels lighting_levels(const Medium& medium, const LightingSettings& set
 inline LightingLevels lighting_levels(const MediumLightingInput& input) {
     return lighting_levels(input.medium, input.lighting, input.surroundings);
 }
+// For each of several settings. What they need of the medium is looked for once.
+std::vector<LightingLevels> levels_for_each(const Medium& medium, std::span<const LightingSettings> settings,
+                                            const Surroundings* surroundings);
+// Where the settings state both lattices: these, and none of their errors.
+std::optional<LightingLevels> stated_levels(const LightingSettings& settings);
 
 // The error that interpolation between nodes of a medium may add to the picture: as stated, or a quarter of
 // lighting.error where light on the lattice twice as coarse errs by no more than lighting.error, falling to 0 where it

@@ -31,7 +31,8 @@ void choose_lattices(Shot& shot, const FrameInput& input, const std::string& fil
     Shot by_grid = shot;
     by_grid.method = RenderMethod::LightingGrid;
     const Plan plan = plan_cells(by_grid, input.medium, input.surroundings.get());
-    const LightingSettings lights = shot_of_lights(by_grid, plan).lighting;
+    const LightingSettings lights =
+        shot_of_lights(by_grid, plan, {input.medium, input.surroundings.get(), input.camera}).lighting;
     const AutomaticLevels levels = automatic_levels_of(input.medium, input.surroundings.get(), lights);
     if (shot.lighting.smoke_lattice_level < 0)
         shot.lighting.smoke_lattice_level = levels.smoke;
