@@ -34,16 +34,6 @@ std::size_t pixels_of(const Image& image) {
     return std::size_t(image.width) * std::size_t(image.height);
 }
 
-double square_of(const EstimatedLayer& layer, std::size_t pixels) {
-    std::vector<double> sums(pixels / kPixelsAtOnce + 1, 0.0);
-    parallel_blocks(pixels, kPixelsAtOnce, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p < end; ++p)
-            if (const double own = glm::dot(layer.pixel(p), layer.pixel(p)); std::isfinite(own))
-                sums[begin / kPixelsAtOnce] += own;
-    });
-    return std::accumulate(sums.begin(), sums.end(), 0.0);
-}
-
 // Between even and the layer's luminance: errors are neither the same in the dark as in the light, nor in proportion to
 // it. 0 where there is no light, or none that is known.
 std::vector<float> weights_of(const EstimatedLayer& layer, std::size_t pixels) {
@@ -199,7 +189,7 @@ Corrector::Corrector(Image& image, const MomentTracers& tracers, bool surroundin
     const std::size_t pixels = pixels_of(image);
     const std::vector<Rgb> none(pixels, Rgb(0.0f));
     for (const EstimatedLayer& layer : layers_) {
-        squares_.push_back(square_of(layer, pixels));
+        squares_.push_back(sum_of_squares(*layer.layer));
         sums_.push_back({image.width, image.height, {none, none}, weights_of(layer, pixels)});
     }
 }

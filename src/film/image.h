@@ -27,6 +27,9 @@ struct Image {
     Layer& layer(const std::string& name) { return const_cast<Layer&>(std::as_const(*this).layer(name)); }
 };
 
+// Of all pixels and colours that are finite.
+double sum_of_squares(const Layer& layer);
+
 // `next` is picture number `count` of those that `mean` becomes the mean of; all have the same layers.
 void add_to_mean(Image& mean, const Image& next, int count);
 

@@ -6,7 +6,7 @@
 // that is less (but not below 0.01). Lattices may add up to three times as much as without samples, since that is what
 // samples see best, if that saves more time than samples usually take: of single cells more is left. Samples follow
 // until the picture is expected to err as little as is asked. They may take twice as long as the picture where 0.02 is
-// asked for, and up to eight times as long for less; from 0.02 to 0.04 all of this fades, and a draft has no samples.
+// asked for, and up to twelve times as long for less; from 0.02 to 0.04 all of this fades, and a draft has no samples.
 // Only frames with smoke or fire whose time is known within a factor of three (grid_is_estimated()) are corrected so:
 // of others it is not known whether samples would tell anything. Baselines are not.
 #pragma once

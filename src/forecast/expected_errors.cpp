@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/parallel.h"
 #include "gathering/map_layouts.h"
@@ -139,20 +138,6 @@ const char* brightest(const Plan& plan) {
 }
 
 }  // namespace
-
-double sum_of_squares(const Layer& layer) {
-    constexpr std::size_t kBlock = 1 << 16;
-    const std::size_t n = layer.channels.size(), pixels = layer.pixels.size() / n;
-    std::vector<double> sums(pixels / kBlock + 1, 0.0);
-    parallel_blocks(pixels, kBlock, [&](std::size_t begin, std::size_t end) {
-        double& sum = sums[begin / kBlock];
-        for (std::size_t p = begin; p < end; ++p)
-            for (std::size_t c = 0; c < std::min<std::size_t>(n, 3); ++c)
-                if (const double v = layer.pixels[p * n + c]; std::isfinite(v))
-                    sum += v * v;
-    });
-    return std::accumulate(sums.begin(), sums.end(), 0.0);
-}
 
 std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFrame& frame, const Statistics& statistics,
                                            const std::function<void(ExpectedError&)>& change) {

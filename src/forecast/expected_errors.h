@@ -28,9 +28,6 @@ struct ModelledFrame {
     const Plan& plan;
 };
 
-// Of all pixels and colours that are finite.
-double sum_of_squares(const Layer& layer);
-
 // Of a finished picture and of its cells, the picture first. A black picture has an expected error of 0. `change`: of
 // what the model expects of a cell, where more is known, and of the noise on surfaces, which is no cell's; empty:
 // nothing is.

@@ -66,4 +66,12 @@ struct Shot {
     OutputSettings output;
 };
 
+// As methods are compared: the path tracer does nothing beside the shot's own. Samples that it states stay.
+inline Shot by_its_method_alone(Shot shot) {
+    shot.certify.belief = 0.0;
+    if (shot.correction.samples == kAutomaticCorrection)
+        shot.correction.samples = 0;
+    return shot;
+}
+
 }  // namespace brisance

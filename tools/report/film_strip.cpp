@@ -51,12 +51,8 @@ const PlannedRun& first_run(const std::vector<PlannedMethod>& methods, const Met
         ->runs.front();
 }
 
-Image rendered(const Shot& given, const FrameInput& input, Progress& progress) {
-    Shot shot = given;
-    shot.certify.belief = 0.0;
-    if (shot.correction.samples == kAutomaticCorrection)
-        shot.correction.samples = 0;  // the path tracer's work
-    return render_medium(shot, input.medium, progress, input.surroundings.get()).image;
+Image rendered(const Shot& shot, const FrameInput& input, Progress& progress) {
+    return render_medium(by_its_method_alone(shot), input.medium, progress, input.surroundings.get()).image;
 }
 
 // One further frame of every method.

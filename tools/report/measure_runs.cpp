@@ -131,10 +131,8 @@ void measure_repeat(const PlannedMethod& planned, RunNumber number, const FrameI
                     const ReportReference& reference, const MeasureOptions& options, StepRecord& record,
                     PagePictures& pictures, Progress& progress) {
     NamedProgress named(progress, name_of_run(planned, number, options.repeats));
-    Shot shot = shot_of_repeat(planned.runs[number.step].shot, number.repeat, reference.seeds);
-    shot.certify.belief = 0.0;  // its samples would count as the method's time
-    if (shot.correction.samples == kAutomaticCorrection)
-        shot.correction.samples = 0;  // the path tracer's work
+    const Shot shot =
+        by_its_method_alone(shot_of_repeat(planned.runs[number.step].shot, number.repeat, reference.seeds));
     const CostMeter meter;
     RenderedFrame frame = render_medium(shot, input.medium, named, input.surroundings.get());
     record.costs.push_back(meter.cost());

@@ -18,11 +18,8 @@ constexpr double kStandardErrors = 4.0;
 RenderedFrame rendered_once(const Scene& scene, const Method& method, int seed, std::optional<int> paths) {
     Shot shot = scene.shot;
     method.apply_to(shot, seed, paths);
-    shot.certify.belief = 0.0;  // its samples would count as the method's time
-    if (shot.correction.samples == kAutomaticCorrection)
-        shot.correction.samples = 0;  // the path tracer's work
     Progress silent;
-    return render_medium(shot, scene.medium, silent, scene.surroundings.get());
+    return render_medium(by_its_method_alone(std::move(shot)), scene.medium, silent, scene.surroundings.get());
 }
 
 void set_mean(Image& image, const std::vector<Image>& pictures) {
