@@ -6,6 +6,7 @@
 #include "core/parallel.h"
 #include "gathering/map_layouts.h"
 #include "medium/extinction_met.h"
+#include "medium_lighting/levels/lattice_errors.h"
 #include "medium_lighting/levels/lighting_level.h"
 
 namespace brisance {

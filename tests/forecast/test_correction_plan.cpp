@@ -79,7 +79,7 @@ float lattice_for(float error, const std::function<void(Shot&)>& change = {}) {
 TEST(CorrectionPlan, LatticesMayAddMoreBesideSamples) {
     EXPECT_FLOAT_EQ(lattice_for(0.02f), 0.03f);
     EXPECT_FLOAT_EQ(lattice_for(0.01f), 0.01f);  // most of the time is the samples' then
-    EXPECT_LT(lattice_for(0.05f), 0.0f);  // as it is by default
+    EXPECT_LT(lattice_for(0.05f), 0.0f);         // as it is by default
     EXPECT_NEAR(lattice_for(0.0399f), 0.5f * 0.0399f, 2e-4f);
     EXPECT_NEAR(lattice_for(0.0201f), 0.03f, 2e-4f);
     EXPECT_FLOAT_EQ(lattice_for(0.02f, [](Shot& s) { s.lighting.lattice_error = 0.005f; }), 0.005f);

@@ -176,4 +176,10 @@ std::vector<float> scalars_at_fine_nodes(const BrickLattice& coarse, const std::
     return out;
 }
 
+void scalars_at_fine_nodes(const BrickLattice& coarse, std::span<const float> values, int level,
+                           const BrickLattice& fine, std::size_t brick, std::span<float, BrickLattice::kNodes> out) {
+    const ivec3 first = fine.first_node(brick);
+    Parents<1>(coarse, values, first, level).at_all(first, out.data());
+}
+
 }  // namespace brisance

@@ -1,6 +1,7 @@
 // Light on a coarser lattice than the medium's: the medium there, and the light back at the medium's nodes.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "medium/lattice/corners_seen.h"
@@ -23,8 +24,10 @@ std::vector<float> emission_luminance(const Medium& medium);
 // interpolates: the field is that of a medium whose own nodes are as far apart. `seen`: which of them count; null: all.
 std::vector<Rgb> light_at_fine_nodes(const BrickLattice& coarse, const std::vector<Rgb>& light, int level,
                                      const BrickLattice& fine, const CornersSeen* seen = nullptr);
-// The same for one value per node.
+// The same for one value per node; and at those of one brick.
 std::vector<float> scalars_at_fine_nodes(const BrickLattice& coarse, const std::vector<float>& values, int level,
                                          const BrickLattice& fine);
+void scalars_at_fine_nodes(const BrickLattice& coarse, std::span<const float> values, int level,
+                           const BrickLattice& fine, std::size_t brick, std::span<float, BrickLattice::kNodes> out);
 
 }  // namespace brisance

@@ -68,7 +68,4 @@ struct ToleratedInterpolation {
 
 ToleratedInterpolation tolerated_interpolation(const Medium& medium, const LightingSettings& settings);
 
-// Relative error of light gathered on voxels of this optical depth, as a collision meets it.
-float error_of_voxels(float depth);
-
 }  // namespace brisance
