@@ -48,17 +48,28 @@ std::vector<float> weights_of(const EstimatedLayer& layer, std::size_t pixels) {
     return out;
 }
 
-// By which pixels are drawn: the root of the luminance of scattered light. What is seen directly has hardly an error.
+// What is seen directly errs along the edges of pixels alone. Samples measure it, and leave it as it is.
+bool is_seen_directly(const EstimatedLayer& layer) {
+    return layer.layer->name == name_of(Cell::V) || layer.layer->name == name_of(Cell::A);
+}
+
+// What is sampled at surfaces has noise, which is not smooth, and rare bright paths look as if something were missing:
+// SS of a corridor of mirrors erred by 13 % after a correction, and by less than 6 % without.
+bool is_sampled(const EstimatedLayer& layer) {
+    return layer.layer->name == name_of(Cell::SS) || layer.layer->name == name_of(Cell::SA);
+}
+
+// By which pixels are drawn: the root of the luminance that is corrected.
 std::vector<double> sizes_of(const std::vector<EstimatedLayer>& layers, std::size_t pixels) {
-    std::vector<const EstimatedLayer*> scattered;
+    std::vector<const EstimatedLayer*> corrected;
     for (const EstimatedLayer& layer : layers)
-        if (layer.layer->name != name_of(Cell::V) && layer.layer->name != name_of(Cell::A))
-            scattered.push_back(&layer);
+        if (!is_seen_directly(layer))
+            corrected.push_back(&layer);
     std::vector<double> out(pixels, 0.0);
     parallel_for(
         pixels,
         [&](std::size_t p) {
-            for (const EstimatedLayer* layer : scattered)
+            for (const EstimatedLayer* layer : corrected)
                 if (const double shown = luminance(Rgb(layer->pixel(p))); std::isfinite(shown) && shown > 0.0)
                     out[p] += shown;
             out[p] = std::sqrt(out[p]);
@@ -67,11 +78,12 @@ std::vector<double> sizes_of(const std::vector<EstimatedLayer>& layers, std::siz
     return out;
 }
 
-// The cells, or the beauty alone.
+// The other cells, or the beauty alone.
 std::vector<EstimatedLayer> corrected_layers(const Image& image, bool surroundings) {
     std::vector<EstimatedLayer> out = estimated_layers(image, surroundings);
     if (out.size() > 1)
         out.erase(out.begin());
+    std::erase_if(out, is_sampled);
     return out;
 }
 
@@ -164,7 +176,7 @@ double CorrectedLayer::found() const {
 }
 
 double CorrectedLayer::left(double error, double samples) const {
-    if (!(square > 0.0))
+    if (!(square > 0.0) || !corrected)
         return error;
     const std::vector<ResidualEnergy> energies = divided(error * error * square, bands);
     double all = 0.0, left = 0.0;
@@ -238,7 +250,7 @@ void Corrector::survey(std::size_t samples, const std::function<void(std::size_t
 }
 
 CorrectedLayer Corrector::of(std::size_t layer, std::vector<ResidualBand> bands) const {
-    return {layers_[layer].layer->name, std::move(bands), squares_[layer]};
+    return {layers_[layer].layer->name, std::move(bands), squares_[layer], !is_seen_directly(layers_[layer])};
 }
 
 SmoothResidual Corrector::smooth(std::size_t layer, const BelievableError& believable) const {
@@ -261,7 +273,8 @@ Correction Corrector::correct(const BelievableError& believable) {
     for (std::size_t k = 0; k < layers_.size() && samples_ > 0; ++k) {
         SmoothResidual residual = smooth(k, believable);
         out.layers.push_back(of(k, std::move(residual.bands)));
-        add_residual(residual.values, layers_[k].layer->name, image_);
+        if (out.layers.back().corrected)
+            add_residual(residual.values, layers_[k].layer->name, image_);
     }
     return out;
 }

@@ -3,10 +3,11 @@
 // Samples are camera rays with all their paths, as the reference traces them. The difference R - I of each from the
 // picture has the mean of the picture's residual. It is far noisier than the picture is wrong, but a picture by many
 // lights errs alike over many pixels: smooth_residual() blurs the differences as much as their noise demands, and what
-// is left of them is added to the picture. Each cell of the ledger that has a layer is corrected by its own light, so
-// that one which is exact stays so, and cells still add up.
+// is left of them is added to the picture. Each cell of the ledger that lattices light, and that has a layer, is
+// corrected by its own light, and cells still add up. What is seen directly (V, A) is measured and left as it is, and
+// what is sampled at surfaces (SS, SA) is left to its own noise.
 //
-// Pixels are drawn by a survey (certificate/pixel_survey.h) in proportion to the root of the light that is scattered:
+// Pixels are drawn by a survey (certificate/pixel_survey.h) in proportion to the root of the light that is corrected:
 // between even, which a smooth residual wants, and in proportion to it, as the noise of bright pixels wants. Black
 // pixels stay black. The expected error falls with every sample, and the correction vanishes where the samples say
 // nothing: of noise, or of a picture that is right. A certificate draws samples of its own, and judges it as any other
@@ -32,6 +33,7 @@ struct CorrectedLayer {
     std::string name;                 // empty: the picture
     std::vector<ResidualBand> bands;  // those of SmoothResidual
     double square = 0.0;              // sum of its own squares before the correction
+    bool corrected = true;            // false: measured, and left as it is
     // The error before the correction, as the samples measured it.
     CertifiedError before() const;
     // The part of it that is above zero in each band.
