@@ -2,7 +2,11 @@
 //
 // A volume, its light and a picture are arrays of megabytes to gigabytes. In pages of 4 KiB the system spends up to a
 // quarter of the program's time on setting them up, and the processor on finding them. So operator new, from some
-// megabytes on, asks the system for pages of 2 MiB. It is a wish: what comes of it changes nothing but the time.
+// megabytes on, asks the system for pages of 2 MiB. It is a wish: what comes of it changes nothing but the time. The
+// address sanitizer keeps its own operators: it takes memory of the nothrow ones, which are not replaced here, for its
+// own.
+#ifndef __SANITIZE_ADDRESS__
+
 #include <cstddef>
 #include <cstdlib>
 #include <new>
@@ -37,3 +41,5 @@ void operator delete(void* memory) noexcept {
 void operator delete(void* memory, std::size_t) noexcept {
     std::free(memory);
 }
+
+#endif
