@@ -5,7 +5,7 @@
 // lights errs alike over many pixels: smooth_residual() blurs the differences as much as their noise demands, and what
 // is left of them is added to the picture. Each cell of the ledger that lattices light, and that has a layer, is
 // corrected by its own light, and cells still add up. What is seen directly (V, A) is measured and left as it is, and
-// what is sampled at surfaces (SS, SA) is left to its own noise.
+// what is sampled at surfaces (SS, SA) is left to its own noise; SV and SM have the errors of lattices, too.
 //
 // Pixels are drawn by a survey (certificate/pixel_survey.h) in proportion to the root of the light that is corrected:
 // between even, which a smooth residual wants, and in proportion to it, as the noise of bright pixels wants. Black
@@ -48,7 +48,8 @@ struct CorrectedLayer {
 
 struct Correction {
     std::uint64_t samples = 0, not_finite = 0;  // the latter are left out
-    std::vector<CorrectedLayer> layers;         // the cells, or the beauty where there are none
+    // The cells but for SS and SA, or the beauty where there are no layers of cells; empty without samples.
+    std::vector<CorrectedLayer> layers;
     const CorrectedLayer* of(const std::string& cell) const;
 };
 

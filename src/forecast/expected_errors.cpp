@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/parallel.h"
 #include "gathering/map_layouts.h"
 #include "medium/extinction_met.h"
 #include "medium_lighting/levels/lattice_errors.h"
@@ -45,12 +44,11 @@ const std::string kLattice = "lattice of the light";
 const std::string kSeries = "orders of scattering on the coarse lattice";
 
 // A number that a stage noted.
-double noted(const Statistics& statistics, const std::string& stage, const char* key,
-             double where_it_did_not_run = 0.0) {
+double noted(const Statistics& statistics, const std::string& stage, const char* key, double otherwise = 0.0) {
     for (const StageCost& s : statistics.stages)
         if (s.name == stage && s.detail.contains(key) && s.detail[key].is_number())
             return s.detail[key].get<double>();
-    return where_it_did_not_run;
+    return otherwise;
 }
 
 // What noise leaves on surfaces, over the picture, whose sum of squares is `all`.
@@ -179,12 +177,12 @@ std::vector<ExpectedError> expected_errors(const Image& image, const ModelledFra
 
 Shot as_solved(const Shot& shot, const Statistics& statistics) {
     Shot out = shot;
-    const auto state = [&](int& level, const char* key, const char* share) {
-        if (noted(statistics, kLattice, share, 1.0) == 0.0)
-            level = static_cast<int>(noted(statistics, kLattice, key));
-    };
-    state(out.lighting.lattice_level, "lattice_level", "share_of_coarser_level");
-    state(out.lighting.smoke_lattice_level, "smoke_lattice_level", "smoke_share_of_coarser_level");
+    // Light between two lattices cannot be stated, nor one lattice without the other.
+    if (noted(statistics, kLattice, "share_of_coarser_level", 1.0) == 0.0 &&
+        noted(statistics, kLattice, "smoke_share_of_coarser_level", 1.0) == 0.0) {
+        out.lighting.lattice_level = static_cast<int>(noted(statistics, kLattice, "lattice_level"));
+        out.lighting.smoke_lattice_level = static_cast<int>(noted(statistics, kLattice, "smoke_lattice_level"));
+    }
     if (noted(statistics, kSeries, "nodes") > 0.0)
         out.scattering.lattice_level = static_cast<int>(noted(statistics, kSeries, "lattice_level"));
     return out;

@@ -59,10 +59,22 @@ std::vector<LayerError> layer_errors(const Correction& correction, const std::ve
 // Where even the most samples do not reach the wanted error: what fewer may leave, over what the most would.
 constexpr double kHardlyMore = 1.05;
 
-// How many times the samples that there are leave no more than `wanted`; at most `most`.
-double samples_for(double wanted, const Correction& correction, const std::vector<LayerError>& errors, double most) {
+// Of the picture's squared error, what no samples find: that of cells which are not corrected.
+double square_beside(const Correction& correction, const std::vector<ExpectedError>& expected, const Image& image) {
+    const double all = sum_of_squares(image.layer(""));
+    double sum = 0.0;
+    for (const Layer& layer : image.layers)
+        if (const ExpectedError* const e = layer.name.empty() ? nullptr : of_cell(expected, layer.name);
+            e && !correction.of(layer.name) && all > 0.0)
+            sum += e->error * e->error * sum_of_squares(layer) / all;
+    return sum;
+}
+
+// How many times the samples that there are leave no more than `wanted`; at most `most`. `beside`: square_beside().
+double samples_for(double wanted, const Correction& correction, const std::vector<LayerError>& errors, double beside,
+                   double most) {
     const auto square_left = [&](double samples) {
-        double sum = 0.0;
+        double sum = beside;
         for (std::size_t k = 0; k < errors.size(); ++k)
             if (errors[k].error > 0.0)
                 sum += errors[k].square_of_picture *
@@ -108,8 +120,9 @@ void sample(Corrector& corrector, const MomentTracers& tracers, const RenderedFr
     const std::size_t first = first_of(most, share, asked.lighting.error);
     corrector.sample(first, progress);
     const Correction first_look = corrector.measured(believable_by(expected));
-    const double times = samples_for(kAim * asked.lighting.error, first_look,
-                                     layer_errors(first_look, expected, frame.image), double(most) / double(first));
+    const double times =
+        samples_for(kAim * asked.lighting.error, first_look, layer_errors(first_look, expected, frame.image),
+                    square_beside(first_look, expected, frame.image), double(most) / double(first));
     if (const double more = (times - 1.0) * double(first); more >= 2.0)
         corrector.sample(static_cast<std::size_t>(more), progress);
 }
@@ -122,7 +135,8 @@ void note(const Correction& correction, StageCost& cost) {
             gains.push_back(band.gain());
             squares.push_back(layer.square > 0.0 ? band.sum().residual / layer.square : 0.0);
         }
-        cost.detail[layer.name.empty() ? "picture" : layer.name] = {{"error_found", layer.found()},
+        cost.detail[layer.name.empty() ? "picture" : layer.name] = {{"corrected", layer.corrected},
+                                                                    {"error_found", layer.found()},
                                                                     {"left_of_that", layer.left(layer.found())},
                                                                     {"square_errors_found", squares},
                                                                     {"gains", gains}};
@@ -154,6 +168,9 @@ Correction correct_frame(RenderedFrame& frame, const DrawInput& input, const Sho
         expected_errors(frame.image, {input.shot, input.medium, input.plan}, frame.statistics);
     sample(corrector, tracers, frame, input, asked, expected, progress);
     const Correction correction = corrector.correct(believable_by(expected));
+    if (asked.correction.samples > 0 && correction.samples == 0)
+        progress.warning("correction",
+                         "correction.samples has no effect: the picture shows no light that is corrected");
     if (correction.not_finite > 0)
         progress.warning("correction",
                          fmt::format("{} samples were not finite and are left out", correction.not_finite));

@@ -66,7 +66,7 @@ struct Shot {
     OutputSettings output;
 };
 
-// As methods are compared: the path tracer does nothing beside the shot's own. Samples that it states stay.
+// As methods are compared: no paths of believed errors and automatic corrections count as the method's time.
 inline Shot by_its_method_alone(Shot shot) {
     shot.certify.belief = 0.0;
     if (shot.correction.samples == kAutomaticCorrection)

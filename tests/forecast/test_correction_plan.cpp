@@ -86,8 +86,7 @@ TEST(CorrectionPlan, LatticesMayAddMoreBesideSamples) {
     EXPECT_LT(lattice_for(0.02f, [](Shot& s) { s.correction.samples = 0; }), 0.0f);
 }
 
-// Samples take longer in a large picture, of which wider lattices save as much. Where nothing may be wider, nothing is
-// saved.
+// Samples take longer in a large picture, of which wider lattices save as much. Lattices that are stated stay.
 TEST(CorrectionPlan, LatticesAddMoreWhereThatSavesMoreThanSamplesTake) {
     const auto of_width = [](int width) {
         return lattice_for(0.02f, [&](Shot& s) {
@@ -106,8 +105,7 @@ TEST(CorrectionPlan, LatticesAddMoreWhereThatSavesMoreThanSamplesTake) {
     }
     EXPECT_FLOAT_EQ(before, 0.01f);
     EXPECT_TRUE(fades);
-    EXPECT_FLOAT_EQ(lattice_for(0.02f, [](Shot& s) { s.lighting.lattice_level = s.lighting.smoke_lattice_level = 0; }),
-                    0.01f);
+    EXPECT_LT(lattice_for(0.02f, [](Shot& s) { s.lighting.lattice_level = s.lighting.smoke_lattice_level = 0; }), 0.0f);
 }
 
 TEST(CorrectionPlan, BaselinesHaveNoSamples) {

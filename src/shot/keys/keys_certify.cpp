@@ -7,7 +7,7 @@ void add_correction_keys(std::vector<Key>& keys) {
         "correction.samples",
         "unbiased samples, each a ray of the camera with its paths, that tell what a picture by many lights misses; it "
         "is blurred as much as their noise demands and put back; 0: none; auto: as many as the picture "
-        "needs to reach lighting.error, in up to 2 times its time at 0.02 and 8 times at 0.01; none from 0.04 on",
+        "needs to reach lighting.error, in up to 2 times its time at 0.02 and 12 times at 0.01; none from 0.04 on",
         or_word(whole(0, 1 << 28), "auto", kAutomaticCorrection),
         [](Shot & s) -> auto& { return s.correction.samples; }));
 }
