@@ -6,6 +6,7 @@
 #include "core/parallel.h"
 #include "fixtures/media.h"
 #include "fixtures/sets.h"
+#include "forecast/correction_plan.h"
 #include "render/choice/choose_method.h"
 #include "render/render_frame.h"
 
@@ -65,13 +66,16 @@ TEST(ChooseMethod, PathsCostMoreWithPixelsAndLessError) {
 // The samples of a correction count for the grid's picture, which is lit on what lattices may add beside them.
 TEST(ChooseMethod, CorrectionsTakeTheirTime) {
     const Medium medium = glow(16);
-    const auto alone = [&](float lattice_error) {
-        Shot shot = by_lights_alone(shot_of(128, 0.02f));
-        shot.lighting.lattice_error = lattice_error;
-        return forecast(shot, medium).grid_seconds;
+    // By lights of 0.02 on the lattices that the plan for the error chooses.
+    const auto alone = [&](float error) {
+        Shot shot = shot_of(128, error);
+        const Plan plan = plan_cells(with_method(shot, {RenderMethod::LightingGrid, "", 0.0, 0.0, 0.0, {}}), medium);
+        shot.lighting = shot_of_lights(shot, plan, {medium, nullptr, shot.camera}).lighting;
+        EXPECT_EQ(shot.lighting.error, 0.02f);
+        return forecast(by_lights_alone(shot), medium).grid_seconds;
     };
-    EXPECT_NEAR(forecast(shot_of(128, 0.01f), medium).grid_seconds / alone(0.015f), 4.0, 1e-6);
-    EXPECT_NEAR(forecast(shot_of(128, 0.02f), medium).grid_seconds / alone(0.03f), 1.75, 1e-6);
+    EXPECT_NEAR(forecast(shot_of(128, 0.01f), medium).grid_seconds / alone(0.01f), 4.0, 1e-6);
+    EXPECT_NEAR(forecast(shot_of(128, 0.02f), medium).grid_seconds / alone(0.02f), 1.75, 1e-6);
     EXPECT_NEAR(forecast(shot_of(128, 0.04f), medium).grid_seconds /
                     forecast(by_lights_alone(shot_of(128, 0.04f)), medium).grid_seconds,
                 1.0, 1e-6);
