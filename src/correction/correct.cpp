@@ -252,28 +252,33 @@ CorrectedLayer Corrector::of(std::size_t layer, std::vector<ResidualBand> bands)
     return {layers_[layer].layer->name, std::move(bands), squares_[layer], !is_seen_directly(layers_[layer])};
 }
 
-SmoothResidual Corrector::smooth(std::size_t layer, const BelievableError& believable) const {
+// Keeps a reference.
+Believable Corrector::believable_square(std::size_t layer, const BelievableError& believable) const {
     if (!believable)
-        return smooth_residual(sums_[layer]);
-    return smooth_residual(sums_[layer], [&](const std::vector<ResidualBand>& bands) {
+        return {};
+    return [this, layer, &believable](const std::vector<ResidualBand>& bands) {
         return squares_[layer] * std::pow(believable(of(layer, bands)), 2.0);
-    });
+    };
 }
 
 Correction Corrector::measured(const BelievableError& believable) const {
     Correction out{samples_, not_finite_, {}};
     for (std::size_t k = 0; k < layers_.size() && samples_ > 0; ++k)
-        out.layers.push_back(of(k, smooth(k, believable).bands));
+        out.layers.push_back(of(k, residual_bands(sums_[k], believable_square(k, believable))));
     return out;
 }
 
 Correction Corrector::correct(const BelievableError& believable) {
     Correction out{samples_, not_finite_, {}};
     for (std::size_t k = 0; k < layers_.size() && samples_ > 0; ++k) {
-        SmoothResidual residual = smooth(k, believable);
+        const Believable square = believable_square(k, believable);
+        if (is_seen_directly(layers_[k])) {
+            out.layers.push_back(of(k, residual_bands(sums_[k], square)));
+            continue;
+        }
+        SmoothResidual residual = smooth_residual(sums_[k], square);
         out.layers.push_back(of(k, std::move(residual.bands)));
-        if (out.layers.back().corrected)
-            add_residual(residual.values, layers_[k].layer->name, image_);
+        add_residual(residual.values, layers_[k].layer->name, image_);
     }
     return out;
 }

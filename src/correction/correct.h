@@ -74,7 +74,7 @@ public:
 private:
     void survey(std::size_t samples, const std::function<void(std::size_t)>& drawn);
     void add(const PixelSurvey::Draw& draw, bool second, const PathSum& found);
-    SmoothResidual smooth(std::size_t layer, const BelievableError& believable) const;
+    Believable believable_square(std::size_t layer, const BelievableError& believable) const;
     CorrectedLayer of(std::size_t layer, std::vector<ResidualBand> bands) const;
 
     Image& image_;

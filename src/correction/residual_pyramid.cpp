@@ -233,6 +233,33 @@ std::vector<Level> pyramid(const NoisyResidual& residual, std::size_t first) {
     return levels;
 }
 
+// A residual's pyramid from level `first` on, each level less the next, and what its samples say of each.
+struct DividedResidual {
+    std::vector<Level> levels;
+    std::size_t first;
+    std::vector<ResidualBand> bands;  // SmoothResidual's
+};
+
+DividedResidual divided(const NoisyResidual& residual, const Believable& believable) {
+    const std::size_t first = first_level(residual);
+    DividedResidual out{pyramid(residual, first), first, {}};
+    double pixels = std::pow(4.0, double(first));
+    for (std::size_t k = first; k < out.levels.size(); ++k, pixels *= 4.0) {
+        if (k + 1 < out.levels.size())
+            subtract(out.levels[k], out.levels[k + 1]);
+        out.bands.push_back(energy_of(out.levels[k], pixels));
+        if (k > first)
+            out.bands.back().noise_counts = kNoiseOfOverlap;
+        if (k > first && k + 1 < out.levels.size())
+            out.bands.back().residual_counts = kResidualOfOverlap;
+    }
+    if (first > 0)
+        out.bands.insert(out.bands.begin(), band_before(energy_of(residual), first, out.bands));
+    if (believable)
+        believe(believable(out.bands), out.bands);
+    return out;
+}
+
 }  // namespace
 
 void ResidualEnergy::add(const ResidualEnergy& other, double share) {
@@ -288,33 +315,21 @@ double ResidualBand::gain() const {
     return all > 0.0 ? std::clamp(1.0 - left() / all, 0.0, 1.0) : 0.0;
 }
 
+std::vector<ResidualBand> residual_bands(const NoisyResidual& residual, const Believable& believable) {
+    return divided(residual, believable).bands;
+}
+
 SmoothResidual smooth_residual(const NoisyResidual& residual, const Believable& believable) {
-    const std::size_t first = first_level(residual);
-    std::vector<Level> levels = pyramid(residual, first);
-    SmoothResidual out;
-    double pixels = std::pow(4.0, double(first));
-    for (std::size_t k = first; k < levels.size(); ++k, pixels *= 4.0) {
-        if (k + 1 < levels.size())
-            subtract(levels[k], levels[k + 1]);
-        out.bands.push_back(energy_of(levels[k], pixels));
-        if (k > first)
-            out.bands.back().noise_counts = kNoiseOfOverlap;
-        if (k > first && k + 1 < levels.size())
-            out.bands.back().residual_counts = kResidualOfOverlap;
-    }
+    auto [levels, first, bands] = divided(residual, believable);
     const std::size_t before = first > 0 ? 1 : 0;
-    if (before > 0)
-        out.bands.insert(out.bands.begin(), band_before(energy_of(residual), first, out.bands));
-    if (believable)
-        believe(believable(out.bands), out.bands);
     Plane<Rgb> sum(levels.back().weight.width, levels.back().weight.height);
     for (std::size_t k = levels.size(); k-- > 0;) {
         if (k + 1 < levels.size())
             sum = expanded(sum, levels[k].weight.width, levels[k].weight.height);
         if (k >= first)
-            add_band(sum, levels[k], out.bands[k - first + before]);
+            add_band(sum, levels[k], bands[k - first + before]);
     }
-    out.values = std::move(sum.values);
+    SmoothResidual out{std::move(sum.values), std::move(bands)};
     for_rows(residual.height, [&](int y) {
         const std::size_t row = std::size_t(y) * std::size_t(residual.width);
         for (std::size_t p = row; p < row + std::size_t(residual.width); ++p)

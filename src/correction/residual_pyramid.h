@@ -79,5 +79,7 @@ struct SmoothResidual {
 };
 
 SmoothResidual smooth_residual(const NoisyResidual& residual, const Believable& believable = {});
+// Its bands alone, without putting them together.
+std::vector<ResidualBand> residual_bands(const NoisyResidual& residual, const Believable& believable = {});
 
 }  // namespace brisance
