@@ -48,4 +48,14 @@ SharedBounce::Sample share_light(const SurfaceSample& sample, const SurfacePoint
     return out;
 }
 
+CellSum shown_by_cell(const SharedBounce::Sample& sample) {
+    using Apart = SharedBounce::Apart;
+    CellSum out;
+    out.at(Cell::SS) = sample.weight * sample.light;
+    out.at(Cell::SV) = sample.weight * sample.of(Apart::SV);
+    out.at(Cell::SM) = sample.weight * sample.of(Apart::SM);
+    out.at(Cell::SA) = sample.weight * sample.of(Apart::SA);
+    return out;
+}
+
 }  // namespace brisance

@@ -27,4 +27,7 @@ Rgb colour_of_gloss(const SurfaceMaterial& material);
 SharedBounce::Sample share_light(const SurfaceSample& sample, const SurfacePoint& point, const dvec3& arriving,
                                  double pixel_angle, const LightToShare& of);
 
+// What the pixel shows of a sample [W/(m^2 sr)].
+CellSum shown_by_cell(const SharedBounce::Sample& sample);
+
 }  // namespace brisance

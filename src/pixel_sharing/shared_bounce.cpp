@@ -231,14 +231,18 @@ double SharedBounce::square_error(Apart which) const {
     return tells(which) ? square_errors_[kind_of(which)] : 0.0;
 }
 
-// The weights of share() are 1 - r^2 twice squared, less what normals and planes take: a fifth of the circle. Where
-// noise is told from light and light is smooth, the variance falls by ten at least besides, until blurs end.
-float SharedBounce::pixels_sharing(const Sample& s, float closeness) const {
-    constexpr float kOfBands = 10.0f, kMostOfBands = 1000.0f;
+// The weights of share() are 1 - r^2 twice squared, less what normals and planes take: a fifth of the circle.
+float SharedBounce::pixels_within(const Sample& s, float closeness) const {
     constexpr float kOfCircle = 0.2f * std::numbers::pi_v<float>;
     const float most = kMostPixels * s.pixel_size;
     const float radius = closeness > 0.0f ? std::min(radius_ * s.lobe / closeness, most) : most;
-    const float shared = s.area > 0.0f ? std::max(1.0f, kOfCircle * square(radius) / s.area) : 1.0f;
+    return s.area > 0.0f ? std::max(1.0f, kOfCircle * square(radius) / s.area) : 1.0f;
+}
+
+// Where noise is told from light and light is smooth, the variance falls by ten at least besides, until blurs end.
+float SharedBounce::pixels_sharing(const Sample& s, float closeness) const {
+    constexpr float kOfBands = 10.0f, kMostOfBands = 1000.0f;
+    const float shared = pixels_within(s, closeness);
     return calms_ ? std::max(shared, std::min(kOfBands * shared, kMostOfBands)) : shared;
 }
 

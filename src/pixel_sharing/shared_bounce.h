@@ -81,8 +81,9 @@ public:
     double square_error(Apart which) const;
 
     // About how many pixels like this one share, where the mean of 1 / distance around it is `closeness` [1/m]; the
-    // noise of a sample falls by the square root of that.
+    // noise of a sample falls by the square root of that. Within the radius: before noise is told from light.
     float pixels_sharing(const Sample& at, float closeness) const;
+    float pixels_within(const Sample& at, float closeness) const;
 
 private:
     void take_means();

@@ -109,9 +109,9 @@ void add_compensation(Image& image, ScreenSpaceCompensation& compensated, BoundA
     add_to_cell(image, Cell::SS, pixels);
 }
 
-// Whether noise is told from light that pixels share: the parts of points and spheres, which are there for comparison,
-// have to add up.
-bool calms_shared_light(const VirtualLightSettings& lights) {
+// Whether noise is told from light that pixels share, and grains are divided: the parts of points and spheres, which
+// are there for comparison, have to add up.
+bool calms_light(const VirtualLightSettings& lights) {
     return lights.kind == VirtualLightSettings().kind;
 }
 
@@ -280,11 +280,12 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
     std::optional<BoundAccount> bound;
     if (asks_for_bound)
         bound.emplace(std::size_t(camera.settings().width) * camera.settings().height);
+    const bool calms = calms_light(input_.shot.virtual_lights);
     std::optional<SharedBounce> shared;
     const double radius = input_.shot.virtual_lights.sharing_radius;
     if (lights_.virtual_lights() && input_.plan.needs(Cell::SS) && radius > 0.0)
         shared.emplace(camera.settings().width, camera.settings().height, radius, rays_of_pixel(),
-                       told_of_shared(estimator, asks_for_bound), calms_shared_light(input_.shot.virtual_lights));
+                       told_of_shared(estimator, asks_for_bound), calms);
     std::optional<SharedBounce> shared_sky;
     if (radius > 0.0 && input_.plan.needs(Cell::SA) && !lights.unified() &&
         surroundings->emitters().has_even_background())
@@ -313,6 +314,7 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
                                   lights.fire_on_surfaces(),
                                   lights.unified(),
                                   bound ? &*bound : nullptr,
+                                  calms && !bound && !reuse && !compensated,
                                   input_.shot.virtual_lights.seed};
     set_tolerances(camera, lighting);
     SurfaceShader shader(lighting);

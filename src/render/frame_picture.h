@@ -9,9 +9,9 @@
 #include "render/shutter/moment_lights.h"
 #include "surface_lighting/bound_account.h"
 #include "surface_lighting/light_reuse.h"
-#include "surface_lighting/path_lengths.h"
 #include "surface_lighting/screen_space_compensation.h"
 #include "surface_lighting/surface_shader.h"
+#include "virtual_lights/path_lengths.h"
 
 namespace brisance {
 

@@ -26,6 +26,15 @@ struct SurfaceShader::ShadedPoint {
     std::optional<double> closeness = std::nullopt;  // ... by what its ray met [1/m]
     std::vector<LightReuse::Sample> chosen = {};     // left to samples around
     BoundTally bound = {};                           // of what is not left to all pixels
+
+    // What the pixel shows of that, had all pixels nothing to add [W/(m^2 sr)].
+    Rgb left_to_all() const {
+        Rgb sum(0.0f);
+        for (const auto* s : {&base, &gloss, &sky})
+            if (*s)
+                sum += (*s)->shown();
+        return sum;
+    }
 };
 
 // The points of those samples of a call that are shaded. They are large, so that other samples have none.

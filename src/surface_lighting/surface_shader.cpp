@@ -25,8 +25,6 @@ constexpr int kPassesOfPixel = 48;  // above the passes of the picture, in Surfa
 // What a puddle shows of a window is followed to what the window shows. Beyond that, paths find it.
 constexpr int kMostReflections = 2;
 
-using Apart = SharedBounce::Apart;
-
 // Of what the samples of a pixel met.
 struct MeanCloseness {
     float sum = 0.0f, met = 0.0f;
@@ -151,18 +149,18 @@ void SurfaceShader::shade(const Samples& samples, Light& light) {
     const std::vector<SurfaceRounds::Again> again =
         input_.reuse ? std::vector<SurfaceRounds::Again>() : others.further(even(bases, on_bases), of_others);
     light_some(bases.second(seen_beside, on_bases, &others), &BaseLighting::light_penumbrae);
-    add_up(samples, bases, others, points, found, light);
+    const std::optional<DividedGrains> grains = add_up(samples, bases, others, points, found, light);
     hand_over(samples, points, light);
     for (std::size_t begin = 0; begin < again.size(); begin += kAgainAtOnce)
         shade_again(samples, std::span(again).subspan(begin, std::min(kAgainAtOnce, again.size() - begin)), others,
-                    light);
+                    grains, light);
     variance_left_ += bases.variance_left() + others.variance_left();
 }
 
 // Further passes of some samples, all but what lights bases: other numbers, which the passes of a pixel divide among
 // themselves as its rays do.
 void SurfaceShader::shade_again(const Samples& samples, std::span<const SurfaceRounds::Again> again,
-                                const SurfaceRounds& rounds, Light& light) {
+                                const SurfaceRounds& rounds, const std::optional<DividedGrains>& grains, Light& light) {
     Samples more;
     for (const SurfaceRounds::Again& a : again) {
         more.push_back(samples[a.sample]);
@@ -176,7 +174,8 @@ void SurfaceShader::shade_again(const Samples& samples, std::span<const SurfaceR
     shade_some(more, all, points, found);
     for (const std::size_t k : all) {
         points[k].stands_for = rounds.stands_for(again[k].sample);
-        shown[k].add(found[k], Rgb(points[k].stands_for));
+        if (!divides(grains, again[k].sample, found[k], points[k], light))
+            shown[k].add(found[k], Rgb(points[k].stands_for));
         if (input_.lengths)
             input_.lengths->add(more[k].pixel, points[k].vertices);
     }
@@ -185,21 +184,42 @@ void SurfaceShader::shade_again(const Samples& samples, std::span<const SurfaceR
         light[again[k].sample].add(shown[k], Rgb(1.0f));
 }
 
-// What the rounds have found, as each sample stands for others: `light` on bases, and `found` besides, which is added.
-void SurfaceShader::add_up(const Samples& samples, const SurfaceRounds& bases, const SurfaceRounds& others,
-                           Points& points, const Light& found, Light& light) const {
+// What the rounds have found, as each sample stands for others: `light` on bases, and `found` besides, which is added,
+// where it stands out to samples around.
+std::optional<DividedGrains> SurfaceShader::add_up(const Samples& samples, const SurfaceRounds& bases,
+                                                   const SurfaceRounds& others, Points& points, const Light& found,
+                                                   Light& light) const {
+    std::vector<DividedGrains::Shown> shown(samples.size());
     for (std::size_t i = 0; i < samples.size(); ++i) {
         if (const float scale = bases.stands_for(i); scale != 1.0f)
             for (Rgb& cell : light[i])
                 cell *= scale;
-        const float scale = others.stands_for(i);
-        if (!(scale > 0.0f))
+        shown[i].luminance = samples[i].share * luminance(light[i]);
+        if (!points.has(i))
             continue;
-        points[i].stands_for = scale;
-        light[i].add(found[i], Rgb(scale));
-        if (input_.lengths)
-            input_.lengths->add(samples[i].pixel, points[i].vertices);
+        ShadedPoint& at = points[i];
+        at.stands_for = others.stands_for(i);
+        if (at.seen.mirrors == 0)
+            shown[i].normal = vec3(at.seen.point.frame.normal);
+        shown[i].luminance += at.stands_for * (samples[i].share * luminance(found[i]) + luminance(at.left_to_all()));
+        if (input_.lengths && at.stands_for > 0.0f)
+            input_.lengths->add(samples[i].pixel, at.vertices);
     }
+    std::optional<DividedGrains> grains;
+    if (input_.divides_grains)
+        grains.emplace(samples, std::move(shown), input_.width, input_.shared);
+    for (std::size_t i = 0; i < samples.size(); ++i)
+        if (points.has(i) && points[i].stands_for > 0.0f && !divides(grains, i, found[i], points[i], light))
+            light[i].add(found[i], Rgb(points[i].stands_for));
+    return grains;
+}
+
+bool SurfaceShader::divides(const std::optional<DividedGrains>& grains, std::size_t sample, const CellSum& found,
+                            ShadedPoint& at, Light& light) const {
+    if (!grains || at.seen.lost)
+        return false;
+    SharedBounce::Sample* const left[] = {at.base ? &*at.base : nullptr, at.gloss ? &*at.gloss : nullptr};
+    return grains->divide(sample, at.stands_for, found, left, light);
 }
 
 // What shading found at some samples, of which all pixels share a part. What that leaves of its noise is told of the
@@ -330,9 +350,7 @@ ScreenSpaceCompensation::Sample SurfaceShader::compensated_sample(const SurfaceS
     out.area = shown_area(point, at.seen.arriving, input_.pixel_angle * from_eye);
     for (const Rgb& cell : light)
         out.light += cell;
-    for (const std::optional<SharedBounce::Sample>& s : {at.base, at.gloss, at.sky})
-        if (s)
-            out.light += s->shown() / sample.share;
+    out.light += at.left_to_all() / sample.share;
     if (has_base(point.material))
         out.albedo = Bsdf(point.material, point.frame, Lobes::Base).base_albedo(-at.seen.arriving);
     out.share = sample.share;
@@ -367,13 +385,9 @@ void SurfaceShader::hand_over(const Samples& samples, Points& points, Light& lig
         }
         for (const std::optional<SharedBounce::Sample>& s : {at.base, at.gloss})
             if (s && !input_.shared->add(*s)) {
-                const Rgb shown = s->weight / samples[i].share;
-                light[i].at(Cell::SS) += s->light * shown;
-                light[i].at(Cell::SV) += s->of(Apart::SV) * shown;
-                light[i].at(Cell::SM) += s->of(Apart::SM) * shown;
-                light[i].at(Cell::SA) += s->of(Apart::SA) * shown;
+                light[i].add(shown_by_cell(*s), Rgb(1.0f / samples[i].share));
                 if (input_.bound)
-                    input_.bound->add_residual(samples[i].pixel, s->of(Apart::Residual) * s->weight);
+                    input_.bound->add_residual(samples[i].pixel, s->of(SharedBounce::Apart::Residual) * s->weight);
             }
         if (at.sky && !input_.shared_sky->add(*at.sky))
             light[i].at(Cell::SA) += at.sky->light * at.sky->weight / samples[i].share;

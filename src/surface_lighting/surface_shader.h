@@ -28,6 +28,7 @@
 #include "fire_lights/sampled_fire.h"
 #include "light_selection/in_scattering.h"
 #include "medium_lighting/medium_lighting.h"
+#include "pixel_sharing/divided_grains.h"
 #include "pixel_sharing/share_light.h"
 #include "pixel_sharing/shared_bounce.h"
 #include "reference/path_tracer.h"
@@ -36,10 +37,10 @@
 #include "surface_lighting/light_of_emitters.h"
 #include "surface_lighting/light_reuse.h"
 #include "surface_lighting/mirrors.h"
-#include "surface_lighting/path_lengths.h"
 #include "surface_lighting/screen_space_compensation.h"
 #include "surface_lighting/surface_rounds.h"
 #include "unified_lights/unified_lights.h"
+#include "virtual_lights/path_lengths.h"
 #include "virtual_lights/virtual_lights.h"
 
 namespace brisance {
@@ -69,6 +70,7 @@ struct SurfaceLightingInput {
     const SampledFire* fire = nullptr;       // owns SV of the base; null: the lighting grid does, or these:
     const UnifiedLights* unified = nullptr;  // own SV of the base, SS and SA; null: each kind of light by itself
     BoundAccount* bound = nullptr;           // gets what the bound of point lights does to SS; null: nobody asks
+    bool divides_grains = false;             // among pixels around (divided_grains.h); otherwise samples keep all
     std::uint32_t seed = 0;                  // pictures of different seeds share no random numbers
 };
 
@@ -91,14 +93,16 @@ private:
     using LightBases = std::vector<BaseLight> (BaseLighting::*)(std::span<const BasePoint>,
                                                                 const SharedReceivers&) const;
     std::vector<BaseLight> light_bases(const Samples& samples, const Some& some, const Points& points, LightBases how);
-    void add_up(const Samples& samples, const SurfaceRounds& bases, const SurfaceRounds& others, Points& points,
-                const Light& found, Light& light) const;
+    std::optional<DividedGrains> add_up(const Samples& samples, const SurfaceRounds& bases, const SurfaceRounds& others,
+                                        Points& points, const Light& found, Light& light) const;
+    bool divides(const std::optional<DividedGrains>& grains, std::size_t sample, const CellSum& found, ShadedPoint& at,
+                 Light& light) const;
     void add_base(const BaseLight& base, const ShadedPoint& at, CellSum& light) const;
     void tell(const Samples& samples, const Some& some, const Points& points, const Light& found,
               SurfaceRounds::Found& known) const;
     void shade_some(const Samples& samples, const Some& some, Points& points, Light& found);
     void shade_again(const Samples& samples, std::span<const SurfaceRounds::Again> again, const SurfaceRounds& rounds,
-                     Light& light);
+                     const std::optional<DividedGrains>& grains, Light& light);
     void shade_reflected(const Samples& samples, const Some& some, Points& points, Light& found);
     void light_reflected(const Samples& by, Points& there, Light& found);
     bool shows_others(const ShadedPoint& at) const;
