@@ -2,137 +2,111 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <numbers>
 
-#include "pixel_sharing/share_light.h"
+#include "core/parallel.h"
 
 namespace brisance {
 
 namespace {
 
-// Of what its pixel shows without it, and of what half of those around show: from there on a sample is a grain.
-constexpr float kStandsOut = 0.5f;
+// A grain shows by this part of what is around at most, where it is no larger than the widest radius allows [pixels].
+constexpr float kShows = 0.05f;
+constexpr float kLeastRadius = 3.5f, kMostRadius = 16.0f;
 
-// Pixels to each side.
-constexpr int kPixelsAround = 3;
-
-// Less pixels are too few to divide a grain among.
-constexpr std::size_t kFew = 8;
+// Pixels of less weight than this are too few to divide a grain among.
+constexpr float kFewPixels = 4.0f;
 
 // On one surface, normals have at least this cosine, and leave the plane by less than this part of the distance.
 constexpr float kNormalOfSurface = 0.9f, kPlaneOfSurface = 0.1f;
 
-dvec3 position(const SurfaceSample& sample) {
-    return sample.ray.origin + sample.hit.distance * sample.ray.direction;
+// Weights are (1 - d^2 / r^2)^2: a third of the circle.
+float radius(float excess) {
+    constexpr float kOfCircle = std::numbers::pi_v<float> / 3.0f;
+    // In this order what is infinite is divided as widely as can be.
+    return std::max(kLeastRadius, std::min(kMostRadius, std::sqrt(excess / (kShows * kOfCircle))));
 }
 
 }  // namespace
 
-DividedGrains::DividedGrains(std::span<const SurfaceSample> samples, std::vector<Shown> shown, int width,
-                             const SharedBounce* shared)
-    : samples_(samples), shown_(std::move(shown)), width_(static_cast<std::size_t>(width)), shared_(shared) {
-    if (samples.empty())
-        return;
-    origin_ = samples.front().pixel / width_ * width_;
-    pixels_.resize(((samples.back().pixel - origin_) / width_ + 1) * width_);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-        Pixel& p = pixels_[samples[i].pixel - origin_];
-        if (p.end == 0) {
-            p.begin = i;
-            p.luminance = samples[i].beside;
-        }
-        p.end = i + 1;
-        p.luminance += shown_[i].luminance;
-    }
+bool DividedGrains::on_one_surface(const Surface& a, const Surface& b) {
+    const vec3 apart = b.position - a.position;
+    return a.mesh == b.mesh && glm::dot(a.normal, b.normal) > kNormalOfSurface &&
+           std::abs(glm::dot(apart, a.normal)) <= kPlaneOfSurface * glm::length(apart);
 }
 
-bool DividedGrains::on_one_surface(std::size_t sample, std::size_t other) const {
-    const vec3& normal = shown_[sample].normal;
-    const vec3 apart(position(samples_[other]) - position(samples_[sample]));
-    return glm::dot(shown_[other].normal, normal) > kNormalOfSurface &&
-           std::abs(glm::dot(apart, normal)) <= kPlaneOfSurface * glm::length(apart);
+DividedGrains::DividedGrains(int width, int height)
+    : width_(width), height_(height), surfaces_(std::size_t(width) * std::size_t(height)) {}
+
+std::uint64_t DividedGrains::bytes_of(int width, int height) {
+    return std::uint64_t(width) * std::uint64_t(height) * (sizeof(Surface) + sizeof(Rgb));
 }
 
-DividedGrains::Around DividedGrains::around(std::size_t sample) const {
-    const auto at = static_cast<int>(samples_[sample].pixel - origin_), width = static_cast<int>(width_);
-    const int px = at % width, py = at / width, height = static_cast<int>(pixels_.size()) / width;
-    Around out;
-    for (int y = std::max(py - kPixelsAround, 0); y <= std::min(py + kPixelsAround, height - 1); ++y)
-        for (int x = std::max(px - kPixelsAround, 0); x <= std::min(px + kPixelsAround, width - 1); ++x) {
-            const Pixel& p = pixels_[std::size_t(y) * width_ + std::size_t(x)];
-            if (x == px && y == py)
+DividedGrains::Window DividedGrains::window(const Grain& grain) const {
+    const int x = int(grain.pixel) % width_, y = int(grain.pixel) / width_, reach = int(radius(grain.excess));
+    return {std::max(x - reach, 0), std::min(x + reach, width_ - 1), std::max(y - reach, 0),
+            std::min(y + reach, height_ - 1)};
+}
+
+float DividedGrains::in_common(const Grain& grain, int x, int y, bool mesh, bool others) const {
+    const Surface& there = surfaces_[std::size_t(y) * std::size_t(width_) + std::size_t(x)];
+    const auto dx = float(x - int(grain.pixel) % width_), dy = float(y - int(grain.pixel) / width_);
+    const float r = radius(grain.excess), within = 1.0f - (dx * dx + dy * dy) / (r * r);
+    if (!(within > 0.0f) || !(there.share > 0.0f))
+        return 0.0f;
+    const bool takes_part =
+        others || (mesh && there.mesh == grain.surface.mesh) || on_one_surface(grain.surface, there);
+    return takes_part ? there.share * within * within : 0.0f;
+}
+
+// Who takes part, and the sum of their weights. Where nobody does, not even its own pixel, a grain stays there.
+DividedGrains::Spread DividedGrains::spread(const Grain& grain) const {
+    const Window w = window(grain);
+    Spread out;
+    for (const bool others : {false, true})
+        for (const bool mesh : {false, true}) {
+            if (others && !mesh)
                 continue;
-            std::size_t of_surface = p.end, of_mesh = p.end, any = p.end;
-            for (std::size_t i = p.end; i-- > p.begin;) {
-                if (!(samples_[i].share > 0.0f))
-                    continue;
-                any = i;
-                if (samples_[i].hit.mesh != samples_[sample].hit.mesh)
-                    continue;
-                of_mesh = i;
-                if (on_one_surface(sample, i))
-                    of_surface = i;
-            }
-            if (of_surface < p.end)
-                out.surface.push_back(of_surface);
-            else if (of_mesh < p.end)
-                out.mesh.push_back(of_mesh);
-            else if (any < p.end)
-                out.others.push_back(any);
+            out = {mesh, others, 0.0f};
+            for (int y = w.top; y <= w.bottom; ++y)
+                for (int x = w.left; x <= w.right; ++x)
+                    out.weights += in_common(grain, x, y, mesh, others);
+            if (out.weights >= kFewPixels * surfaces_[grain.pixel].share)
+                return out;
         }
     return out;
 }
 
-// Who takes a part of a sample, itself among them; none: it is no grain. `noise`: what of its luminance no other sample
-// tells, where so many pixels show its surface.
-template <class Noise>
-std::vector<std::size_t> DividedGrains::receivers(std::size_t sample, const Noise& noise) const {
-    const float all = noise(1.0f), beside = pixel_of(sample).luminance - all;
-    // In this order what is not a number stays where it is.
-    if (!(all > kStandsOut * beside))
-        return {};
-    Around near = around(sample);
-    const float alone = noise(float(1 + near.surface.size()));
-    std::vector<std::size_t> among = std::move(near.surface);
-    for (const std::vector<std::size_t>& more : {near.mesh, near.others})
-        if (among.size() < kFew)
-            among.insert(among.end(), more.begin(), more.end());
-    if (among.empty())
-        return {};
-    std::vector<float> luminances;
-    for (const std::size_t i : among)
-        luminances.push_back(pixel_of(i).luminance);
-    const auto middle = luminances.begin() + std::ptrdiff_t(luminances.size() / 2);
-    std::ranges::nth_element(luminances, middle);
-    if (!(alone > kStandsOut * std::max(*middle, beside)))
-        return {};
-    among.push_back(sample);
-    return among;
-}
-
-bool DividedGrains::divide(std::size_t sample, float stands_for, const CellSum& found,
-                           std::span<SharedBounce::Sample* const> left, std::vector<CellSum>& light) const {
-    const float share = stands_for * samples_[sample].share;
-    const std::vector<std::size_t> among = receivers(sample, [&](float pixels) {
-        float sum = share * luminance(found);
-        for (const SharedBounce::Sample* s : left)
-            if (s)
-                sum += stands_for * luminance(s->shown()) / std::min(pixels, shared_->pixels_within(*s, s->closeness));
-        return sum;
-    });
-    if (among.empty())
-        return false;
-    CellSum all;
-    all.add(found, Rgb(share));
-    for (SharedBounce::Sample* s : left)
-        if (s) {
-            all.add(shown_by_cell(*s), Rgb(stands_for));
-            s->light = Rgb(0.0f);
-            s->apart = {};
+// Row after row of what receives, so that the order of the sums does not depend on threads.
+std::vector<Rgb> DividedGrains::pixels(Cell cell) const {
+    const auto of = std::size_t(std::ranges::find(kOfSurfaces, cell) - kOfSurfaces.begin());
+    std::vector<Rgb> out(surfaces_.size(), Rgb(0.0f));
+    if (of == kOfSurfaces.size() || grains_.empty())
+        return out;
+    std::vector<Spread> spreads(grains_.size());
+    parallel_for(
+        grains_.size(), [&](std::size_t k) { spreads[k] = spread(grains_[k]); }, 64);
+    std::vector<std::vector<std::uint32_t>> of_row(static_cast<std::size_t>(height_));
+    for (std::size_t k = 0; k < grains_.size(); ++k) {
+        if (grains_[k].light[of] == Rgb(0.0f))
+            continue;
+        if (!(spreads[k].weights > 0.0f))
+            out[grains_[k].pixel] += grains_[k].light[of];
+        else
+            for (int y = window(grains_[k]).top; y <= window(grains_[k]).bottom; ++y)
+                of_row[std::size_t(y)].push_back(std::uint32_t(k));
+    }
+    parallel_for(of_row.size(), [&](std::size_t y) {
+        for (const std::uint32_t k : of_row[y]) {
+            const Grain& grain = grains_[k];
+            const Window w = window(grain);
+            for (int x = w.left; x <= w.right; ++x)
+                out[y * std::size_t(width_) + std::size_t(x)] +=
+                    in_common(grain, x, int(y), spreads[k].mesh, spreads[k].others) / spreads[k].weights *
+                    grain.light[of];
         }
-    for (const std::size_t i : among)
-        light[i].add(all, Rgb(1.0f / (float(among.size()) * samples_[i].share)));
-    return true;
+    });
+    return out;
 }
 
 }  // namespace brisance

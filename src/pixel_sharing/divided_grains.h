@@ -1,63 +1,67 @@
 // Grains ("fireflies"): samples that alone make much of what their pixel shows, and stand out of the pixels around.
 //
 // Light that is rare and bright leaves such noise whatever the number of samples, since every further one may be the
-// next. The energy of a grain is right; its place in the picture is chance. So it is divided evenly among the pixels
-// around that show the same surface, its own included: the picture's mean stays what it is (H. Rushmeier, G. Ward,
-// Energy Preserving Non-Linear Filters, SIGGRAPH 1994). What several samples of a pixel find is no grain, however
-// bright it is: highlights and lamps keep their place.
+// next. The energy of a grain is right; its place in the picture is chance. So it is divided among the pixels around
+// that show the same surface: the picture's mean stays what it is (H. Rushmeier, G. Ward, Energy Preserving Non-Linear
+// Filters, SIGGRAPH 1994). The brighter a grain is, the more pixels share it, until none shows it. What several samples
+// of a pixel find is no grain, however bright it is: highlights and lamps keep their place.
 //
 // SharedBounce divides the samples of surfaces that many pixels show, and leaves grains on what only a few do: rails,
 // frames, far edges. There a grain falls to other sides of the same thing, and last to whatever is around.
 #pragma once
 
-#include <cstddef>
-#include <span>
+#include <array>
+#include <cstdint>
 #include <vector>
 
-#include "camera_rays/picture.h"
-#include "pixel_sharing/shared_bounce.h"
+#include "core/cell.h"
 
 namespace brisance {
 
 class DividedGrains {
 public:
-    // What a sample adds to its pixel.
-    struct Shown {
-        float luminance = 0.0f;  // [W/(m^2 sr)]
-        vec3 normal{0.0f};       // of its surface, unit; 0: not known
+    // What a pixel shows first.
+    struct Surface {
+        vec3 position{0.0f};     // local [m]
+        vec3 normal{0.0f};       // unit; 0: not known
+        std::uint32_t mesh = 0;  // of the scene
+        float share = 0.0f;      // of the light of all its surfaces, what the pixel shows; 0: it shows none
     };
-    // Keeps a reference to the samples, which are in the order of pixels. `shown`: of each. `width`: of the picture, in
-    // pixels. `shared`: what shares light among pixels; null: nothing does.
-    DividedGrains(std::span<const SurfaceSample> samples, std::vector<Shown> shown, int width,
-                  const SharedBounce* shared);
+    static bool on_one_surface(const Surface& a, const Surface& b);
 
-    // Whether a sample is a grain. Then its light is added to that of samples around, which `light` holds of each
-    // [W/(m^2 sr)], and the caller leaves `found` out. `found`: what it sees [W/(m^2 sr)], as often as it `stands_for`
-    // others of its pixel; `left`: what it leaves to all pixels, null where it leaves nothing, of which a grain keeps
-    // none.
-    bool divide(std::size_t sample, float stands_for, const CellSum& found, std::span<SharedBounce::Sample* const> left,
-                std::vector<CellSum>& light) const;
+    static constexpr std::array<Cell, 4> kOfSurfaces = {Cell::SV, Cell::SM, Cell::SS, Cell::SA};
+    struct Grain {
+        std::uint32_t pixel = 0;
+        Surface surface;
+        float excess = 0.0f;                        // its luminance over that of the pixels around
+        std::array<Rgb, kOfSurfaces.size()> light;  // what its pixel would show of it, of these cells [W/(m^2 sr)]
+    };
+
+    DividedGrains(int width, int height);
+    static std::uint64_t bytes_of(int width, int height);  // without grains
+
+    void show(std::uint32_t pixel, const Surface& surface) { surfaces_[pixel] = surface; }
+    // In any order that does not depend on threads. Not thread-safe.
+    void add(const Grain& grain) { grains_.push_back(grain); }
+
+    // What pixels show of all grains, of a cell of surfaces.
+    std::vector<Rgb> pixels(Cell cell) const;
 
 private:
-    struct Pixel {
-        float luminance = 0.0f;
-        std::size_t begin = 0, end = 0;  // of its samples
+    struct Window {
+        int left, right, top, bottom;  // pixels, inclusive
     };
-    // One sample of each pixel around one, by what they have in common with it.
-    struct Around {
-        std::vector<std::size_t> surface, mesh, others;
+    Window window(const Grain& grain) const;
+    float in_common(const Grain& grain, int x, int y, bool mesh, bool others) const;
+    struct Spread {
+        bool mesh = false, others = false;  // take part
+        float weights = 0.0f;
     };
-    Around around(std::size_t sample) const;
-    bool on_one_surface(std::size_t sample, std::size_t other) const;
-    const Pixel& pixel_of(std::size_t sample) const { return pixels_[samples_[sample].pixel - origin_]; }
-    template <class Noise>
-    std::vector<std::size_t> receivers(std::size_t sample, const Noise& noise) const;
+    Spread spread(const Grain& grain) const;
 
-    std::span<const SurfaceSample> samples_;
-    std::vector<Shown> shown_;
-    std::size_t width_, origin_ = 0;  // the first pixel of the rows
-    const SharedBounce* shared_;
-    std::vector<Pixel> pixels_;  // of the rows that have samples
+    int width_, height_;
+    std::vector<Surface> surfaces_;  // of each pixel
+    std::vector<Grain> grains_;
 };
 
 }  // namespace brisance

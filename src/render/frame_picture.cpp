@@ -292,6 +292,9 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
         shared_sky.emplace(camera.settings().width, camera.settings().height, radius, rays_of_pixel());
     std::optional<LightReuse> reuse = light_reuse(camera, shared ? &*shared : nullptr, bound ? &*bound : nullptr);
     std::optional<ScreenSpaceCompensation> compensated = compensation(camera);
+    std::optional<DividedGrains> grains;
+    if (calms && !bound && !reuse && !compensated)
+        grains.emplace(camera.settings().width, camera.settings().height);
     SurfaceLightingInput lighting{input_.plan.needed,
                                   lights.field(),
                                   *lights.paths(),
@@ -314,7 +317,7 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
                                   lights.fire_on_surfaces(),
                                   lights.unified(),
                                   bound ? &*bound : nullptr,
-                                  calms && !bound && !reuse && !compensated,
+                                  grains ? &*grains : nullptr,
                                   input_.shot.virtual_lights.seed};
     set_tolerances(camera, lighting);
     SurfaceShader shader(lighting);
@@ -330,6 +333,9 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
         add_to_cell(image, Cell::SA, shared_sky->take_pixels());
         square_errors_of_shared_[int(Cell::SA)] += shared_sky->square_error();
     }
+    if (grains)
+        for (const Cell cell : DividedGrains::kOfSurfaces)
+            add_to_cell(image, cell, grains->pixels(cell));
     if (shared && bound)
         bound->add_residual(shared->told_pixels(SharedBounce::Apart::Residual));
     if (compensated)

@@ -27,7 +27,7 @@ SurfaceLightingInput alone(SurfaceLightingInput lighting, int width) {
     lighting.reuse = nullptr;
     lighting.compensation = nullptr;
     lighting.bound = nullptr;
-    lighting.divides_grains = false;
+    lighting.grains = nullptr;
     return lighting;
 }
 

@@ -149,7 +149,7 @@ void SurfaceShader::shade(const Samples& samples, Light& light) {
     const std::vector<SurfaceRounds::Again> again =
         input_.reuse ? std::vector<SurfaceRounds::Again>() : others.further(even(bases, on_bases), of_others);
     light_some(bases.second(seen_beside, on_bases, &others), &BaseLighting::light_penumbrae);
-    const std::optional<DividedGrains> grains = add_up(samples, bases, others, points, found, light);
+    std::optional<GrainFinder> grains = add_up(samples, bases, others, points, found, light);
     hand_over(samples, points, light);
     for (std::size_t begin = 0; begin < again.size(); begin += kAgainAtOnce)
         shade_again(samples, std::span(again).subspan(begin, std::min(kAgainAtOnce, again.size() - begin)), others,
@@ -160,7 +160,7 @@ void SurfaceShader::shade(const Samples& samples, Light& light) {
 // Further passes of some samples, all but what lights bases: other numbers, which the passes of a pixel divide among
 // themselves as its rays do.
 void SurfaceShader::shade_again(const Samples& samples, std::span<const SurfaceRounds::Again> again,
-                                const SurfaceRounds& rounds, const std::optional<DividedGrains>& grains, Light& light) {
+                                const SurfaceRounds& rounds, std::optional<GrainFinder>& grains, Light& light) {
     Samples more;
     for (const SurfaceRounds::Again& a : again) {
         more.push_back(samples[a.sample]);
@@ -174,7 +174,7 @@ void SurfaceShader::shade_again(const Samples& samples, std::span<const SurfaceR
     shade_some(more, all, points, found);
     for (const std::size_t k : all) {
         points[k].stands_for = rounds.stands_for(again[k].sample);
-        if (!divides(grains, again[k].sample, found[k], points[k], light))
+        if (!is_grain(grains, again[k].sample, found[k], points[k]))
             shown[k].add(found[k], Rgb(points[k].stands_for));
         if (input_.lengths)
             input_.lengths->add(more[k].pixel, points[k].vertices);
@@ -184,12 +184,12 @@ void SurfaceShader::shade_again(const Samples& samples, std::span<const SurfaceR
         light[again[k].sample].add(shown[k], Rgb(1.0f));
 }
 
-// What the rounds have found, as each sample stands for others: `light` on bases, and `found` besides, which is added,
-// where it stands out to samples around.
-std::optional<DividedGrains> SurfaceShader::add_up(const Samples& samples, const SurfaceRounds& bases,
-                                                   const SurfaceRounds& others, Points& points, const Light& found,
-                                                   Light& light) const {
-    std::vector<DividedGrains::Shown> shown(samples.size());
+// What the rounds have found, as each sample stands for others: `light` on bases, and `found` besides, which is added
+// unless it is a grain.
+std::optional<GrainFinder> SurfaceShader::add_up(const Samples& samples, const SurfaceRounds& bases,
+                                                 const SurfaceRounds& others, Points& points, const Light& found,
+                                                 Light& light) const {
+    std::vector<GrainFinder::Shown> shown(samples.size());
     for (std::size_t i = 0; i < samples.size(); ++i) {
         if (const float scale = bases.stands_for(i); scale != 1.0f)
             for (Rgb& cell : light[i])
@@ -205,21 +205,21 @@ std::optional<DividedGrains> SurfaceShader::add_up(const Samples& samples, const
         if (input_.lengths && at.stands_for > 0.0f)
             input_.lengths->add(samples[i].pixel, at.vertices);
     }
-    std::optional<DividedGrains> grains;
-    if (input_.divides_grains)
-        grains.emplace(samples, std::move(shown), input_.width, input_.shared);
+    std::optional<GrainFinder> grains;
+    if (input_.grains)
+        grains.emplace(samples, std::move(shown), input_.width, input_.shared, *input_.grains);
     for (std::size_t i = 0; i < samples.size(); ++i)
-        if (points.has(i) && points[i].stands_for > 0.0f && !divides(grains, i, found[i], points[i], light))
+        if (points.has(i) && points[i].stands_for > 0.0f && !is_grain(grains, i, found[i], points[i]))
             light[i].add(found[i], Rgb(points[i].stands_for));
     return grains;
 }
 
-bool SurfaceShader::divides(const std::optional<DividedGrains>& grains, std::size_t sample, const CellSum& found,
-                            ShadedPoint& at, Light& light) const {
+bool SurfaceShader::is_grain(std::optional<GrainFinder>& grains, std::size_t sample, const CellSum& found,
+                             ShadedPoint& at) const {
     if (!grains || at.seen.lost)
         return false;
     SharedBounce::Sample* const left[] = {at.base ? &*at.base : nullptr, at.gloss ? &*at.gloss : nullptr};
-    return grains->divide(sample, at.stands_for, found, left, light);
+    return grains->take(sample, at.stands_for, found, left);
 }
 
 // What shading found at some samples, of which all pixels share a part. What that leaves of its noise is told of the

@@ -28,7 +28,7 @@
 #include "fire_lights/sampled_fire.h"
 #include "light_selection/in_scattering.h"
 #include "medium_lighting/medium_lighting.h"
-#include "pixel_sharing/divided_grains.h"
+#include "pixel_sharing/grain_finder.h"
 #include "pixel_sharing/share_light.h"
 #include "pixel_sharing/shared_bounce.h"
 #include "reference/path_tracer.h"
@@ -70,7 +70,7 @@ struct SurfaceLightingInput {
     const SampledFire* fire = nullptr;       // owns SV of the base; null: the lighting grid does, or these:
     const UnifiedLights* unified = nullptr;  // own SV of the base, SS and SA; null: each kind of light by itself
     BoundAccount* bound = nullptr;           // gets what the bound of point lights does to SS; null: nobody asks
-    bool divides_grains = false;             // among pixels around (divided_grains.h); otherwise samples keep all
+    DividedGrains* grains = nullptr;         // gets samples that stand out; null: their pixels keep them
     std::uint32_t seed = 0;                  // pictures of different seeds share no random numbers
 };
 
@@ -93,16 +93,15 @@ private:
     using LightBases = std::vector<BaseLight> (BaseLighting::*)(std::span<const BasePoint>,
                                                                 const SharedReceivers&) const;
     std::vector<BaseLight> light_bases(const Samples& samples, const Some& some, const Points& points, LightBases how);
-    std::optional<DividedGrains> add_up(const Samples& samples, const SurfaceRounds& bases, const SurfaceRounds& others,
-                                        Points& points, const Light& found, Light& light) const;
-    bool divides(const std::optional<DividedGrains>& grains, std::size_t sample, const CellSum& found, ShadedPoint& at,
-                 Light& light) const;
+    std::optional<GrainFinder> add_up(const Samples& samples, const SurfaceRounds& bases, const SurfaceRounds& others,
+                                      Points& points, const Light& found, Light& light) const;
+    bool is_grain(std::optional<GrainFinder>& grains, std::size_t sample, const CellSum& found, ShadedPoint& at) const;
     void add_base(const BaseLight& base, const ShadedPoint& at, CellSum& light) const;
     void tell(const Samples& samples, const Some& some, const Points& points, const Light& found,
               SurfaceRounds::Found& known) const;
     void shade_some(const Samples& samples, const Some& some, Points& points, Light& found);
     void shade_again(const Samples& samples, std::span<const SurfaceRounds::Again> again, const SurfaceRounds& rounds,
-                     const std::optional<DividedGrains>& grains, Light& light);
+                     std::optional<GrainFinder>& grains, Light& light);
     void shade_reflected(const Samples& samples, const Some& some, Points& points, Light& found);
     void light_reflected(const Samples& by, Points& there, Light& found);
     bool shows_others(const ShadedPoint& at) const;

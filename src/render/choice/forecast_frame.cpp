@@ -11,6 +11,7 @@
 #include "forecast/correction_plan.h"
 #include "forecast/memory_need.h"
 #include "forecast/plan.h"
+#include "pixel_sharing/divided_grains.h"
 #include "pixel_sharing/shared_bounce.h"
 #include "render/bound_layers.h"
 #include "render/choice/choose_method.h"
@@ -55,7 +56,7 @@ std::uint64_t bytes_between_pixels(const Shot& shot, const FrameInput& input, co
     if (shot.method == RenderMethod::Path || !plan.surfaces)
         return 0;
     const bool lights = s.count > 0 && plan.needs(Cell::SS);
-    std::uint64_t sum = 0;
+    std::uint64_t sum = DividedGrains::bytes_of(width, height);
     if (lights && s.sharing_radius > 0.0)
         sum += SharedBounce::bytes_of(width, height, has_bound_layers(shot, plan) ? 1 : SharedBounce::kAparts - 1);
     if (lights && s.compensation == BoundCompensation::ScreenSpace)
