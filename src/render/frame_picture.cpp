@@ -293,7 +293,7 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
     std::optional<LightReuse> reuse = light_reuse(camera, shared ? &*shared : nullptr, bound ? &*bound : nullptr);
     std::optional<ScreenSpaceCompensation> compensated = compensation(camera);
     std::optional<DividedGrains> grains;
-    if (calms && !bound && !reuse && !compensated)
+    if (radius > 0.0 && calms && !bound && !reuse && !compensated)
         grains.emplace(camera.settings().width, camera.settings().height);
     SurfaceLightingInput lighting{input_.plan.needed,
                                   lights.field(),

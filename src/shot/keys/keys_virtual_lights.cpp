@@ -140,8 +140,8 @@ void add_sharing_key(std::vector<Key>& keys) {
     keys.push_back(make_key(
         "virtual_lights.sharing_radius",
         "pixels share light between matt surfaces, of even skies on them, and all that rough lobes reflect: how far, "
-        "over "
-        "the distance to surfaces around; 0: none does",
+        "over the distance to surfaces around; 0: none does, and single bright samples are not divided among pixels "
+        "either",
         real_in(Ranges::sharing_radius), [](Shot & s) -> auto& { return s.virtual_lights.sharing_radius; }));
 }
 
