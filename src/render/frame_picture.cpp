@@ -109,12 +109,6 @@ void add_compensation(Image& image, ScreenSpaceCompensation& compensated, BoundA
     add_to_cell(image, Cell::SS, pixels);
 }
 
-// Whether noise is told from light that pixels share, and grains are divided: the parts of points and spheres, which
-// are there for comparison, have to add up.
-bool calms_light(const VirtualLightSettings& lights) {
-    return lights.kind == VirtualLightSettings().kind;
-}
-
 }  // namespace
 
 FramePicture::FramePicture(const DrawInput& input, const ManyLights& lights, const LitStretch* stretch,
@@ -280,7 +274,8 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
     std::optional<BoundAccount> bound;
     if (asks_for_bound)
         bound.emplace(std::size_t(camera.settings().width) * camera.settings().height);
-    const bool calms = calms_light(input_.shot.virtual_lights);
+    // Parts of points and spheres, which are there for comparison, have to add up.
+    const bool calms = input_.shot.virtual_lights.kind == VirtualLightSettings().kind;
     std::optional<SharedBounce> shared;
     const double radius = input_.shot.virtual_lights.sharing_radius;
     if (lights_.virtual_lights() && input_.plan.needs(Cell::SS) && radius > 0.0)
@@ -293,7 +288,8 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
     std::optional<LightReuse> reuse = light_reuse(camera, shared ? &*shared : nullptr, bound ? &*bound : nullptr);
     std::optional<ScreenSpaceCompensation> compensated = compensation(camera);
     std::optional<DividedGrains> grains;
-    if (radius > 0.0 && calms && !bound && !reuse && !compensated)
+    const bool compares = bound || reuse || compensated || estimator || lights.unified() || lights.fire_on_surfaces();
+    if (radius > 0.0 && calms && !compares && samples_of_pixel(camera) >= GrainFinder::kFewestSamples)
         grains.emplace(camera.settings().width, camera.settings().height);
     SurfaceLightingInput lighting{input_.plan.needed,
                                   lights.field(),
@@ -333,9 +329,13 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
         add_to_cell(image, Cell::SA, shared_sky->take_pixels());
         square_errors_of_shared_[int(Cell::SA)] += shared_sky->square_error();
     }
-    if (grains)
-        for (const Cell cell : DividedGrains::kOfSurfaces)
+    if (grains) {
+        grains->divide();
+        for (const Cell cell : DividedGrains::kOfSurfaces) {
             add_to_cell(image, cell, grains->pixels(cell));
+            square_errors_of_shared_[int(cell)] += grains->square_error(cell);
+        }
+    }
     if (shared && bound)
         bound->add_residual(shared->told_pixels(SharedBounce::Apart::Residual));
     if (compensated)

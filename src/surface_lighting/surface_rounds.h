@@ -67,6 +67,8 @@ public:
     // For how many samples, by their shares, each pass of one stands, after the rounds that were asked for; 0: it was
     // not shaded.
     float stands_for(std::size_t sample) const;
+    // In how many passes its pixel is shaded.
+    float passes(std::size_t sample) const { return float(pixels_[pixel_of_[sample]].passes); }
     // The variance of luminance that the rounds leave, summed over all pixels; 0 where none asked for samples.
     double variance_left() const;
 

@@ -174,7 +174,7 @@ void SurfaceShader::shade_again(const Samples& samples, std::span<const SurfaceR
     shade_some(more, all, points, found);
     for (const std::size_t k : all) {
         points[k].stands_for = rounds.stands_for(again[k].sample);
-        if (!is_grain(grains, again[k].sample, found[k], points[k]))
+        if (!take_grain(grains, again[k].sample, 0.0f, found[k], points[k]))
             shown[k].add(found[k], Rgb(points[k].stands_for));
         if (input_.lengths)
             input_.lengths->add(more[k].pixel, points[k].vertices);
@@ -195,31 +195,34 @@ std::optional<GrainFinder> SurfaceShader::add_up(const Samples& samples, const S
             for (Rgb& cell : light[i])
                 cell *= scale;
         shown[i].luminance = samples[i].share * luminance(light[i]);
-        if (!points.has(i))
+        const float scale = others.stands_for(i);
+        if (!(scale > 0.0f))
             continue;
         ShadedPoint& at = points[i];
-        at.stands_for = others.stands_for(i);
+        at.stands_for = scale;
         if (at.seen.mirrors == 0)
-            shown[i].normal = vec3(at.seen.point.frame.normal);
-        shown[i].luminance += at.stands_for * (samples[i].share * luminance(found[i]) + luminance(at.left_to_all()));
-        if (input_.lengths && at.stands_for > 0.0f)
+            shown[i].normal = vec3(at.seen.point.geometric_normal);
+        shown[i].luminance +=
+            others.passes(i) * scale * (samples[i].share * luminance(found[i]) + luminance(at.left_to_all()));
+        if (input_.lengths)
             input_.lengths->add(samples[i].pixel, at.vertices);
     }
     std::optional<GrainFinder> grains;
     if (input_.grains)
         grains.emplace(samples, std::move(shown), input_.width, input_.shared, *input_.grains);
     for (std::size_t i = 0; i < samples.size(); ++i)
-        if (points.has(i) && points[i].stands_for > 0.0f && !is_grain(grains, i, found[i], points[i]))
-            light[i].add(found[i], Rgb(points[i].stands_for));
+        if (others.stands_for(i) > 0.0f && !take_grain(grains, i, others.passes(i), found[i], points[i]))
+            light[i].add(found[i], Rgb(others.stands_for(i)));
     return grains;
 }
 
-bool SurfaceShader::is_grain(std::optional<GrainFinder>& grains, std::size_t sample, const CellSum& found,
-                             ShadedPoint& at) const {
+// Points that mirrors have lost show what lies there, without noise. `times`: that of GrainFinder::Sample.
+bool SurfaceShader::take_grain(std::optional<GrainFinder>& grains, std::size_t sample, float times,
+                               const CellSum& found, ShadedPoint& at) const {
     if (!grains || at.seen.lost)
         return false;
-    SharedBounce::Sample* const left[] = {at.base ? &*at.base : nullptr, at.gloss ? &*at.gloss : nullptr};
-    return grains->take(sample, at.stands_for, found, left);
+    return grains->take(
+        {sample, found, {at.base ? &*at.base : nullptr, at.gloss ? &*at.gloss : nullptr}, at.stands_for, times});
 }
 
 // What shading found at some samples, of which all pixels share a part. What that leaves of its noise is told of the
@@ -240,9 +243,7 @@ void SurfaceShader::tell(const Samples& samples, const Some& some, const Points&
                        std::sqrt(input_.shared->pixels_sharing(of, around.mean()));
             };
             known.noisy[i] = luminance(found[i]);
-            for (const auto* s : {&at.base, &at.gloss, &at.sky})
-                if (*s)
-                    known.shared[i] += luminance((*s)->shown()) / samples[i].share;
+            known.shared[i] += luminance(at.left_to_all()) / samples[i].share;
             if (at.base)
                 known.noisy[i] += noise(*at.base, at.base->shown(), of_base);
             if (at.gloss)

@@ -95,7 +95,8 @@ private:
     std::vector<BaseLight> light_bases(const Samples& samples, const Some& some, const Points& points, LightBases how);
     std::optional<GrainFinder> add_up(const Samples& samples, const SurfaceRounds& bases, const SurfaceRounds& others,
                                       Points& points, const Light& found, Light& light) const;
-    bool is_grain(std::optional<GrainFinder>& grains, std::size_t sample, const CellSum& found, ShadedPoint& at) const;
+    bool take_grain(std::optional<GrainFinder>& grains, std::size_t sample, float times, const CellSum& found,
+                    ShadedPoint& at) const;
     void add_base(const BaseLight& base, const ShadedPoint& at, CellSum& light) const;
     void tell(const Samples& samples, const Some& some, const Points& points, const Light& found,
               SurfaceRounds::Found& known) const;

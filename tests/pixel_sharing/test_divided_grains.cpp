@@ -2,6 +2,7 @@
 // samples find stays where it is.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -26,7 +27,8 @@ struct Surface {
 struct Facade {
     std::vector<SurfaceSample> samples;
     std::vector<CellSum> found;
-    std::vector<float> pixels;  // after divide()
+    std::vector<float> pixels;  // after divide(), as the next
+    double square_error = 0.0;
     std::vector<vec3> normals;
 
     explicit Facade(const std::function<Surface(int x, int y)>& surface = [](int, int) { return Surface{}; }) {
@@ -52,8 +54,8 @@ struct Facade {
         return (std::size_t(y) * kAcross + std::size_t(x)) * kRaysOfPixel + ray;
     }
 
-    // Returns how many samples are grains.
-    int divide() {
+    // Returns how many samples are grains. `stands_for`, `times`: those of GrainFinder::Sample.
+    int divide(float stands_for = 1.0f, float times = 1.0f) {
         std::vector<GrainFinder::Shown> shown;
         for (std::size_t i = 0; i < samples.size(); ++i)
             shown.push_back({samples[i].share * luminance(found[i]), normals[i]});
@@ -62,10 +64,12 @@ struct Facade {
         int count = 0;
         pixels.assign(std::size_t(kAcross) * kDown, 0.0f);
         for (std::size_t i = 0; i < samples.size(); ++i)
-            if (finder.take(i, 1.0f, found[i], {}))
+            if (finder.take({i, found[i], {}, stands_for, times}))
                 ++count;
             else
-                pixels[i / kRaysOfPixel] += samples[i].share * found[i].at(Cell::SA).y;
+                pixels[i / kRaysOfPixel] += stands_for * samples[i].share * found[i].at(Cell::SA).y;
+        grains.divide();
+        square_error = grains.square_error(Cell::SA);
         const std::vector<Rgb> divided = grains.pixels(Cell::SA);
         for (std::size_t p = 0; p < pixels.size(); ++p)
             pixels[p] += divided[p + std::size_t(kFirstRow) * kAcross].y;
@@ -86,18 +90,21 @@ void make_bright(Facade& wall, int ray, float brightness) {
     wall.found[Facade::at(kX, kY, ray)].at(Cell::SA) = Rgb(brightness);
 }
 
-// Twice the light of its pixel by one sample: no pixel shows more than a twentieth of that besides.
+// Of eight times the others' light: no pixel shows more than a twentieth of what is around besides.
 TEST(DividedGrains, OneBrightSampleIsDividedAmongThePixelsAroundAndKeepsItsEnergy) {
     Facade wall;
     make_bright(wall, 2, 8.0f);
     EXPECT_EQ(wall.divide(), 1);
+    double squares = 0.0;
     for (int y = 0; y < kDown; ++y)
         for (int x = 0; x < kAcross; ++x) {
             const bool own = x == kX && y == kY, far = std::hypot(x - kX, y - kY) > 7.0;
             const float part = wall.pixel(x, y) - (own ? kEven * 3 / 4 : kEven);
             EXPECT_GE(part, far ? 0.0f : -1e-6f) << x << " " << y;
             EXPECT_LE(part, far ? 0.0f : 0.052f) << x << " " << y;
+            squares += 3.0 * part * part;
         }
+    EXPECT_NEAR(wall.square_error, squares, 1e-3 * squares);
     EXPECT_NEAR(wall.all(), kAcross * kDown * kEven + (8.0 - kEven) / kRaysOfPixel, 1e-3);
 }
 
@@ -111,27 +118,61 @@ TEST(DividedGrains, TheBrightestGrainsStayNear) {
     EXPECT_NEAR(wall.all(), 0.25e6 + kAcross * kDown, 1.0);
 }
 
+// Two samples alike are no grain, nor is the brightest of three that make most of the pixel together.
 TEST(DividedGrains, WhatSeveralSamplesFindStays) {
-    Facade wall;
-    for (int ray = 0; ray < 3; ++ray)
-        make_bright(wall, ray, 1000.0f);
-    EXPECT_EQ(wall.divide(), 0);
-    EXPECT_NEAR(wall.pixel(kX, kY), (3.0f * 1000.0f + kEven) / kRaysOfPixel, 1e-3f);
+    for (const std::array<float, 3>& found :
+         {std::array{1000.0f, 1000.0f, kEven}, std::array{1000.0f, 700.0f, 700.0f}}) {
+        Facade wall;
+        for (int ray = 0; ray < 3; ++ray)
+            make_bright(wall, ray, found[std::size_t(ray)]);
+        EXPECT_EQ(wall.divide(), 0);
+        EXPECT_NEAR(wall.pixel(kX, kY), (found[0] + found[1] + found[2] + kEven) / kRaysOfPixel, 1e-3f);
+    }
 }
 
-// Of four samples, one that is 1.4 times as bright as the others brings less than half of what they do. One that is
-// three times as bright brings as much, and stands out where the pixels around are no brighter.
+// One sample of each pixel may find all of its light, as where the samples divide the lamps among themselves: on an
+// even wall, in a line one pixel wide, and at the edge of a shadow.
+TEST(DividedGrains, WhatPixelsAroundShowTooStays) {
+    struct Case {
+        std::function<bool(int, int)> lit;
+        int grains;  // three at each end of a line
+    };
+    const Case cases[] = {{[](int, int) { return true; }, 0},
+                          {[](int x, int) { return x < kX; }, 0},
+                          {[](int x, int) { return x == kX; }, 6},
+                          {[](int x, int y) { return x == y; }, 6}};
+    for (const Case& c : cases) {
+        Facade wall;
+        for (int y = 0; y < kDown; ++y)
+            for (int x = 0; x < kAcross; ++x)
+                for (int k = 0; k < kRaysOfPixel; ++k)
+                    wall.found[Facade::at(x, y, k)].at(Cell::SA) = Rgb(k == 1 && c.lit(x, y) ? 10.0f : 0.1f);
+        EXPECT_EQ(wall.divide(), c.grains);
+    }
+}
+
+// A sample that makes less than half of its pixel stays, and so does one whose pixel does not stand out.
 TEST(DividedGrains, NoiseBelowHalfOfThePixelStays) {
     Facade dim, bright, among_bright;
-    make_bright(dim, 0, 1.4f);
+    make_bright(dim, 0, 2.9f);
     EXPECT_EQ(dim.divide(), 0);
-    make_bright(bright, 0, 3.0f);
+    make_bright(bright, 0, 3.1f);
     EXPECT_EQ(bright.divide(), 1);
     for (std::size_t i = 0; i < among_bright.found.size(); ++i)
         if (i / kRaysOfPixel != Facade::at(kX, kY, 0) / kRaysOfPixel)
-            among_bright.found[i].at(Cell::SA) = Rgb(10.0f);
-    make_bright(among_bright, 0, 3.0f);
+            among_bright.found[i].at(Cell::SA) = Rgb(1.1f);
+    make_bright(among_bright, 0, 3.1f);
     EXPECT_EQ(among_bright.divide(), 0);
+}
+
+// The first of four passes stands for a quarter of what was shown of it; what other passes found was not.
+TEST(DividedGrains, PassesDivideWhatTheyShow) {
+    Facade first, further;
+    make_bright(first, 0, 32.0f);
+    EXPECT_EQ(first.divide(0.25f, 4.0f), 1);
+    EXPECT_NEAR(first.all(), 0.25 * (kAcross * kDown * kEven + (32.0 - kEven) / kRaysOfPixel), 1e-3);
+    // By a sample of even light more, a pixel that shows 1 has 1 besides.
+    EXPECT_EQ(further.divide(0.25f, 0.0f), 0);
 }
 
 // Half of the picture shows another thing, the same thing turned, or the same thing farther off.
@@ -179,70 +220,77 @@ TEST(DividedGrains, HiddenPixelsTakeLess) {
     EXPECT_NEAR(right, 0.01f * left, 1e-3f * left);
 }
 
-// What the caller reports as not finite must stay in the pixel that has it.
+// What is not finite is reported with the pixel that has it, and does not keep others from being divided.
 TEST(DividedGrains, WhatIsNotANumberStays) {
-    Facade wall;
-    make_bright(wall, 0, std::numeric_limits<float>::quiet_NaN());
-    EXPECT_EQ(wall.divide(), 0);
-    EXPECT_EQ(wall.pixel(kX + 1, kY), kEven);
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        Facade wall;
+        make_bright(wall, 0, bad);
+        wall.found[Facade::at(kX + 2, kY, 0)].at(Cell::SA) = Rgb(8.0f);
+        EXPECT_EQ(wall.divide(), 1);
+        EXPECT_FALSE(std::isfinite(wall.pixel(kX, kY)));
+        EXPECT_LT(wall.pixel(kX + 2, kY), kEven);
+    }
 }
 
-// Light of which one sample in fifty finds all: grains leave a fifth of its noise at most, and the mean to the last
-// digits.
+// Light of which one sample in five hundred finds all: grains leave a fifth of its noise at most, and the mean to the
+// last digits.
 TEST(DividedGrains, RareLightLosesItsNoiseAndKeepsItsMean) {
+    constexpr float kBright = 500.0f;
     Facade wall;
     Rng rng(Stream::Surface, 11);
-    double sum = 0.0, squares = 0.0, before = 0.0;
+    double before = 0.0, noise = 0.0, after = 0.0;
     for (CellSum& f : wall.found)
-        f.at(Cell::SA) = Rgb(rng.next() < 0.02f ? 50.0f : 0.0f);
-    for (const CellSum& f : wall.found)
-        before += f.at(Cell::SA).y / kRaysOfPixel;
-    double noise = 0.0;
+        f.at(Cell::SA) = Rgb(rng.next() < 1.0f / kBright ? kBright : 0.0f);
     for (std::size_t i = 0; i < wall.found.size(); i += kRaysOfPixel) {
         double pixel = 0.0;
         for (int k = 0; k < kRaysOfPixel; ++k)
             pixel += wall.found[i + std::size_t(k)].at(Cell::SA).y / kRaysOfPixel;
+        before += pixel;
         noise += (pixel - 1.0) * (pixel - 1.0);
     }
     EXPECT_GT(wall.divide(), 5);
-    for (int y = 0; y < kDown; ++y)
-        for (int x = 0; x < kAcross; ++x) {
-            sum += wall.pixel(x, y);
-            squares += (wall.pixel(x, y) - 1.0) * (wall.pixel(x, y) - 1.0);
-        }
-    EXPECT_NEAR(sum, before, 1e-4 * before);
-    EXPECT_LT(squares, 0.2 * noise);
+    for (const float pixel : wall.pixels)
+        after += (pixel - 1.0) * (pixel - 1.0);
+    EXPECT_NEAR(wall.all(), before, 1e-4 * before);
+    EXPECT_LT(after, 0.2 * noise);
 }
 
-// A sample that leaves its light to all pixels keeps nothing there, and its cells stay apart.
-TEST(DividedGrains, WhatIsLeftToAllPixelsIsDividedToo) {
+// A sample that leaves its light to all pixels keeps nothing there, and its cells stay apart. What many pixels share is
+// no grain: their mean divides it.
+TEST(DividedGrains, WhatIsLeftToFewPixelsIsDividedToo) {
     const Facade wall;
+    const std::size_t grain = Facade::at(kX, kY, 0);
     SharedBounce shared(kAcross, kDown + kFirstRow, 0.1, kRaysOfPixel, {SharedBounce::Apart::SV});
-    std::vector<GrainFinder::Shown> shown;
-    for (std::size_t i = 0; i < wall.samples.size(); ++i)
-        shown.push_back({wall.samples[i].share * kEven, wall.normals[i]});
+    DividedGrains grains(kAcross, kDown + kFirstRow);
+    const auto take = [&](SharedBounce::Sample& left) {
+        std::vector<GrainFinder::Shown> shown;
+        for (std::size_t i = 0; i < wall.samples.size(); ++i)
+            shown.push_back({wall.samples[i].share * kEven, wall.normals[i]});
+        shown[grain].luminance += luminance(left.shown());
+        return GrainFinder(wall.samples, shown, kAcross, &shared, grains)
+            .take({grain, wall.found[grain], {nullptr, &left}, 1.0f, 1.0f});
+    };
     SharedBounce::Sample left;
     left.pixel_size = left.area = 1.0f;
-    left.closeness = 1.0f;  // no two pixels share
     left.weight = Rgb(0.25f);
-    left.light = Rgb(800.0f);
-    left.of(SharedBounce::Apart::SV) = Rgb(400.0f);
-    const std::size_t grain = Facade::at(kX, kY, 0);
-    shown[grain].luminance += luminance(left.shown());
-    DividedGrains grains(kAcross, kDown + kFirstRow);
-    GrainFinder finder(wall.samples, shown, kAcross, &shared, grains);
-    SharedBounce::Sample* const of_sample[] = {nullptr, &left};
-    ASSERT_TRUE(finder.take(grain, 1.0f, wall.found[grain], of_sample));
+    left.light = Rgb(40.0f);
+    left.of(SharedBounce::Apart::SV) = Rgb(20.0f);
+    left.closeness = 1e-4f;  // many pixels share
+    EXPECT_FALSE(take(left));
+    EXPECT_EQ(left.light, Rgb(40.0f));
+    left.closeness = 1.0f;     // none does
+    EXPECT_FALSE(take(left));  // what it sees besides is no part of the grain
     EXPECT_EQ(left.shown(), Rgb(0.0f));
+    grains.divide();
     const auto all = [&](Cell cell) {
         double sum = 0.0;
         for (const Rgb& p : grains.pixels(cell))
             sum += p.y;
         return sum;
     };
-    EXPECT_NEAR(all(Cell::SS), 200.0, 1e-2);
-    EXPECT_NEAR(all(Cell::SV), 100.0, 1e-2);
-    EXPECT_NEAR(all(Cell::SA), kEven / kRaysOfPixel, 1e-4);
+    EXPECT_NEAR(all(Cell::SS), 10.0, 1e-3);
+    EXPECT_NEAR(all(Cell::SV), 5.0, 1e-3);
+    EXPECT_EQ(all(Cell::SA), 0.0);
     EXPECT_EQ(all(Cell::SM), 0.0);
 }
 
