@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Light between surfaces by virtual lights and by paths: variance at equal processor time.
+"""Light between surfaces by virtual lights and by paths: mean square error times processor time.
 
 Both are rendered several times with other random numbers and compared with a reference of paths in two independent
 halves, whose own noise is thereby removed. One row for each shot and cell: processor seconds and error of either, and
@@ -26,7 +26,7 @@ REFERENCE_SEEDS = (101, 102)
 
 
 def render(arguments, shot, keys, image, *options):
-    """Processor seconds of one picture without corrections and beliefs."""
+    """Processor seconds of one picture, which does not ask for its own error."""
     settings = [*size_keys(arguments.size), "certify.belief=0", *keys]
     cpu, _ = run([str(arguments.build / "bin/brisance"), "render", str(shot), *set_keys(settings), *options,
                   "--progress", "none", "-o", str(image)])
