@@ -119,8 +119,8 @@ bool GrainFinder::take(const Sample& s) {
     const Parts all = parts(s);
     const float of_pixel = pixels_[samples_[s.number].pixel - origin_].luminance,
                 beside = std::max(0.0f, of_pixel - s.times * sum(all));
-    // In this order what is not a number stays where it is.
-    if (!(sum(all) > beside) || !std::isfinite(of_pixel))
+    // What is not finite stays where it is.
+    if (!(sum(all) > beside) || !std::isfinite(of_pixel + sum(all)))
         return false;
     Around near = around(s.number);
     const Parts apart = alone(s, all, 1.0f + near.on_surface);

@@ -232,6 +232,21 @@ TEST(DividedGrains, WhatIsNotANumberStays) {
     }
 }
 
+// A further pass finds what the first one has not shown.
+TEST(DividedGrains, WhatFurtherPassesReportIsNotDividedEither) {
+    const Facade wall;
+    std::vector<GrainFinder::Shown> shown;
+    for (std::size_t i = 0; i < wall.samples.size(); ++i)
+        shown.push_back({wall.samples[i].share * kEven, wall.normals[i]});
+    DividedGrains grains(kAcross, kFirstRow + kDown);
+    GrainFinder finder(wall.samples, shown, kAcross, nullptr, grains);
+    CellSum bad, bright;
+    bad.at(Cell::SA) = Rgb(std::numeric_limits<float>::infinity());
+    bright.at(Cell::SA) = Rgb(100.0f);
+    EXPECT_FALSE(finder.take({Facade::at(kX, kY, 0), bad, {}, 0.25f, 0.0f}));
+    EXPECT_TRUE(finder.take({Facade::at(kX, kY, 0), bright, {}, 0.25f, 0.0f}));
+}
+
 // Light of which one sample in five hundred finds all: grains leave a fifth of its noise at most, and the mean to the
 // last digits.
 TEST(DividedGrains, RareLightLosesItsNoiseAndKeepsItsMean) {
