@@ -45,6 +45,7 @@ public:
     void show(std::uint32_t pixel, const Surface& surface) { surfaces_[pixel] = surface; }
     // In any order that does not depend on threads. Not thread-safe.
     void add(const Grain& grain) { grains_.push_back(grain); }
+    bool empty() const { return grains_.empty(); }
 
     // When all are there. After that, of a cell of surfaces: what pixels show of all grains, and of all pixels and
     // channels the expected sum of squares of the noise that this is, taken that grains are rare.

@@ -27,10 +27,10 @@ float sum(const std::array<float, 3>& parts) {
 
 }  // namespace
 
-// What pixels around show, those on the same surface or, where none is, all.
+// What pixels around show: those on the same surface or, where few are, all.
 struct GrainFinder::Around {
     std::vector<float> luminances;
-    float on_surface = 0.0f;  // how many are
+    float on_surface = 0.0f;  // how many of these are
 
     // But for those that are like a grain.
     float most() {

@@ -329,7 +329,7 @@ Image FramePicture::picture(const InScattering* estimator, int number, const Mom
         add_to_cell(image, Cell::SA, shared_sky->take_pixels());
         square_errors_of_shared_[int(Cell::SA)] += shared_sky->square_error();
     }
-    if (grains) {
+    if (grains && !grains->empty()) {
         grains->divide();
         for (const Cell cell : DividedGrains::kOfSurfaces) {
             add_to_cell(image, cell, grains->pixels(cell));

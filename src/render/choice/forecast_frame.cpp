@@ -56,7 +56,7 @@ std::uint64_t bytes_between_pixels(const Shot& shot, const FrameInput& input, co
     if (shot.method == RenderMethod::Path || !plan.surfaces)
         return 0;
     const bool lights = s.count > 0 && plan.needs(Cell::SS);
-    std::uint64_t sum = DividedGrains::bytes_of(width, height);
+    std::uint64_t sum = s.sharing_radius > 0.0 ? DividedGrains::bytes_of(width, height) : 0;
     if (lights && s.sharing_radius > 0.0)
         sum += SharedBounce::bytes_of(width, height, has_bound_layers(shot, plan) ? 1 : SharedBounce::kAparts - 1);
     if (lights && s.compensation == BoundCompensation::ScreenSpace)
