@@ -97,25 +97,38 @@ bool visit_parts(const VoxelSegment& s, int parts, const Visit& visit) {
 
 // The same of every voxel, with what the field holds there.
 template <class Visit>
-void walk_parts(const SourceField& field, const Ray& ray, int parts, double end, const Visit& visit) {
+void walk_parts(const SourceField& field, const Ray& ray, int parts, const RayEnd& end, const Visit& visit) {
+    const OneSidedVoxels at_end(field, end);
     const auto visit_voxel = [&](const VoxelSegment& s) {
+        const OneSidedVoxels::Records records =
+            at_end.cuts(s) ? at_end.in_front(s)
+                           : OneSidedVoxels::Records{field.own_records(s.brick),
+                                                     field.has_outside() ? field.outside_records(s.brick) : nullptr};
         return visit_parts(s, std::max(parts, parts_of(field, s)), [&](double t, float length) {
             const vec3 p = position_in_brick(s, t);
-            Part part{field.sample(s.brick, p), field.sample_similar(s.brick, p), {}, length, static_cast<float>(t)};
-            if (field.has_outside())
-                part.outside = field.sample_outside(s.brick, p);
+            Part part{
+                interpolated(records.own, p), field.sample_similar(s.brick, p), {}, length, static_cast<float>(t)};
+            if (records.outside)
+                part.outside = interpolated(records.outside, p);
             return visit(part);
         });
     };
-    walk_voxels(field, ray, visit_voxel, end);
+    walk_voxels(field, ray, visit_voxel, end.distance);
 }
 
 // Parts of a ray in one brick, on their way to the kernel.
 class PartsOfBrick {
 public:
     PartsOfBrick(const SourceField& field, const VoxelSegment& brick, RecordSums& sums)
-        : ray_{field.own_records(brick.brick), field.has_outside() ? field.outside_records(brick.brick) : nullptr,
-               vec3(brick.origin + brick.direction * brick.begin), vec3(brick.direction), float(brick.begin)},
+        : PartsOfBrick(
+              field, brick,
+              {field.own_records(brick.brick), field.has_outside() ? field.outside_records(brick.brick) : nullptr},
+              sums) {}
+    // By other records: those of a voxel that a surface cuts.
+    PartsOfBrick(const SourceField& field, const VoxelSegment& brick, const OneSidedVoxels::Records& records,
+                 RecordSums& sums)
+        : ray_{records.own, records.outside, vec3(brick.origin + brick.direction * brick.begin), vec3(brick.direction),
+               float(brick.begin)},
           begin_(brick.begin),
           emits_(field.direct_emission()),
           sums_(sums) {}
@@ -160,18 +173,27 @@ RaySum ray_sum(const RecordSums& seen, const SourceField& field) {
 }
 
 // What add_part() sums, where light scatters in the medium itself: records as a whole.
-RaySum integrate_whole_records(const SourceField& field, const Ray& ray, int parts, double end) {
+RaySum integrate_whole_records(const SourceField& field, const Ray& ray, int parts, const RayEnd& end) {
     RecordSums light;
+    const OneSidedVoxels at_end(field, end);
     const auto visit_brick = [&](const VoxelSegment& brick) {
         PartsOfBrick taken(field, brick, light);
-        return walk_cubes<1>(brick, [&](const VoxelSegment& s) { return taken.take(field, s, parts); }) && taken.add();
+        const auto visit_voxel = [&](const VoxelSegment& s) {
+            if (!at_end.cuts(s))
+                return taken.take(field, s, parts);
+            if (!taken.add())
+                return false;
+            PartsOfBrick one_sided(field, brick, at_end.in_front(s), light);
+            return one_sided.take(field, s, parts) && one_sided.add();
+        };
+        return walk_cubes<1>(brick, visit_voxel) && taken.add();
     };
-    walk_bricks(field.bricks(), lattice_ray(field.bricks(), field.medium(), ray, end), visit_brick);
+    walk_bricks(field.bricks(), lattice_ray(field.bricks(), field.medium(), ray, end.distance), visit_brick);
     return ray_sum(light, field);
 }
 
 // Where light was traced through a similar medium.
-RaySum integrate_two_media(const SourceField& field, const Ray& ray, int parts, double end) {
+RaySum integrate_two_media(const SourceField& field, const Ray& ray, int parts, const RayEnd& end) {
     RaySum sum;
     walk_parts(field, ray, parts, end, [&](const Part& part) {
         add_part(sum, field, part);
@@ -182,7 +204,7 @@ RaySum integrate_two_media(const SourceField& field, const Ray& ray, int parts, 
 
 }  // namespace
 
-RaySum integrate(const SourceField& field, const Ray& ray, int parts, double end) {
+RaySum integrate(const SourceField& field, const Ray& ray, int parts, const RayEnd& end) {
     RaySum sum = field.has_similar() ? integrate_two_media(field, ray, parts, end)
                                      : integrate_whole_records(field, ray, parts, end);
     sum.alpha = -std::expm1(-sum.depth);

@@ -89,9 +89,7 @@ RaySum PixelRays::trace_shared(int x, int y, Rays& of, std::vector<FoundSurface>
     float through = 0.0f;
     for (std::uint32_t j = 0; j < medium_samples_.size(); ++j) {
         const PixelRay r = ray(x, y, medium_samples_[j], j);
-        const std::optional<SurfaceHit> end = hit(r.ray);
-        const RaySum seen =
-            medium_along(field_, r, end ? end->distance : std::numeric_limits<double>::infinity(), settings_);
+        const RaySum seen = medium_along(field_, r, hit(r.ray), settings_);
         add_weighted(sum, seen, medium_samples_[j].weight);
         through += medium_samples_[j].weight * std::exp(-seen.depth);
     }

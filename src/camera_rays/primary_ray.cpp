@@ -26,9 +26,21 @@ void leave_to_rays(const CellSet& cells, const CellSum* once, RaySum& sum) {
     }
 }
 
+RayEnd end_of(const Ray& ray, const std::optional<SurfaceHit>& hit, const PictureSettings& settings) {
+    if (!hit)
+        return {};
+    const dvec3 normal = triangle_of(settings.surroundings->scene(), hit->mesh, hit->triangle).normal();
+    const double length = glm::length(normal);
+    if (!(length > 0.0))
+        return {hit->distance};
+    return {hit->distance, normal * ((glm::dot(normal, ray.direction) > 0.0 ? -1.0 : 1.0) / length)};
+}
+
 }  // namespace
 
-RaySum medium_along(const SourceField& field, const PixelRay& ray, double end, const PictureSettings& settings) {
+RaySum medium_along(const SourceField& field, const PixelRay& ray, const std::optional<SurfaceHit>& hit,
+                    const PictureSettings& settings) {
+    const RayEnd end = end_of(ray.ray, hit, settings);
     RaySum sum = integrate(field, ray.ray, settings.parts, end);
     CellSum once;
     if (settings.once) {
@@ -40,7 +52,7 @@ RaySum medium_along(const SourceField& field, const PixelRay& ray, double end, c
     }
     leave_to_rays(settings.by_rays, settings.once ? &once : nullptr, sum);
     if (settings.light_rays) {
-        const LightOnRay more = settings.light_rays(ray, end);
+        const LightOnRay more = settings.light_rays(ray, end.distance);
         sum.cells.at(Cell::MM) += more.scattered;
         sum.cells.at(Cell::MA) += more.emitters;
         sum.cells.at(Cell::MV) += more.fire;
@@ -67,8 +79,7 @@ void add_end(const Surroundings& surroundings, const Ray& ray, const std::option
 
 PrimaryRay trace_primary_ray(const SourceField& field, const PixelRay& ray, const std::optional<SurfaceHit>& hit,
                              const PictureSettings& settings) {
-    constexpr double kNowhere = std::numeric_limits<double>::infinity();
-    RaySum sum = medium_along(field, ray, hit ? hit->distance : kNowhere, settings);
+    RaySum sum = medium_along(field, ray, hit, settings);
     if (settings.surroundings)
         add_end(*settings.surroundings, ray.ray, hit, std::exp(-sum.depth), sum);
     return {sum, sum.depth < kOpaqueDepth ? hit : std::nullopt};

@@ -16,9 +16,10 @@ struct PrimaryRay {
 PrimaryRay trace_primary_ray(const SourceField& field, const PixelRay& ray, const std::optional<SurfaceHit>& hit,
                              const PictureSettings& settings);
 
-// Its two parts: light of the medium up to `end` [m], and what a ray sees there through a medium of transmittance
-// `through`: the surface hit, or the background.
-RaySum medium_along(const SourceField& field, const PixelRay& ray, double end, const PictureSettings& settings);
+// Its two parts: light of the medium up to the surface hit, and what a ray sees there through a medium of transmittance
+// `through`: that surface, or the background.
+RaySum medium_along(const SourceField& field, const PixelRay& ray, const std::optional<SurfaceHit>& hit,
+                    const PictureSettings& settings);
 void add_end(const Surroundings& surroundings, const Ray& ray, const std::optional<SurfaceHit>& hit, float through,
              RaySum& sum);
 

@@ -32,7 +32,7 @@ Rgb MediumAlongRay::from_emitters(const Ray& ray, double end, const RayMedium& m
 }
 
 RaySum MediumAlongRay::look(const Ray& ray, double end, Rng& rng) const {
-    RaySum sum = integrate(field_, ray, parts_, end);
+    RaySum sum = integrate(field_, ray, parts_, {end});
     if (!in_scattering_ && emitters_by_rays_ == 0.0f)
         return sum;
     thread_local RayMedium medium;
@@ -49,7 +49,7 @@ SecondaryField::Seen MediumAlongRay::glance(const Ray& ray, double end, float of
     if (secondary_) {
         seen = secondary_->along(ray, end);
     } else {
-        const RaySum sum = integrate(field_, ray, 1, end);
+        const RaySum sum = integrate(field_, ray, 1, {end});
         seen = {sum.cells.at(Cell::V), scattered_by_medium(sum.cells), sum.through, closeness_of(sum)};
     }
     if (!in_scattering_ && emitters_by_rays_ == 0.0f)

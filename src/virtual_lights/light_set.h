@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "transport/direct_light.h"
+#include "virtual_lights/flux/flux_spots.h"
 #include "virtual_lights/flux/octahedral_profiles.h"
 #include "virtual_lights/flux/partition_of_unity.h"
 #include "virtual_lights/flux/photon_splitting.h"
@@ -41,6 +42,7 @@ public:
     std::vector<VirtualLight> lights;
     PartitionOfUnity partition;  // of the covered surface among the lights; empty where they cover none
     Profiles profiles;
+    FluxSpots spots;  // none where no smoke asks for them
     // Together the lights stand for all light that surfaces reflect, covered or not.
     bool complete = false;
     VirtualLightReport report;

@@ -70,6 +70,7 @@ struct VirtualLightSettings {
     double radius_factor = 1.1;       // radius over the distance that a light would keep from others
     int photons = kAutomaticPhotons;  // particles from fire and emitters; 0: no lights
     double picture_error = 0.02;      // what automatic photons follow: lighting.error of the shot, no key of its own
+    bool light_smoke = false;         // lights have spots (flux_spots.h), no key of its own
     int profile_resolution = 16;      // of directions of lights that are not plain Lambert: texels along a side
     std::string sampling = "combined";
     int light_samples = 1;                 // sampling power, plain_power, uniform, light_tree: lights at every vertex

@@ -71,6 +71,7 @@ public:
     bool extend_paths() const { return !set_->complete && set_->settings().path_extension; }
 
     const std::vector<VirtualLight>& lights() const { return set_->lights; }
+    const FluxSpots& spots() const { return set_->spots; }
     // One by one, for those who choose among them together with other lights. May not outlive these.
     std::unique_ptr<const SingleLights> each_light() const { return single_(*set_); }
     // Radiance of a light of its own surface's colour [W/(m^2 sr)]. `toward`: unit, world.

@@ -86,7 +86,7 @@ TEST(SecondaryField, ShowsWhatTheCameraSees) {
         const Ray ray{from, glm::normalize(toward - from)};
         const double end = 5.0 * rng.next_double();
         const SecondaryField::Seen seen = secondary.along(ray, end);
-        const RaySum sum = integrate(field, ray, 8, end);
+        const RaySum sum = integrate(field, ray, 8, {end});
         emission += seen.emission;
         emission_exact += sum.cells.at(Cell::V);
         scattered += seen.scattered;

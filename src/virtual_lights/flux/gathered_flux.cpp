@@ -1,6 +1,7 @@
 #include "virtual_lights/flux/gathered_flux.h"
 
 #include <numbers>
+#include <optional>
 
 #include "core/stopwatch.h"
 #include "virtual_lights/flux/covered_area.h"
@@ -8,6 +9,9 @@
 namespace brisance {
 
 namespace {
+
+// Of a spot, in the mean: what smoke shows of them is the light of many.
+constexpr double kPhotonsOfSpot = 4.0;
 
 // Seconds since the last call.
 class Lap {
@@ -102,11 +106,18 @@ void GatheredFlux::build(LightSet& set, const Placement&, const LightSources& so
     report.area_seconds = lap.take();
 
     const BoundingBall ball = ball_around(set.scene());
-    LightAccounts accounts(set.lights, set.settings().profile_resolution, emitted_power(set.scene(), ball));
+    const double power = emitted_power(set.scene(), ball);
+    LightAccounts accounts(set.lights, set.settings().profile_resolution, power);
+    std::optional<SpotAccounts> spots;
+    if (set.settings().light_smoke)
+        spots.emplace(set.lights, set.scene().field().medium(), power);
     const std::size_t photons =
         photons_needed(set.scene(), ball, set.partition, set.settings(), set.lights.size(), sources.camera.samples);
-    report.photons = trace_photons(set.scene(), ball, set.partition, photons, set.settings().seed, accounts);
-    report.photon_bytes = accounts.bytes();
+    report.photons = trace_photons(set.scene(), ball, set.partition, photons, set.settings().seed, accounts,
+                                   spots ? &*spots : nullptr);
+    report.photon_bytes = accounts.bytes() + (spots ? spots->bytes() : 0);
+    if (spots)
+        set.spots = spots->spots(kPhotonsOfSpot, [&](std::size_t light) { return accounts.photons(light); });
     report.photon_seconds = lap.take();
 
     finish_lights(set, accounts);

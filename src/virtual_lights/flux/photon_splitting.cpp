@@ -77,7 +77,7 @@ float brightness_by_shading(const SurfacePoint& point, const dvec3& toward_sourc
 }
 
 void share_out(const DirectLight& scene, const RaySegment& segment, const Rgb& power, const PartitionOfUnity& partition,
-               LightAccounts& accounts, PhotonReport& report) {
+               LightAccounts& accounts, SpotAccounts* spots, PhotonReport& report) {
     const SurfacePoint& point = *segment.point;
     if (!holds_light(point.material))
         return;
@@ -86,8 +86,12 @@ void share_out(const DirectLight& scene, const RaySegment& segment, const Rgb& p
     (shares.count > 0 ? report.shared : report.unshared) += luminance(power);
     const dvec3 toward_source = -segment.ray.direction;
     const float brighter = brightness_by_shading(point, toward_source);
-    for (int i = 0; i < shares.count; ++i)
-        accounts.add(shares.light[i], toward_source, shares.weight[i], power * (shares.weight[i] * brighter));
+    for (int i = 0; i < shares.count; ++i) {
+        const Rgb received = power * (shares.weight[i] * brighter);
+        accounts.add(shares.light[i], toward_source, shares.weight[i], received);
+        if (spots)
+            spots->add(shares.light[i], point.position, received);
+    }
 }
 
 void add(PhotonReport& to, const PhotonReport& r) {
@@ -189,14 +193,14 @@ std::size_t photons_needed(const DirectLight& scene, const BoundingBall& ball, c
 }
 
 PhotonReport trace_photons(const DirectLight& scene, const BoundingBall& ball, const PartitionOfUnity& partition,
-                           std::size_t total, std::uint32_t seed, LightAccounts& accounts) {
+                           std::size_t total, std::uint32_t seed, LightAccounts& accounts, SpotAccounts* spots) {
     const PhotonPaths paths(scene, ball, total, Stream::Photon, seed);
     std::vector<PhotonReport> parts((total + kBlock - 1) / kBlock);
     parallel_blocks(total, kBlock, [&](std::size_t begin, std::size_t end) {
         PhotonReport& report = parts[begin / kBlock];
         for (std::size_t i = begin; i < end; ++i)
             paths.trace(i, report, [&](const RaySegment& segment, const Rgb& power) {
-                share_out(scene, segment, power, partition, accounts, report);
+                share_out(scene, segment, power, partition, accounts, spots, report);
             });
     });
     PhotonReport report;

@@ -7,6 +7,7 @@
 
 #include "core/fixed_sums.h"
 #include "transport/particles.h"
+#include "virtual_lights/flux/flux_spots.h"
 #include "virtual_lights/flux/partition_of_unity.h"
 #include "virtual_lights/placement/deposit.h"
 #include "virtual_lights/settings.h"
@@ -80,8 +81,9 @@ inline constexpr double kLightsOfFootprint = 40.0, kLeastPhotons = 8.0;
 std::size_t photons_needed(const DirectLight& scene, const BoundingBall& ball, const PartitionOfUnity& partition,
                            const VirtualLightSettings& settings, std::size_t count, double samples);
 
-// Traces `total` particles and adds what arrives to the accounts of the lights that cover each hit.
+// Traces `total` particles and adds what arrives to the accounts of the lights that cover each hit. `spots`: null, or
+// gets where it arrives.
 PhotonReport trace_photons(const DirectLight& scene, const BoundingBall& ball, const PartitionOfUnity& partition,
-                           std::size_t total, std::uint32_t seed, LightAccounts& accounts);
+                           std::size_t total, std::uint32_t seed, LightAccounts& accounts, SpotAccounts* spots);
 
 }  // namespace brisance

@@ -1,0 +1,78 @@
+#include "camera_rays/one_sided_voxels.h"
+
+#include <vector>
+
+#include "medium_lighting/surface_occluders.h"
+
+namespace brisance {
+
+namespace {
+
+constexpr int kCorners = 8;
+
+ivec3 corner(int k) {
+    return {k >> 2, k >> 1 & 1, k & 1};
+}
+
+std::size_t record_of(const ivec3& node) {
+    return std::size_t((node.x * SourceField::kSide + node.y) * SourceField::kSide + node.z);
+}
+
+// The corners of a voxel whose light a corner behind the surface takes over, one bit each: its neighbours along edges
+// that are in front, or else all that are in front.
+unsigned in_place_of(int k, unsigned front) {
+    const unsigned neighbours = (1u << (k ^ 1) | 1u << (k ^ 2) | 1u << (k ^ 4)) & front;
+    return neighbours != 0 ? neighbours : front;
+}
+
+// The mean of values [begin, end) at those corners.
+template <class Record>
+void take_over(Record* records, const std::size_t (&at)[kCorners], int k, unsigned from, int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+        float sum = 0.0f, count = 0.0f;
+        for (int j = 0; j < kCorners; ++j)
+            if (from >> j & 1u) {
+                sum += records[at[j]].value[i];
+                count += 1.0f;
+            }
+        records[at[k]].value[i] = sum / count;
+    }
+}
+
+}  // namespace
+
+OneSidedVoxels::OneSidedVoxels(const SourceField& field, const RayEnd& end)
+    : field_(field),
+      distance_(end.distance),
+      normal_(end.normal * dmat3(field.medium().local_from_index)),
+      moved_(glm::dot(end.normal, dvec3(field.medium().spacing * kBesidePlanes))),
+      most_behind_(glm::min(normal_.x, 0.0) + glm::min(normal_.y, 0.0) + glm::min(normal_.z, 0.0)),
+      some_(end.normal != dvec3(0.0)) {}
+
+OneSidedVoxels::Records OneSidedVoxels::in_front(const VoxelSegment& voxel) const {
+    thread_local std::vector<SourceRecord> own(SourceField::kRecords);
+    thread_local std::vector<SurroundingsRecord> outside(SourceField::kRecords);
+    const SourceRecord* const all = field_.own_records(voxel.brick);
+    const SurroundingsRecord* const all_outside = field_.has_outside() ? field_.outside_records(voxel.brick) : nullptr;
+    std::size_t at[kCorners];
+    unsigned front = 0;
+    for (int k = 0; k < kCorners; ++k) {
+        at[k] = record_of(voxel.cube + corner(k));
+        own[at[k]] = all[at[k]];
+        if (all_outside)
+            outside[at[k]] = all_outside[at[k]];
+        if (side_of(voxel, voxel.cube + corner(k)) > 0.0)
+            front |= 1u << k;
+    }
+    for (int k = 0; k < kCorners && front != 0; ++k) {
+        if (front >> k & 1u)
+            continue;
+        const unsigned from = in_place_of(k, front);
+        take_over(own.data(), at, k, from, SourceRecord::MV, SourceRecord::Albedo);
+        if (all_outside)
+            take_over(outside.data(), at, k, from, 0, SurroundingsRecord::Size);
+    }
+    return {own.data(), all_outside ? outside.data() : nullptr};
+}
+
+}  // namespace brisance

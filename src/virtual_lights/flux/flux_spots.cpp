@@ -1,0 +1,98 @@
+#include "virtual_lights/flux/flux_spots.h"
+
+#include <algorithm>
+
+#include "medium/lattice/local_bounds.h"
+
+namespace brisance {
+
+namespace {
+
+constexpr int kMostAside = 16;
+// Width of a spot over its distance to the smoke's box: farther smoke sees a point.
+constexpr double kWidthByDistance = 0.25;
+// Normals of flat surface differ by no more [rad]: spots lie in a plane, and would hide behind a rounder one.
+constexpr double kFlat = 0.02;
+
+// As many as bring the width of spots down to that of voxels, or to what their distance asks for.
+int spots_aside(const VirtualLight& light, const LocalBounds& smoke, float voxel) {
+    if (light.spread > kFlat)
+        return 1;
+    const double width = std::max<double>(voxel, kWidthByDistance * smoke.distance(vec3(light.position)));
+    int aside = 1;
+    while (aside < kMostAside && aside * width < 2.0 * light.radius)
+        aside *= 2;
+    return aside;
+}
+
+// In the square around the light, 0..1.
+glm::dvec2 place_in(const VirtualLight& light, const dvec3& position) {
+    const dvec3 p = light.frame.local_from_world(position - light.position);
+    return 0.5 + 0.5 / light.radius * glm::dvec2(p.x, p.y);
+}
+
+}  // namespace
+
+void FluxSpots::add_light(std::span<const FluxSpot> spots) {
+    if (first_.empty())
+        first_.push_back(0);
+    spots_.insert(spots_.end(), spots.begin(), spots.end());
+    first_.push_back(spots_.size());
+}
+
+SpotAccounts::SpotAccounts(std::span<const VirtualLight> lights, const Medium& medium, double power)
+    : lights_(lights), sums_(0, power) {
+    const LocalBounds smoke = local_bounds(medium);
+    std::size_t records = 0;
+    for (const VirtualLight& light : lights) {
+        const int aside = spots_aside(light, smoke, medium.spacing);
+        maps_.push_back({records, aside});
+        records += aside > 1 ? 2 * std::size_t(aside) * std::size_t(aside) : 0;
+    }
+    sums_ = FixedSums(records, power);
+}
+
+void SpotAccounts::add(std::size_t light, const dvec3& position, const Rgb& power) {
+    const auto [first, aside] = maps_[light];
+    if (aside == 1)
+        return;
+    const glm::dvec2 place = glm::clamp(place_in(lights_[light], position), 0.0, 1.0);
+    const glm::ivec2 spot = glm::min(glm::ivec2(place * double(aside)), aside - 1);
+    const std::size_t record = first + 2 * std::size_t(spot.y * aside + spot.x);
+    sums_.add(record, dvec3(power));
+    sums_.add(record + 1, double(luminance(power)) * dvec3(place, 0.0));
+}
+
+std::vector<FluxSpot> SpotAccounts::spots_of(std::size_t light, int aside) const {
+    const VirtualLight& l = lights_[light];
+    const auto [first, all_aside] = maps_[light];
+    if (aside == 1)
+        return {};
+    struct Sum {
+        dvec3 power{0.0}, place{0.0};
+    };
+    std::vector<Sum> sums(std::size_t(aside) * std::size_t(aside));
+    dvec3 whole(0.0);
+    const int wide = all_aside / aside;
+    for (int y = 0; y < all_aside; ++y)
+        for (int x = 0; x < all_aside; ++x) {
+            const std::size_t record = first + 2 * std::size_t(y * all_aside + x);
+            Sum& sum = sums[std::size_t(y / wide * aside + x / wide)];
+            const dvec3 power = sums_.read(record);
+            sum.power += power;
+            sum.place += sums_.read(record + 1);
+            whole += power;
+        }
+    std::vector<FluxSpot> out;
+    for (const Sum& sum : sums) {
+        const double y = luminance(Rgb(sum.power));
+        if (!(y > 0.0))
+            continue;
+        const glm::dvec2 p = (2.0 * glm::dvec2(sum.place) / y - 1.0) * l.radius;
+        const dvec3 across = l.frame.world_from_local(dvec3(p, 0.0));
+        out.push_back({l.position + across, Rgb(sum.power / glm::max(whole, 1e-300))});
+    }
+    return out;
+}
+
+}  // namespace brisance
