@@ -196,20 +196,29 @@ HWY_INLINE V dot(D d, V x, V y, V z, const vec3& v) {
 
 // Lights of level 0 that lie on surfaces stand for a disc as large as a voxel's side, of radius r. It sends out what a
 // point does that lies so far behind the disc that the solid angle at height h over its middle is that of a point at
-// sqrt(h^2 + r^2 / 2): all of the hemisphere at h = 0. Any h sees 2 pi of an endless plane of such discs, as it should; a
-// ball's mean of 1 / r^2 shows 1.19 times as much at half a voxel, and next to nothing of it in the plane itself.
+// h' = sqrt(h^2 + r^2 / 2): all of the hemisphere at h = 0. Any h sees 2 pi of an endless plane of such discs, as it
+// should; a ball's mean of 1 / r^2 shows 1.19 times as much at half a voxel, and next to nothing in the plane itself.
 float disc_square(const FarLights& l) {
     constexpr float kOfBall = 0.41357f;  // (4 pi / 3)^(2/3) / (2 pi)
     return l.bottom ? kOfBall * l.ball * l.ball : 0.0f;
 }
 
-// Cosine of such a disc's direction and its normal. `cosine`: to its middle.
+// Cosine of such a disc's direction and its normal. `cosine`: to its middle. What the disc sends farther along its
+// plane than a point would is lost where the level fades out, about the distance R: of a plane, light of 1 - h' /
+// sqrt(R^2 + r^2 / 2) arrives instead of 1 - h / R.
 HWY_INLINE V lobe_cosine(D d, const FarLights& l, V square, V distance, V cosine) {
     if (!l.bottom)
         return hn::Max(cosine, hn::Zero(d));
-    const V height = hn::Mul(distance, cosine), soft = hn::Set(d, disc_square(l));
-    const V seen = hn::Mul(hn::Sqrt(hn::MulAdd(height, height, soft)), reciprocal_sqrt(d, hn::Add(square, soft)));
-    return hn::IfThenElseZero(hn::Gt(height, hn::Zero(d)), seen);
+    constexpr float kFade = 1.442695f;  // of the radius: the harmonic mean of [1, 2]
+    const float soft = disc_square(l), end = kFade * l.radius;
+    const V one = hn::Set(d, 1.0f), height = hn::Mul(distance, cosine);
+    const V disc_height = hn::Sqrt(hn::MulAdd(height, height, hn::Set(d, soft)));
+    const V of_point = hn::NegMulAdd(height, hn::Set(d, 1.0f / end), one);
+    const V of_disc = hn::NegMulAdd(disc_height, hn::Set(d, 1.0f / std::sqrt(end * end + soft)), one);
+    const V least = hn::Set(d, 1e-2f);
+    const V seen = hn::Mul(disc_height, reciprocal_sqrt(d, hn::Add(square, hn::Set(d, soft))));
+    return hn::IfThenElseZero(hn::Gt(height, hn::Zero(d)),
+                              hn::Mul(seen, hn::Div(hn::Max(of_point, least), hn::Max(of_disc, least))));
 }
 
 // Optical depth of a voxel ball's radius in the extinction at the receivers.
@@ -236,8 +245,8 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, bool beyon
     if (hn::AllTrue(d, hn::Eq(b, hn::Zero(d))))
         return;
     const V inverse_square = l.bottom && l.lobes ? reciprocal(d, hn::Add(square, hn::Set(d, disc_square(l))))
-                             : l.bottom ? ball_kernel(d, l.balls ? l.balls[i].radius : l.ball, distance)
-                                        : hn::Mul(inverse, inverse);
+                             : l.bottom          ? ball_kernel(d, l.balls ? l.balls[i].radius : l.ball, distance)
+                                                 : hn::Mul(inverse, inverse);
     V w = hn::Mul(b, inverse_square);
     const V minus = hn::Neg(inverse);
     const V wx = hn::Mul(to_light[0], minus), wy = hn::Mul(to_light[1], minus), wz = hn::Mul(to_light[2], minus);

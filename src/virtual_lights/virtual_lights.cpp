@@ -23,8 +23,8 @@ VirtualLights::VirtualLights(const DirectLight& scene, const PixelCamera& camera
     VirtualLightReport& report = set_->report;
     report.choice_seconds = watch.seconds();
     report.lights = set_->lights.size();
-    report.bytes = set_->lights.size() * sizeof(VirtualLight) + set_->partition.bytes() + set_->profiles.bytes() + set_->spots.bytes() +
-                   gatherer_->bytes();
+    report.bytes = set_->lights.size() * sizeof(VirtualLight) + set_->partition.bytes() + set_->profiles.bytes() +
+                   set_->spots.bytes() + gatherer_->bytes();
 }
 
 bool VirtualLights::hold_base(const SurfaceHit& hit, const SurfacePoint& point) const {

@@ -106,6 +106,23 @@ TEST(SurfacesInSmoke, ARoomAroundCameraAndSmoke) {
         EXPECT_EQ(pictures.grid.image.layer("").pixels[p], 1.0f);
 }
 
+// A fire stands on a floor, which is brightest where the smoke is closest: within less than the width of one virtual
+// light, and of one voxel. Half a voxel and a hundredth of one above the nodes below it.
+TEST(SurfacesInSmoke, AFloorLightsTheSmokeThatStandsOnIt) {
+    const Medium medium = half_burning();
+    for (const float height : {-0.525f, -0.499f}) {
+        Scene scene;
+        scene.origin = medium.world_of_local(vec3(0.0f));
+        add_quad(scene, {-6, -6, height}, {12, 0, 0}, {0, 12, 0}, lambert(0.8f));
+        const Surroundings surroundings(scene, {});
+        const Pair pictures = both(medium, surroundings);
+        const auto ms = pictures.sums("MS", 0, kWidth);
+        std::printf("floor at %.3f m: MS %.6f, paths %.6f (%+.1f %%), halves apart %.6f\n", double(height), ms[0],
+                    ms[1], 100.0 * (ms[0] / ms[1] - 1.0), ms[2]);
+        EXPECT_NEAR(ms[0], ms[1], 0.06 * ms[1] + ms[2]) << height;
+    }
+}
+
 // A lamp on one side of a screen lights the floor there; smoke on the other side sees neither.
 TEST(SurfacesInSmoke, LitFloorsBehindAWallDoNotLightIt) {
     Recipe recipe = glowing_ball(20, 3.0f);

@@ -33,9 +33,7 @@ public:
                               : std::span(spots_).subspan(first_[light], first_[light + 1] - first_[light]);
     }
     std::size_t size() const { return spots_.size(); }
-    std::uint64_t bytes() const {
-        return first_.size() * sizeof(std::size_t) + spots_.size() * sizeof(FluxSpot);
-    }
+    std::uint64_t bytes() const { return first_.size() * sizeof(std::size_t) + spots_.size() * sizeof(FluxSpot); }
 
 private:
     std::vector<std::size_t> first_;  // of each light, and the end; empty: no light has been added
