@@ -11,7 +11,7 @@
 #include <memory>
 #include <vector>
 
-#include "camera_rays/made_when_asked.h"
+#include "medium/lattice/made_when_asked.h"
 #include "medium/medium.h"
 #include "medium_lighting/node_sources.h"
 

@@ -24,10 +24,9 @@ std::unique_ptr<VirtualLights> place_virtual_lights(const DrawInput& input, cons
     const std::string stage = pass == 0 ? "virtual lights" : fmt::format("virtual lights, pass {}", pass + 1);
     progress.stage(stage);
     const Stopwatch watch;
-    const Camera& camera = input.camera;
-    const CameraSettings& c = camera.settings();
+    const CameraSettings& c = input.camera.settings();
     const double samples = input.plan.needs(Cell::SS) ? samples_of(c) : 0.0;  // that see the lights
-    const PixelCamera pixels{c.width, c.height, [&](double x, double y) { return camera.ray(x, y); }, samples};
+    const PixelCamera pixels{c.width, c.height, [&](double x, double y) { return input.camera.ray(x, y); }, samples};
     VirtualLightSettings settings = settings_of_pass(input.shot.virtual_lights, pass);
     settings.picture_error = input.shot.lighting.error;
     settings.light_smoke = input.plan.needs(Cell::MS) && input.plan.reflected_by_particles < 1.0f;

@@ -1,4 +1,4 @@
-// Records that are made when a thread first asks for them.
+// Records, such as those of bricks, that are made when a thread first asks for them.
 #pragma once
 
 #include <algorithm>
