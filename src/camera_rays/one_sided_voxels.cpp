@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "medium_lighting/surface_occluders.h"
+#include "medium/lattice/occluders.h"
 
 namespace brisance {
 

@@ -45,7 +45,7 @@ private:
     const SourceField& field_;
     double distance_;
     dvec3 normal_;        // metres per node
-    double moved_;        // nodes count as that much closer to the front [m] (surface_occluders.h)
+    double moved_;        // nodes count as that much closer to the front [m] (kBesidePlanes)
     double most_behind_;  // how far some node of a voxel is from its first, at most 0 [m]
     bool some_;
 };

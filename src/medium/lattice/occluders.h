@@ -5,6 +5,13 @@
 
 namespace brisance {
 
+// Nodes often lie in the plane of a surface: floors are at 0, and so are nodes. Rays from and to such nodes would meet
+// it or not as rounding goes, and not both ways alike. All positions are therefore moved by the same small part of a
+// voxel, in a direction that hardly any surface has: a node in a surface is on one side of it, above a floor whichever
+// axis points up. It is far above single precision in volumes of thousands of voxels, and far below what a picture
+// shows.
+constexpr vec3 kBesidePlanes{0.0013f, 0.0017f, 0.0023f};  // of a voxel
+
 class Occluders {
 public:
     virtual ~Occluders() = default;
