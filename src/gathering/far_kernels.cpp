@@ -194,31 +194,47 @@ HWY_INLINE V dot(D d, V x, V y, V z, const vec3& v) {
     return dot(x, y, z, hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z));
 }
 
-// Lights of level 0 that lie on surfaces stand for a disc as large as a voxel's side, of radius r. It sends out what a
-// point does that lies so far behind the disc that the solid angle at height h over its middle is that of a point at
-// h' = sqrt(h^2 + r^2 / 2): all of the hemisphere at h = 0. Any h sees 2 pi of an endless plane of such discs, as it
-// should; a ball's mean of 1 / r^2 shows 1.19 times as much at half a voxel, and next to nothing in the plane itself.
-float disc_square(const FarLights& l) {
+// Level 0 where light meets a surface. There a voxel's side, as a disc of radius r, stands for what is that close: what
+// such a disc exchanges with a point at height h over its plane is about what a point does at h' = sqrt(h^2 + r^2 / 2),
+// the distance across the disc being the same: h' / (across^2 + h'^2)^(3/2). Over the middle at h = 0 it is all of the
+// hemisphere, and an endless plane of discs has 2 pi at any height, as it should. (The mean of 1 / distance^2 over a
+// ball has 1.19 times as much at half a voxel, and next to none at 0: it is right for fluence, not for flux.)
+struct Disc {
+    V inverse_square, cosine;
+};
+HWY_INLINE Disc disc_at(D d, const FarLights& l, V height, V across_square) {
     constexpr float kOfBall = 0.41357f;  // (4 pi / 3)^(2/3) / (2 pi)
-    return l.bottom ? kOfBall * l.ball * l.ball : 0.0f;
-}
-
-// Cosine of such a disc's direction and its normal. `cosine`: to its middle. What the disc sends farther along its
-// plane than a point would is lost where the level fades out, about the distance R: of a plane, light of 1 - h' /
-// sqrt(R^2 + r^2 / 2) arrives instead of 1 - h / R.
-HWY_INLINE V lobe_cosine(D d, const FarLights& l, V square, V distance, V cosine) {
-    if (!l.bottom)
-        return hn::Max(cosine, hn::Zero(d));
-    constexpr float kFade = 1.442695f;  // of the radius: the harmonic mean of [1, 2]
-    const float soft = disc_square(l), end = kFade * l.radius;
-    const V one = hn::Set(d, 1.0f), height = hn::Mul(distance, cosine);
-    const V disc_height = hn::Sqrt(hn::MulAdd(height, height, hn::Set(d, soft)));
+    const float soft = kOfBall * l.ball * l.ball;
+    const V one = hn::Set(d, 1.0f), disc_square = hn::MulAdd(height, height, hn::Set(d, soft));
+    const V disc_height = hn::Sqrt(disc_square), inverse = reciprocal_sqrt(d, hn::Add(across_square, disc_square));
+    // It sends more along its plane than a point, which is lost where the level fades out, about the distance R: of an
+    // endless plane 1 - h' / sqrt(R^2 + r^2 / 2) arrives instead of 1 - h / R.
+    constexpr float kFade = 1.442695f;  // of the level's radius: the harmonic mean of [1, 2]
+    const float end = kFade * l.radius;
     const V of_point = hn::NegMulAdd(height, hn::Set(d, 1.0f / end), one);
     const V of_disc = hn::NegMulAdd(disc_height, hn::Set(d, 1.0f / std::sqrt(end * end + soft)), one);
     const V least = hn::Set(d, 1e-2f);
-    const V seen = hn::Mul(disc_height, reciprocal_sqrt(d, hn::Add(square, hn::Set(d, soft))));
-    return hn::IfThenElseZero(hn::Gt(height, hn::Zero(d)),
-                              hn::Mul(seen, hn::Div(hn::Max(of_point, least), hn::Max(of_disc, least))));
+    const V more = hn::Div(hn::Max(of_point, least), hn::Max(of_disc, least));
+    return {hn::Mul(inverse, inverse), hn::Mul(hn::Mul(disc_height, inverse), more)};
+}
+
+// A light on a surface: only what is in front of it is lit. `cosine`: between its normal and the way to the receiver.
+HWY_INLINE Disc disc_of_light(D d, const FarLights& l, V square, V distance, V cosine) {
+    const V height = hn::Mul(distance, cosine);
+    Disc out = disc_at(d, l, height, hn::NegMulAdd(height, height, square));
+    out.cosine = hn::IfThenElseZero(hn::Gt(height, hn::Zero(d)), out.cosine);
+    return out;
+}
+
+// A voxel as surfaces see it: the part of it that is in front of them, from its middle.
+HWY_INLINE Disc voxel_from_surface(D d, const FarLights& l, V square, V distance, V cosine) {
+    const float width = 1.611992f * l.ball;  // (4 pi / 3)^(1/3)
+    const V height = hn::Mul(distance, cosine), half = hn::Set(d, 0.5f);
+    const V in_front = hn::Clamp(hn::MulAdd(height, hn::Set(d, 1.0f / width), half), hn::Zero(d), hn::Set(d, 1.0f));
+    const V middle = hn::Max(height, hn::Mul(half, hn::Mul(in_front, hn::Set(d, width))));
+    Disc out = disc_at(d, l, middle, hn::Max(hn::NegMulAdd(height, height, square), hn::Zero(d)));
+    out.cosine = hn::Mul(in_front, out.cosine);
+    return out;
 }
 
 // Optical depth of a voxel ball's radius in the extinction at the receivers.
@@ -244,12 +260,26 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, bool beyon
     const V b = level_blend(d, l.radius, !l.bottom, !l.top, distance);
     if (hn::AllTrue(d, hn::Eq(b, hn::Zero(d))))
         return;
-    const V inverse_square = l.bottom && l.lobes ? reciprocal(d, hn::Add(square, hn::Set(d, disc_square(l))))
-                             : l.bottom          ? ball_kernel(d, l.balls ? l.balls[i].radius : l.ball, distance)
-                                                 : hn::Mul(inverse, inverse);
-    V w = hn::Mul(b, inverse_square);
     const V minus = hn::Neg(inverse);
     const V wx = hn::Mul(to_light[0], minus), wy = hn::Mul(to_light[1], minus), wz = hn::Mul(to_light[2], minus);
+    const CosineLobe lobe = l.lobes ? l.lobes[i] : CosineLobe{vec3(0.0f), 0.0f};
+    const V leaves = l.lobes ? dot(d, wx, wy, wz, lobe.normal) : hn::Zero(d);  // cosines
+    const V turns = out.scattered ? dot(wx, wy, wz, hn::LoadU(d, &r.out_x[at]), hn::LoadU(d, &r.out_y[at]),
+                                        hn::LoadU(d, &r.out_z[at]))
+                                  : hn::Zero(d);
+    const bool surface_receives = out.kind == ReceiverKind::Surface;
+    V w = hn::Mul(inverse, inverse);
+    V cosine_there = hn::Max(leaves, hn::Zero(d)), cosine_here = hn::Max(hn::Neg(turns), hn::Zero(d));
+    if (l.bottom && l.lobes) {
+        const Disc disc = disc_of_light(d, l, square, distance, leaves);
+        w = disc.inverse_square, cosine_there = disc.cosine;
+    } else if (l.bottom && surface_receives && !l.balls) {
+        const Disc disc = voxel_from_surface(d, l, square, distance, hn::Neg(turns));
+        w = disc.inverse_square, cosine_here = disc.cosine;
+    } else if (l.bottom) {
+        w = ball_kernel(d, l.balls ? l.balls[i].radius : l.ball, distance);
+    }
+    w = hn::Mul(w, b);
     const V surface = hn::Min(hn::Set(d, l.balls ? l.balls[i].radius : 0.0f), distance);  // where shadows begin
     if (beyond) {
         w = hn::Mul(w, end_transmittance(d, l.layout, l.end(i), wx, wy, wz));
@@ -268,20 +298,11 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, bool beyon
     const bool moments = out.moments || (l.directional && !(l.lobes && l.lobes[i].share == 1.0f));
     const auto basis = moments ? basis_lanes(d, wx, wy, wz) : BasisLanes<D>{};
     V phase = hn::Zero(d);
-    if (out.scattered) {
-        const V cosine =
-            dot(wx, wy, wz, hn::LoadU(d, &r.out_x[at]), hn::LoadU(d, &r.out_y[at]), hn::LoadU(d, &r.out_z[at]));
-        if (out.kind == ReceiverKind::Surface)
-            phase = hn::Mul(hn::Max(hn::Neg(cosine), hn::Zero(d)), hn::Set(d, 1.0f / kPi));
-        else
-            phase = henyey_greenstein_lanes(d, out.mean_cosine, cosine);
-    }
-    const CosineLobe lobe = l.lobes ? l.lobes[i] : CosineLobe{vec3(0.0f), 0.0f};
+    if (out.scattered)
+        phase = surface_receives ? hn::Mul(cosine_here, hn::Set(d, 1.0f / kPi))
+                                 : henyey_greenstein_lanes(d, out.mean_cosine, turns);
     // Lambert's intensity is four times its mean along the normal.
-    V by_cosine = hn::Zero(d);
-    if (l.lobes)
-        by_cosine = hn::Mul(hn::Set(d, 4.0f * lobe.share),
-                            lobe_cosine(d, l, square, distance, dot(d, wx, wy, wz, lobe.normal)));
+    const V by_cosine = hn::Mul(hn::Set(d, 4.0f * lobe.share), cosine_there);
     for (int c = 0; c < 3; ++c) {
         V intensity = hn::Set(d, l.intensity[i][c]);
         if (l.directional && lobe.share < 1.0f)

@@ -1,6 +1,9 @@
 // Deep inside uniform smoke every point sees its own temperature, however thick a voxel is.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdio>
+
 #include "gather_fixture.h"
 
 namespace brisance {
@@ -48,6 +51,60 @@ TEST(UniformFire, ThinFireIsTransparentToItself) {
         const double j = tau / 0.1, side = 2.4;
         EXPECT_NEAR(at_node(lit, clear, ivec3(0)) / (7.674134 * j * side), 1.0, 0.03);
     }
+}
+
+// Integral over a cuboid in front of the middle of one of its faces of cos / r^2, per square metre of its cross section
+// 2 half aside, from the solid angle of each layer: 4 atan(half^2 / (z sqrt(2 half^2 + z^2))).
+double irradiance_of(double half, double height) {
+    constexpr int kLayers = 4000;
+    double sum = 0.0;
+    for (int k = 0; k < kLayers; ++k) {
+        const double z = (k + 0.5) / kLayers * height;
+        sum += 4.0 * std::atan(half * half / (z * std::sqrt(2.0 * half * half + z * z))) * height / kLayers;
+    }
+    return sum;
+}
+
+// A surface that cuts a thin fire is lit by the part in front of it, wherever it lies within a voxel and whichever way
+// it faces. Voxels are lights, so what single points see depends on their place beside them.
+TEST(UniformFire, SurfacesInItSeeThePartInFrontOfThem) {
+    constexpr int kHalf = 12;
+    constexpr double kTau = 1e-5, kWidth = 0.1;
+    const Lit lit = uniform_fire(kTau, kHalf);
+    const LightField field = field_of(lit, lighting(ShadowMethod::None));
+    const vec3 first = lit.medium.local_of_node(ivec3(0)), step = lit.medium.local_of_node(ivec3(1)) - first;
+    double worst = 0.0, worst_mean = 0.0;
+    for (const int axis : {0, 1, 2})
+        for (const float side : {1.0f, -1.0f})
+            for (double place = 0.0; place < 1.01; place += 0.125) {
+                std::vector<vec3> points, normals;
+                for (int k = 0; k < 16; ++k) {
+                    vec3 at = first - 0.5f * step, normal(0.0f);  // from the middle of the cube
+                    at[axis] += side * float(place) * step[axis];
+                    at[(axis + 1) % 3] += 0.25f * (float(k % 4) - 1.5f) * step.x;
+                    at[(axis + 2) % 3] += 0.25f * (float(k / 4) - 1.5f) * step.x;
+                    normal[axis] = side;
+                    points.push_back(at);
+                    normals.push_back(normal);
+                }
+                Receivers receivers;
+                receivers.add_block(points, normals);
+                std::vector<LevelCost> costs;
+                Progress silent;
+                const Gathered g =
+                    gather_at_points(field, bottom_level(field), receivers, 0.0f, costs, silent, ReceiverKind::Surface);
+                const double truth = kTau / kWidth * irradiance_of(kHalf * kWidth, (kHalf - place) * kWidth) / kPiExact;
+                double mean = 0.0;
+                for (int k = 0; k < 16; ++k) {
+                    const double error = double(g.scattered[std::size_t(k)]) / truth - 1.0;
+                    worst = std::max(worst, std::abs(error));
+                    mean += error / 16;
+                }
+                worst_mean = std::max(worst_mean, std::abs(mean));
+            }
+    std::printf("means are off by %.4f at most, points by %.4f\n", worst_mean, worst);
+    EXPECT_LT(worst_mean, 0.06);
+    EXPECT_LT(worst, 0.08);
 }
 
 TEST(UniformFire, TheFaceSeesHalfOfIt) {
