@@ -153,6 +153,7 @@ FarLights FarGather::far_lights(const GridLevel& level, bool top, const ShadowMa
     lights.lobes = level.lobe.empty() ? nullptr : level.lobe.data();
     lights.radius = field_.alpha * level.spacing;
     lights.bottom = level.level == field_.bottom;
+    lights.voxels = level.level == 0;
     lights.top = top;
     lights.ball = std::cbrt(3.0f / (4.0f * kPi)) * field_.pyramid->medium().spacing * float(1 << level.level);
     lights.balls = level.ball.empty() ? nullptr : level.ball.data();

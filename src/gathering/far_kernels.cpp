@@ -226,12 +226,15 @@ HWY_INLINE Disc disc_of_light(D d, const FarLights& l, V square, V distance, V c
     return out;
 }
 
-// A voxel as surfaces see it: the part of it that is in front of them, from its middle.
+// A voxel as surfaces see it: the part of it that is in front of them, from its middle. What a light of several voxels
+// stands for lies on the side on which its centre is.
 HWY_INLINE Disc voxel_from_surface(D d, const FarLights& l, V square, V distance, V cosine) {
     const float width = 1.611992f * l.ball;  // (4 pi / 3)^(1/3)
     const V height = hn::Mul(distance, cosine), half = hn::Set(d, 0.5f);
-    const V in_front = hn::Clamp(hn::MulAdd(height, hn::Set(d, 1.0f / width), half), hn::Zero(d), hn::Set(d, 1.0f));
+    V in_front = hn::Clamp(hn::MulAdd(height, hn::Set(d, 1.0f / width), half), hn::Zero(d), hn::Set(d, 1.0f));
     const V middle = hn::Max(height, hn::Mul(half, hn::Mul(in_front, hn::Set(d, width))));
+    if (!l.voxels)
+        in_front = hn::IfThenElseZero(hn::Gt(height, hn::Zero(d)), hn::Set(d, 1.0f));
     Disc out = disc_at(d, l, middle, hn::Max(hn::NegMulAdd(height, height, square), hn::Zero(d)));
     out.cosine = hn::Mul(in_front, out.cosine);
     return out;

@@ -21,7 +21,8 @@ struct FarLights {
     const CosineLobe* lobes;  // of the lights; null: none has one
 
     float radius;            // r_l = alpha h_l [m]
-    bool bottom;             // level 0: does not fade in; lights are balls of their voxel's volume
+    bool bottom;             // does not fade in; lights are balls of their voxel's volume
+    bool voxels;             // level 0: lights fill their voxels evenly
     bool top;                // the top level does not fade out
     float ball;              // radius of that ball [m]
     const LightBall* balls;  // of the lights, whose shadows begin at their surface; null: all have `ball`
