@@ -196,8 +196,8 @@ HWY_INLINE V dot(D d, V x, V y, V z, const vec3& v) {
 
 // Level 0 where light meets a surface. There a voxel's side, as a disc of radius r, stands for what is that close: what
 // it exchanges with a point at height h over its plane is about what a point does at h' = sqrt(h^2 + r^2 / 2), h' /
-// (across^2 + h'^2)^(3/2): over its middle at h = 0 all of the hemisphere, and an endless plane of discs has 2 pi at
-// any (A ball's mean of 1 / distance^2 is right for fluence; as flux it is 1.19 times as much at half a voxel.)
+// (across^2 + h'^2)^(3/2). Over its middle at h = 0 that is all of the hemisphere, and 2 pi of an endless plane at any
+// h. (A ball's mean of 1 / distance^2 is right for fluence; as flux it is 1.19 times as much at half a voxel.)
 struct Disc {
     V inverse_square, cosine;
 };
