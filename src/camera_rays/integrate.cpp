@@ -178,8 +178,9 @@ RaySum integrate_whole_records(const SourceField& field, const Ray& ray, int par
     const OneSidedVoxels at_end(field, end);
     const auto visit_brick = [&](const VoxelSegment& brick) {
         PartsOfBrick taken(field, brick, light);
+        const bool may_cut = at_end.may_cut(brick);
         const auto visit_voxel = [&](const VoxelSegment& s) {
-            if (!at_end.cuts(s))
+            if (!may_cut || !at_end.cuts(s))
                 return taken.take(field, s, parts);
             if (!taken.add())
                 return false;

@@ -18,6 +18,16 @@ std::size_t record_of(const ivec3& node) {
     return std::size_t((node.x * SourceField::kSide + node.y) * SourceField::kSide + node.z);
 }
 
+// Calls visit(record) for the nodes of a voxel and of those beside it, as far as they are the brick's.
+template <class Visit>
+void for_nodes_around(const ivec3& voxel, const Visit& visit) {
+    const ivec3 first = glm::max(voxel - 1, ivec3(0)), last = glm::min(voxel + 2, ivec3(SourceField::kSide - 1));
+    for (int x = first.x; x <= last.x; ++x)
+        for (int y = first.y; y <= last.y; ++y)
+            for (int z = first.z; z <= last.z; ++z)
+                visit(record_of({x, y, z}));
+}
+
 // The corners of a voxel whose light a corner behind the surface takes over, one bit each: its neighbours along edges
 // that are in front, or else all that are in front.
 unsigned in_place_of(int k, unsigned front) {
@@ -54,13 +64,15 @@ OneSidedVoxels::Records OneSidedVoxels::in_front(const VoxelSegment& voxel) cons
     thread_local std::vector<SurroundingsRecord> outside(SourceField::kRecords);
     const SourceRecord* const all = field_.own_records(voxel.brick);
     const SurroundingsRecord* const all_outside = field_.has_outside() ? field_.outside_records(voxel.brick) : nullptr;
+    for_nodes_around(voxel.cube, [&](std::size_t node) {
+        own[node] = all[node];
+        if (all_outside)
+            outside[node] = all_outside[node];
+    });
     std::size_t at[kCorners];
     unsigned front = 0;
     for (int k = 0; k < kCorners; ++k) {
         at[k] = record_of(voxel.cube + corner(k));
-        own[at[k]] = all[at[k]];
-        if (all_outside)
-            outside[at[k]] = all_outside[at[k]];
         if (side_of(voxel, voxel.cube + corner(k)) > 0.0)
             front |= 1u << k;
     }

@@ -26,10 +26,14 @@ public:
     // Keeps a reference to the field.
     OneSidedVoxels(const SourceField& field, const RayEnd& end);
 
-    // Whether a node of the voxel lies behind the surface.
+    // Whether some voxel of a brick may have a node behind the surface, and whether this voxel has.
+    bool may_cut(const VoxelSegment& brick) const {
+        return some_ && side_of(brick, ivec3(0)) + BrickLattice::kSize * most_behind_ <= 0.0;
+    }
     bool cuts(const VoxelSegment& voxel) const { return some_ && side_of(voxel, voxel.cube) + most_behind_ <= 0.0; }
     // A brick's records as for SourceField::own_records() and outside_records(), of which only those at the nodes of
-    // the voxel are made. They belong to the thread, and hold until the next call.
+    // the voxel and of its neighbours are made: positions are rounded. They belong to the thread, and hold until the
+    // next call.
     struct Records {
         const SourceRecord* own;
         const SurroundingsRecord* outside;  // null: the field has none

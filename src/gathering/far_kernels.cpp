@@ -194,34 +194,34 @@ HWY_INLINE V dot(D d, V x, V y, V z, const vec3& v) {
     return dot(x, y, z, hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z));
 }
 
-// Level 0 where light meets a surface. There a voxel's side, as a disc of radius r, stands for what is that close: what
-// it exchanges with a point at height h over its plane is about what a point does at h' = sqrt(h^2 + r^2 / 2), h' /
-// (across^2 + h'^2)^(3/2). Over its middle at h = 0 that is all of the hemisphere, and 2 pi of an endless plane at any
-// h. (A ball's mean of 1 / distance^2 is right for fluence; as flux it is 1.19 times as much at half a voxel.)
+// The finest level where light meets a surface. There a voxel's side, as a disc of radius r, stands for what is that
+// close: what it exchanges with a point at height h over its plane is about what a point does at h' = sqrt(h^2 + r^2 /
+// 2), h' / (across^2 + h'^2)^(3/2). Over its middle at h = 0 that is all of the hemisphere, and 2 pi of an endless
+// plane at any h. (A ball's mean of 1 / distance^2 is right for fluence; as flux it is 1.19 times as much at half a
+// voxel.)
 struct Disc {
     V inverse_square, cosine;
 };
 HWY_INLINE Disc disc_at(D d, const FarLights& l, V height, V across_square) {
-    constexpr float kOfBall = 0.41357f;  // (4 pi / 3)^(2/3) / (2 pi)
-    const float soft = kOfBall * l.ball * l.ball;
+    const float soft = 0.41357f * l.ball * l.ball;  // r^2 / 2: (4 pi / 3)^(2/3) / (2 pi)
     const V one = hn::Set(d, 1.0f), disc_square = hn::MulAdd(height, height, hn::Set(d, soft));
     const V disc_height = hn::Sqrt(disc_square), inverse = reciprocal_sqrt(d, hn::Add(across_square, disc_square));
     // It sends more along its plane than a point, which is lost where the level fades out, about the distance R: of an
     // endless plane 1 - h' / sqrt(R^2 + r^2 / 2) arrives instead of 1 - h / R.
-    constexpr float kFade = 1.442695f;  // of the level's radius: the harmonic mean of [1, 2]
-    const float end = kFade * l.radius;
+    const float end = 1.442695f * l.radius;  // the harmonic mean of [1, 2] radii
     const V of_point = hn::NegMulAdd(height, hn::Set(d, 1.0f / end), one);
     const V of_disc = hn::NegMulAdd(disc_height, hn::Set(d, 1.0f / std::sqrt(end * end + soft)), one);
     const V least = hn::Set(d, 1e-2f);
-    const V more = hn::Div(hn::Max(of_point, least), hn::Max(of_disc, least));
+    const V more = l.top ? one : hn::Div(hn::Max(of_point, least), hn::Max(of_disc, least));
     return {hn::Mul(inverse, inverse), hn::Mul(hn::Mul(disc_height, inverse), more)};
 }
 
 // A light on a surface: only what is in front of it is lit. `cosine`: between its normal and the way to the receiver.
+// Lights lie a little above their surface, and receivers in its plane count as before it: rays tell those behind.
 HWY_INLINE Disc disc_of_light(D d, const FarLights& l, V square, V distance, V cosine) {
     const V height = hn::Mul(distance, cosine);
-    Disc out = disc_at(d, l, height, hn::NegMulAdd(height, height, square));
-    out.cosine = hn::IfThenElseZero(hn::Gt(height, hn::Zero(d)), out.cosine);
+    Disc out = disc_at(d, l, hn::Max(height, hn::Zero(d)), hn::Max(hn::NegMulAdd(height, height, square), hn::Zero(d)));
+    out.cosine = hn::IfThenElseZero(hn::Gt(height, hn::Set(d, -0.08f * l.ball)), out.cosine);  // 0.05 voxels
     return out;
 }
 

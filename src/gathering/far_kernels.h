@@ -21,7 +21,7 @@ struct FarLights {
     const CosineLobe* lobes;  // of the lights; null: none has one
 
     float radius;            // r_l = alpha h_l [m]
-    bool bottom;             // does not fade in; lights are balls of their voxel's volume
+    bool bottom;             // does not fade in; lights are balls of their voxel's volume, or discs beside surfaces
     bool voxels;             // level 0: lights fill their voxels evenly
     bool top;                // the top level does not fade out
     float ball;              // radius of that ball [m]

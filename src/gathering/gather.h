@@ -65,7 +65,7 @@ struct LightField {
     // For receivers outside of the medium: per node, how likely its light is to leave the medium. Null: receivers are
     // inside.
     const std::vector<float>* escape = nullptr;
-    int bottom = 0;  // the finest level: does not fade in, its lights are balls
+    int bottom = 0;  // the finest level: does not fade in, its lights are balls, and discs beside surfaces
 };
 
 // The nodes that need light, and the point toward which they scatter it.
@@ -99,8 +99,8 @@ float own_share_of(const LightingSettings& settings, float mean_cosine);
 GridLevel bottom_level(const LightField& field);
 
 // Gathers at any points (local [m]) given as receivers, in the medium or on surfaces. Surfaces stop no light here.
-// Level 0 uses marched shadows and the ball kernel; `bottom` holds its lights, is made once, and is not evaluated where
-// field.bottom is a coarser level. The result is planar over receivers.
+// Level 0 uses marched shadows and the kernels of balls and discs; `bottom` holds its lights, is made once, and is not
+// evaluated where field.bottom is a coarser level. The result is planar over receivers.
 Gathered gather_at_points(const LightField& field, const GridLevel& bottom, const Receivers& receivers,
                           float mean_cosine, std::vector<LevelCost>& costs, Progress& progress,
                           ReceiverKind kind = ReceiverKind::Medium, bool moments = false);

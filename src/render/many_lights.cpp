@@ -29,7 +29,7 @@ std::unique_ptr<VirtualLights> place_virtual_lights(const DrawInput& input, cons
     const PixelCamera pixels{c.width, c.height, [&](double x, double y) { return input.camera.ray(x, y); }, samples};
     VirtualLightSettings settings = settings_of_pass(input.shot.virtual_lights, pass);
     settings.picture_error = input.shot.lighting.error;
-    settings.light_smoke = input.plan.needs(Cell::MS) && input.plan.reflected_by_particles < 1.0f;
+    settings.light_smoke = pass == 0 && input.plan.needs(Cell::MS) && input.plan.reflected_by_particles < 1.0f;
     auto lights = std::make_unique<VirtualLights>(scene, pixels, settings, input.light_positions);
     const VirtualLightReport& r = lights->report();
     statistics.stages.push_back(

@@ -16,7 +16,7 @@ using testing::Recipe;
 constexpr float kNear = 2.0f, kFar = 50.0f;
 
 // Even smoke that glows.
-Medium even_smoke(float mean_cosine = 0.0f) {
+Medium even_smoke() {
     Recipe r;
     r.box = testing::cube(-16, 16);
     r.world_from_index = cubic(0.1);
@@ -24,7 +24,6 @@ Medium even_smoke(float mean_cosine = 0.0f) {
     r.flame = [](const ivec3&) { return 1.0f; };
     r.settings.smoke.extinction_per_metre = 1.0f;
     r.settings.smoke.albedo = Rgb(0.5f);
-    r.settings.smoke.mean_cosine = mean_cosine;
     return make_medium(r);
 }
 
@@ -88,7 +87,7 @@ TEST(OneSidedVoxels, ChangeNeitherSmokeNorFire) {
 
 // Forward peaks have a medium of their own, and rays another way through it.
 TEST(OneSidedVoxels, AreSoBesideASimilarMedium) {
-    const Medium medium = even_smoke(0.0f), similar = even_smoke(0.0f);
+    const Medium medium = even_smoke(), similar = even_smoke();
     for (const dvec3& normal : kNormals) {
         const LookThrough at = look_through(medium, {1, 2, -3}, normal);
         const NodeSources sources = two_sides(medium, at);

@@ -107,7 +107,7 @@ TEST(SurfacesInSmoke, ARoomAroundCameraAndSmoke) {
 }
 
 // A fire stands on a floor, which is brightest where the smoke is closest: within less than the width of one virtual
-// light, and of one voxel. The floor lies half a voxel, a quarter and a hundredth of one above the nodes below it.
+// light, and of one voxel. The floor lies half a voxel, a quarter and a fiftieth of one above the nodes below it.
 TEST(SurfacesInSmoke, AFloorUnderFireAndSmokeIsLitAndLightsThem) {
     const Medium medium = half_burning();
     for (const float height : {-0.525f, -0.5375f, -0.499f}) {

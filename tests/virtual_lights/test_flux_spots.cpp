@@ -88,7 +88,7 @@ TEST(FluxSpots, AreAllOfTheirLight) {
     EXPECT_GT(divided, 10u);
 }
 
-// Narrow lights are points to any smoke, and without smoke to be lit nobody asks.
+// Far smoke sees points, and without smoke to be lit nobody asks.
 TEST(FluxSpots, AreNotMadeWhereTheyDoNotShow) {
     const Room room(beam_on_floor(), smoke_ball(dvec3(0.0, -0.7, 0.0), 1e-3f, Rgb(0.5f), 0.0f));
     VirtualLightSettings settings = for_smoke(150);

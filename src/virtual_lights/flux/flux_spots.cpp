@@ -9,7 +9,7 @@ namespace brisance {
 namespace {
 
 constexpr int kMostAside = 16;
-// Width of a spot over its distance to the smoke's box: farther smoke sees a point.
+// Width of a spot over the distance of the light's edge to the smoke's box: farther smoke sees a point.
 constexpr double kWidthByDistance = 0.25;
 // Normals of flat surface differ by no more [rad]: spots lie in a plane, and would hide behind a rounder one.
 constexpr double kFlat = 0.02;
@@ -18,7 +18,8 @@ constexpr double kFlat = 0.02;
 int spots_aside(const VirtualLight& light, const LocalBounds& smoke, float voxel) {
     if (light.spread > kFlat)
         return 1;
-    const double width = std::max<double>(voxel, kWidthByDistance * smoke.distance(vec3(light.position)));
+    const double distance = smoke.distance(vec3(light.position)) - light.radius;
+    const double width = std::max<double>(voxel, kWidthByDistance * distance);
     int aside = 1;
     while (aside < kMostAside && aside * width < 2.0 * light.radius)
         aside *= 2;
@@ -88,7 +89,7 @@ std::vector<FluxSpot> SpotAccounts::spots_of(std::size_t light, int aside) const
         const double y = luminance(Rgb(sum.power));
         if (!(y > 0.0))
             continue;
-        const glm::dvec2 p = (2.0 * glm::dvec2(sum.place) / y - 1.0) * l.radius;
+        const glm::dvec2 p = (2.0 * glm::clamp(glm::dvec2(sum.place) / y, 0.0, 1.0) - 1.0) * l.radius;
         const dvec3 across = l.frame.world_from_local(dvec3(p, 0.0));
         out.push_back({l.position + across, Rgb(sum.power / glm::max(whole, 1e-300))});
     }

@@ -19,7 +19,7 @@ namespace brisance {
 // A part of a light. `part`: of the power that it receives, by channel; all parts of a light add up to 1, but for
 // channels without power.
 struct FluxSpot {
-    dvec3 position;  // local [m], on the light's surface
+    dvec3 position;  // local [m], in the light's plane
     Rgb part;
 };
 
