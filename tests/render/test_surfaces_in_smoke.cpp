@@ -107,10 +107,11 @@ TEST(SurfacesInSmoke, ARoomAroundCameraAndSmoke) {
 }
 
 // A fire stands on a floor, which is brightest where the smoke is closest: within less than the width of one virtual
-// light, and of one voxel. The floor lies half a voxel, a quarter and a fiftieth of one above the nodes below it.
+// light, and of one voxel. The floor lies half a voxel and a quarter of one above the nodes below it, and in a plane of
+// them.
 TEST(SurfacesInSmoke, AFloorUnderFireAndSmokeIsLitAndLightsThem) {
     const Medium medium = half_burning();
-    for (const float height : {-0.525f, -0.5375f, -0.499f}) {
+    for (const float height : {-0.525f, -0.5375f, -0.5f}) {
         Scene scene;
         scene.origin = medium.world_of_local(vec3(0.0f));
         add_quad(scene, {-6, -6, height}, {12, 0, 0}, {0, 12, 0}, lambert(0.8f));
