@@ -100,10 +100,7 @@ template <class Visit>
 void walk_parts(const SourceField& field, const Ray& ray, int parts, const RayEnd& end, const Visit& visit) {
     const OneSidedVoxels at_end(field, end);
     const auto visit_voxel = [&](const VoxelSegment& s) {
-        const OneSidedVoxels::Records records =
-            at_end.cuts(s) ? at_end.in_front(s)
-                           : OneSidedVoxels::Records{field.own_records(s.brick),
-                                                     field.has_outside() ? field.outside_records(s.brick) : nullptr};
+        const BrickRecords records = at_end.cuts(s) ? at_end.in_front(s) : records_of(field, s.brick);
         return visit_parts(s, std::max(parts, parts_of(field, s)), [&](double t, float length) {
             const vec3 p = position_in_brick(s, t);
             Part part{
@@ -120,13 +117,9 @@ void walk_parts(const SourceField& field, const Ray& ray, int parts, const RayEn
 class PartsOfBrick {
 public:
     PartsOfBrick(const SourceField& field, const VoxelSegment& brick, RecordSums& sums)
-        : PartsOfBrick(
-              field, brick,
-              {field.own_records(brick.brick), field.has_outside() ? field.outside_records(brick.brick) : nullptr},
-              sums) {}
+        : PartsOfBrick(field, brick, records_of(field, brick.brick), sums) {}
     // By other records: those of a voxel that a surface cuts.
-    PartsOfBrick(const SourceField& field, const VoxelSegment& brick, const OneSidedVoxels::Records& records,
-                 RecordSums& sums)
+    PartsOfBrick(const SourceField& field, const VoxelSegment& brick, const BrickRecords& records, RecordSums& sums)
         : ray_{records.own, records.outside, vec3(brick.origin + brick.direction * brick.begin), vec3(brick.direction),
                float(brick.begin)},
           begin_(brick.begin),

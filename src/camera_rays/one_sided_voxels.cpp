@@ -59,12 +59,11 @@ OneSidedVoxels::OneSidedVoxels(const SourceField& field, const RayEnd& end)
       most_behind_(glm::min(normal_.x, 0.0) + glm::min(normal_.y, 0.0) + glm::min(normal_.z, 0.0)),
       some_(end.normal != dvec3(0.0)) {}
 
-OneSidedVoxels::Records OneSidedVoxels::in_front(const VoxelSegment& voxel) const {
+BrickRecords OneSidedVoxels::in_front(const VoxelSegment& voxel) const {
     thread_local std::vector<SourceRecord> own(SourceField::kRecords);
     thread_local std::vector<SurroundingsRecord> outside(SourceField::kRecords);
-    const SourceRecord* const all = field_.own_records(voxel.brick);
-    const SurroundingsRecord* const all_outside = field_.has_outside() ? field_.outside_records(voxel.brick) : nullptr;
-    for_nodes_around(voxel.cube, [&](std::size_t node) {
+    const auto [all, all_outside] = records_of(field_, voxel.brick);
+    for_nodes_around(voxel.cube, [&, all = all, all_outside = all_outside](std::size_t node) {
         own[node] = all[node];
         if (all_outside)
             outside[node] = all_outside[node];

@@ -21,6 +21,15 @@ struct RayEnd {
     dvec3 normal{0.0};
 };
 
+// The records of a brick. `outside`: null where the field has none.
+struct BrickRecords {
+    const SourceRecord* own;
+    const SurroundingsRecord* outside;
+};
+inline BrickRecords records_of(const SourceField& field, std::size_t brick) {
+    return {field.own_records(brick), field.has_outside() ? field.outside_records(brick) : nullptr};
+}
+
 class OneSidedVoxels {
 public:
     // Keeps a reference to the field.
@@ -31,14 +40,9 @@ public:
         return some_ && side_of(brick, ivec3(0)) + BrickLattice::kSize * most_behind_ <= 0.0;
     }
     bool cuts(const VoxelSegment& voxel) const { return some_ && side_of(voxel, voxel.cube) + most_behind_ <= 0.0; }
-    // A brick's records as for SourceField::own_records() and outside_records(), of which only those at the nodes of
-    // the voxel and of its neighbours are made: positions are rounded. They belong to the thread, and hold until the
-    // next call.
-    struct Records {
-        const SourceRecord* own;
-        const SurroundingsRecord* outside;  // null: the field has none
-    };
-    Records in_front(const VoxelSegment& voxel) const;
+    // Its brick's records, of which only those at the nodes of the voxel and of its neighbours are made: positions are
+    // rounded. They belong to the thread, and hold until the next call.
+    BrickRecords in_front(const VoxelSegment& voxel) const;
 
 private:
     // Of a node, in nodes from the brick's first: its distance from the surface [m], above 0 in front.
