@@ -12,10 +12,12 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
+#include "gathering/light_shapes-inl.h"
 #include "medium/lattice/extinction_sampler-inl.h"
 #include "medium/phase-inl.h"
 #include "medium/sh.h"
 #include "receivers/lanes-inl.h"
+#include "shadows/map_lookup-inl.h"
 
 #ifndef BRISANCE_GATHERING_LEVEL_RANGE_
 #define BRISANCE_GATHERING_LEVEL_RANGE_
@@ -51,93 +53,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<float, 16>;
 using V = hn::Vec<D>;
 
-// Where a unit direction w lies in an octahedral map with a border.
-struct TexelPosition {
-    V s, t;
-};
-
-HWY_INLINE TexelPosition texel_position(D d, const ShadowMapLayout& layout, V wx, V wy, V wz) {
-    const V one = hn::Set(d, 1.0f), zero = hn::Zero(d);
-    // A receiver on the light itself has no direction. Its blend weight is zero, so any texel will do.
-    const V sum = hn::Max(hn::Add(hn::Add(hn::Abs(wx), hn::Abs(wy)), hn::Abs(wz)), hn::Set(d, 1e-3f));
-    const V inv = reciprocal(d, sum);
-    const V px = hn::Mul(wx, inv), py = hn::Mul(wy, inv);
-    const auto lower = hn::Lt(wz, zero);
-    const V u = hn::IfThenElse(lower, hn::CopySign(hn::Sub(one, hn::Abs(py)), wx), px);
-    const V v = hn::IfThenElse(lower, hn::CopySign(hn::Sub(one, hn::Abs(px)), wy), py);
-    // Texel centres are at half-integers of the interior; the border shifts them by one.
-    const V half = hn::Set(d, 0.5f * layout.resolution), middle = hn::Set(d, 0.5f * layout.resolution + 0.5f);
-    return {hn::MulAdd(u, half, middle), hn::MulAdd(v, half, middle)};
-}
-
-// Transmittance from a light's map toward unit direction w (light to receiver) at `distance`.
-HWY_INLINE V map_transmittance(D d, const ShadowMapLayout& layout, const std::uint16_t* map, V wx, V wy, V wz,
-                               V distance) {
-    const hn::RebindToSigned<D> di;
-    const hn::RebindToUnsigned<D> du;
-    const V zero = hn::Zero(d);
-    const auto [s, t] = texel_position(d, layout, wx, wy, wz);
-    // Truncation equals the floor because all three coordinates are positive.
-    const auto is = hn::ConvertTo(di, s), it = hn::ConvertTo(di, t);
-    const V last = hn::Set(d, static_cast<float>(layout.distances - 1));
-    const float samples_per_metre =
-        layout.distances > 1 ? (layout.distances - 1) / (layout.far_distance - layout.near_distance) : 0.0f;
-    const V k = hn::Min(
-        hn::Max(hn::Mul(hn::Sub(distance, hn::Set(d, layout.near_distance)), hn::Set(d, samples_per_metre)), zero),
-        last);
-    const auto ik = hn::ConvertTo(di, k);
-    const V as = hn::Sub(s, hn::ConvertTo(d, is)), at = hn::Sub(t, hn::ConvertTo(d, it));
-    const V ak = hn::Sub(k, hn::ConvertTo(d, ik));
-
-    const auto texel = hn::Add(hn::Mul(is, hn::Set(di, layout.side())), it);
-    const auto word = hn::Add(hn::Mul(texel, hn::Set(di, layout.distances)), ik);
-    V near[4], far[4];  // of the four texels around
-    for (int corner = 0; corner < 4; ++corner) {
-        const int texels = (corner >> 1) * layout.side() + (corner & 1);
-        const auto offset = hn::Add(word, hn::Set(di, texels * layout.distances));
-        const auto pair = hn::GatherOffset(du, reinterpret_cast<const std::uint32_t*>(map), hn::ShiftLeft<1>(offset));
-        near[corner] = hn::ConvertTo(d, hn::BitCast(di, hn::And(pair, hn::Set(du, 0xffffu))));
-        far[corner] = hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<16>(pair)));
-    }
-    const auto between = [&] {
-        V t[4];
-        for (int corner = 0; corner < 4; ++corner)
-            t[corner] = hn::MulAdd(ak, hn::Sub(far[corner], near[corner]), near[corner]);
-        const V t0 = hn::MulAdd(at, hn::Sub(t[1], t[0]), t[0]), t1 = hn::MulAdd(at, hn::Sub(t[3], t[2]), t[2]);
-        return hn::MulAdd(as, hn::Sub(t1, t0), t0);
-    };
-    V transmittance = between();
-    if (layout.geometric) {
-        V least = near[0];
-        for (int corner = 0; corner < 4; ++corner) {
-            least = hn::Min(least, hn::Min(near[corner], far[corner]));
-            near[corner] = hn::Log(d, hn::Max(near[corner], hn::Set(d, 0.5f)));
-            far[corner] = hn::Log(d, hn::Max(far[corner], hn::Set(d, 0.5f)));
-        }
-        transmittance = hn::IfThenElse(hn::Lt(least, hn::Set(d, 0.5f)), transmittance, hn::Exp(d, between()));
-    }
-    return hn::Mul(transmittance, hn::Set(d, layout.range / 65535.0f));
-}
-
-// The same beyond the medium, of the map's end. Texels that lie beside each other are read in pairs.
-HWY_INLINE V end_transmittance(D d, const ShadowMapLayout& layout, const std::uint16_t* end, V wx, V wy, V wz) {
-    const hn::RebindToSigned<D> di;
-    const hn::RebindToUnsigned<D> du;
-    const auto [s, t] = texel_position(d, layout, wx, wy, wz);
-    const auto is = hn::ConvertTo(di, s), it = hn::ConvertTo(di, t);
-    const V as = hn::Sub(s, hn::ConvertTo(d, is)), at = hn::Sub(t, hn::ConvertTo(d, it));
-    const auto texel = hn::Add(hn::Mul(is, hn::Set(di, layout.side())), it);
-    V row[2];
-    for (int k = 0; k < 2; ++k) {
-        const auto offset = hn::Add(texel, hn::Set(di, k * layout.side()));
-        const auto pair = hn::GatherOffset(du, reinterpret_cast<const std::uint32_t*>(end), hn::ShiftLeft<1>(offset));
-        const V near = hn::ConvertTo(d, hn::BitCast(di, hn::And(pair, hn::Set(du, 0xffffu))));
-        const V far = hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<16>(pair)));
-        row[k] = hn::MulAdd(at, hn::Sub(far, near), near);
-    }
-    return hn::Mul(hn::MulAdd(as, hn::Sub(row[1], row[0]), row[0]), hn::Set(d, layout.range / 65535.0f));
-}
-
 // Numerical transmittance between the light and the receivers, from the distance `begin` to it on. `to_light` points
 // from receiver to light [m].
 V exact_transmittance(D d, const FarLights& l, const vec3& light, const V to_light[3], V distance, V begin) {
@@ -163,82 +78,6 @@ V exact_transmittance(D d, const FarLights& l, const vec3& light, const V to_lig
     return hn::Exp(d, hn::Neg(hn::Mul(sum, hn::Mul(hn::Sub(distance, begin), hn::Set(d, 1.0f / steps)))));
 }
 
-// Mean of 1 / r^2 over a ball of radius a seen from distance x of its centre: 3/(4 a^3) (2a + (a^2 - x^2)/x
-// ln|(a+x)/(a-x)|).
-V ball_kernel(D d, float a, V distance) {
-    const V one = hn::Set(d, 1.0f);
-    // Away from 0 and a, where the formula is 0/0 and the function smooth.
-    V t = hn::Max(hn::Mul(distance, hn::Set(d, 1.0f / a)), hn::Set(d, 1e-2f));
-    t = hn::IfThenElse(hn::Lt(hn::Abs(hn::Sub(t, one)), hn::Set(d, 1e-4f)), hn::Set(d, 1.0f + 1e-4f), t);
-    const V log = hn::Log(d, hn::Abs(hn::Div(hn::Add(one, t), hn::Sub(one, t))));
-    const V near =
-        hn::Mul(hn::MulAdd(hn::Div(hn::NegMulAdd(t, t, one), t), log, hn::Set(d, 2.0f)), hn::Set(d, 0.75f / (a * a)));
-    const V inverse = hn::Div(one, hn::Max(distance, hn::Set(d, a)));
-    const V far =
-        hn::Mul(hn::Mul(inverse, inverse), hn::MulAdd(hn::Mul(inverse, inverse), hn::Set(d, 0.2f * a * a), one));
-    return hn::IfThenElse(hn::Lt(distance, hn::Set(d, 4.0f * a)), near, far);
-}
-
-// Transmittance from a ball. Inside it, the value is interpolated between the mean over the ball seen from its centre
-// and the transmittance of its radius.
-V ball_transmittance(D d, float a, V distance, V transmittance, V depth_of_radius) {
-    const V edge = hn::Exp(d, hn::Neg(depth_of_radius));
-    const V mean = hn::Div(hn::Sub(hn::Set(d, 1.0f), edge), hn::Max(depth_of_radius, hn::Set(d, 1e-6f)));
-    const V centre = hn::IfThenElse(hn::Lt(depth_of_radius, hn::Set(d, 1e-3f)),
-                                    hn::NegMulAdd(hn::Set(d, 0.5f), depth_of_radius, hn::Set(d, 1.0f)), mean);
-    const V inside = hn::MulAdd(hn::Mul(distance, hn::Set(d, 1.0f / a)), hn::Sub(edge, centre), centre);
-    return hn::IfThenElse(hn::Lt(distance, hn::Set(d, a)), inside, transmittance);
-}
-
-HWY_INLINE V dot(D d, V x, V y, V z, const vec3& v) {
-    return dot(x, y, z, hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z));
-}
-
-// The finest level where light meets a surface. There a voxel's side, as a disc of radius r, stands for what is that
-// close: what it exchanges with a point at height h over its plane is about what a point does at h' = sqrt(h^2 + r^2 /
-// 2), h' / (across^2 + h'^2)^(3/2). Over its middle at h = 0 that is all of the hemisphere, and 2 pi of an endless
-// plane at any h. (A ball's mean of 1 / distance^2 is right for fluence; as flux it is 1.19 times as much at half a
-// voxel.)
-struct Disc {
-    V inverse_square, cosine;
-};
-HWY_INLINE Disc disc_at(D d, const FarLights& l, V height, V across_square) {
-    const float soft = 0.41357f * l.ball * l.ball;  // r^2 / 2: (4 pi / 3)^(2/3) / (2 pi)
-    const V one = hn::Set(d, 1.0f), disc_square = hn::MulAdd(height, height, hn::Set(d, soft));
-    const V disc_height = hn::Sqrt(disc_square), inverse = reciprocal_sqrt(d, hn::Add(across_square, disc_square));
-    // It sends more along its plane than a point, which is lost where the level fades out, about the distance R: of an
-    // endless plane 1 - h' / sqrt(R^2 + r^2 / 2) arrives instead of 1 - h / R.
-    const float end = 1.442695f * l.radius;  // the harmonic mean of [1, 2] radii
-    const V of_point = hn::NegMulAdd(height, hn::Set(d, 1.0f / end), one);
-    const V of_disc = hn::NegMulAdd(disc_height, hn::Set(d, 1.0f / std::sqrt(end * end + soft)), one);
-    const V least = hn::Set(d, 1e-2f);
-    const V more = l.top ? one : hn::Div(hn::Max(of_point, least), hn::Max(of_disc, least));
-    return {hn::Mul(inverse, inverse), hn::Mul(hn::Mul(disc_height, inverse), more)};
-}
-
-// A light on a surface: only what is in front of it is lit. `cosine`: between its normal and the way to the receiver.
-// Lights lie a little above their surface, and receivers in its plane count as before it: rays tell those behind.
-HWY_INLINE Disc disc_of_light(D d, const FarLights& l, V square, V distance, V cosine) {
-    const V height = hn::Mul(distance, cosine);
-    Disc out = disc_at(d, l, hn::Max(height, hn::Zero(d)), hn::Max(hn::NegMulAdd(height, height, square), hn::Zero(d)));
-    out.cosine = hn::IfThenElseZero(hn::Gt(height, hn::Set(d, -0.08f * l.ball)), out.cosine);  // 0.05 voxels
-    return out;
-}
-
-// A voxel as surfaces see it: the part of it that is in front of them, from its middle. What a light of several voxels
-// stands for lies on the side on which its centre is.
-HWY_INLINE Disc voxel_from_surface(D d, const FarLights& l, V square, V distance, V cosine) {
-    const float width = 1.611992f * l.ball;  // (4 pi / 3)^(1/3)
-    const V height = hn::Mul(distance, cosine), half = hn::Set(d, 0.5f);
-    V in_front = hn::Clamp(hn::MulAdd(height, hn::Set(d, 1.0f / width), half), hn::Zero(d), hn::Set(d, 1.0f));
-    const V middle = hn::Max(height, hn::Mul(half, hn::Mul(in_front, hn::Set(d, width))));
-    if (!l.voxels)
-        in_front = hn::IfThenElseZero(hn::Gt(height, hn::Zero(d)), hn::Set(d, 1.0f));
-    Disc out = disc_at(d, l, middle, hn::Max(hn::NegMulAdd(height, height, square), hn::Zero(d)));
-    out.cosine = hn::Mul(in_front, out.cosine);
-    return out;
-}
-
 // Optical depth of a voxel ball's radius in the extinction at the receivers.
 V radius_depth(D d, const FarLights& l, const Receivers& r, std::size_t at) {
     const V p[3] = {hn::LoadU(d, &r.x[at]), hn::LoadU(d, &r.y[at]), hn::LoadU(d, &r.z[at])};
@@ -248,78 +87,133 @@ V radius_depth(D d, const FarLights& l, const Receivers& r, std::size_t at) {
     return hn::Mul(sample_extinction(d, *l.extinction, n[0], n[1], n[2]), hn::Set(d, l.ball));
 }
 
-// One light, one group of receivers. `beyond`: all of them are reached by its map's end.
-HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, bool beyond, const Receivers& r, std::size_t at,
-                            const FarOutput& out) {
-    const vec3 p = l.position[i];
-    const V to_light[3] = {hn::Sub(hn::Set(d, p.x), hn::LoadU(d, &r.x[at])),
-                           hn::Sub(hn::Set(d, p.y), hn::LoadU(d, &r.y[at])),
-                           hn::Sub(hn::Set(d, p.z), hn::LoadU(d, &r.z[at]))};
-    const V square = dot(to_light[0], to_light[1], to_light[2], to_light[0], to_light[1], to_light[2]);
-    const V safe = hn::Max(square, hn::Set(d, 1e-30f));
-    const V inverse = reciprocal_sqrt(d, safe);
-    const V distance = hn::Mul(safe, inverse);
-    const V b = level_blend(d, l.radius, !l.bottom, !l.top, distance);
-    if (hn::AllTrue(d, hn::Eq(b, hn::Zero(d))))
-        return;
-    const V minus = hn::Neg(inverse);
-    const V wx = hn::Mul(to_light[0], minus), wy = hn::Mul(to_light[1], minus), wz = hn::Mul(to_light[2], minus);
-    const CosineLobe lobe = l.lobes ? l.lobes[i] : CosineLobe{vec3(0.0f), 0.0f};
-    const V leaves = l.lobes ? dot(d, wx, wy, wz, lobe.normal) : hn::Zero(d);  // cosines
-    const V turns = out.scattered ? dot(wx, wy, wz, hn::LoadU(d, &r.out_x[at]), hn::LoadU(d, &r.out_y[at]),
-                                        hn::LoadU(d, &r.out_z[at]))
-                                  : hn::Zero(d);
-    const bool surface_receives = out.kind == ReceiverKind::Surface;
-    V w = hn::Mul(inverse, inverse);
-    V cosine_there = hn::Max(leaves, hn::Zero(d)), cosine_here = hn::Max(hn::Neg(turns), hn::Zero(d));
-    if (l.bottom && l.lobes) {
-        const Disc disc = disc_of_light(d, l, square, distance, leaves);
-        w = disc.inverse_square, cosine_there = disc.cosine;
-    } else if (l.bottom && surface_receives && !l.balls) {
-        const Disc disc = voxel_from_surface(d, l, square, distance, hn::Neg(turns));
-        w = disc.inverse_square, cosine_here = disc.cosine;
-    } else if (l.bottom) {
-        w = ball_kernel(d, l.balls ? l.balls[i].radius : l.ball, distance);
+// The way between one light and a group of receivers.
+struct Way {
+    V to_light[3];    // from the receivers [m]
+    V from_light[3];  // unit
+    V square, inverse, distance;
+};
+
+HWY_INLINE Way way_between(D d, const vec3& light, const Receivers& r, std::size_t at) {
+    Way way;
+    way.to_light[0] = hn::Sub(hn::Set(d, light.x), hn::LoadU(d, &r.x[at]));
+    way.to_light[1] = hn::Sub(hn::Set(d, light.y), hn::LoadU(d, &r.y[at]));
+    way.to_light[2] = hn::Sub(hn::Set(d, light.z), hn::LoadU(d, &r.z[at]));
+    const V* const t = way.to_light;
+    way.square = dot(t[0], t[1], t[2], t[0], t[1], t[2]);
+    const V safe = hn::Max(way.square, hn::Set(d, 1e-30f));
+    way.inverse = reciprocal_sqrt(d, safe);
+    way.distance = hn::Mul(safe, way.inverse);
+    const V minus = hn::Neg(way.inverse);
+    for (int a = 0; a < 3; ++a)
+        way.from_light[a] = hn::Mul(t[a], minus);
+    return way;
+}
+
+// Cosines at both ends of the way: `leaves`, of the light's normal, and `turns`, of the direction in which receivers
+// send light on, which for surfaces is their normal.
+struct Cosines {
+    V leaves, turns;
+};
+
+HWY_INLINE Cosines cosines_at_ends(D d, const FarLights& l, std::uint32_t i, const Way& way, const Receivers& r,
+                                   std::size_t at, const FarOutput& out) {
+    const V* const w = way.from_light;
+    return {l.lobes ? dot(d, w[0], w[1], w[2], l.lobes[i].normal) : hn::Zero(d),
+            out.scattered ? dot(w[0], w[1], w[2], hn::LoadU(d, &r.out_x[at]), hn::LoadU(d, &r.out_y[at]),
+                                hn::LoadU(d, &r.out_z[at]))
+                          : hn::Zero(d)};
+}
+
+// What arrives without smoke in between, of a light of intensity 1 [1/m^2], and the cosines of surfaces at both ends.
+struct Arriving {
+    V inverse_square, cosine_there, cosine_here;
+};
+
+HWY_INLINE Arriving arriving(D d, const FarLights& l, std::uint32_t i, const Way& way, const Cosines& ends,
+                             const Receivers& r, std::size_t at, ReceiverKind kind) {
+    Arriving out{hn::Mul(way.inverse, way.inverse), hn::Max(ends.leaves, hn::Zero(d)),
+                 hn::Max(hn::Neg(ends.turns), hn::Zero(d))};
+    if (!l.bottom)
+        return out;
+    if (l.lobes) {
+        const auto disc = disc_of_light(d, l, way.square, way.distance, ends.leaves);
+        out.inverse_square = disc.inverse_square, out.cosine_there = disc.cosine;
+    } else if (kind == ReceiverKind::Surface && !l.balls) {
+        const V width = width_of_voxel(d, l.edges, hn::LoadU(d, &r.out_x[at]), hn::LoadU(d, &r.out_y[at]),
+                                       hn::LoadU(d, &r.out_z[at]));
+        const auto disc = voxel_from_surface(d, l, way.square, way.distance, hn::Neg(ends.turns), width);
+        out.inverse_square = disc.inverse_square, out.cosine_here = disc.cosine;
+    } else {
+        out.inverse_square = ball_kernel(d, l.balls ? l.balls[i].radius : l.ball, way.distance);
     }
-    w = hn::Mul(w, b);
-    const V surface = hn::Min(hn::Set(d, l.balls ? l.balls[i].radius : 0.0f), distance);  // where shadows begin
+    return out;
+}
+
+// `w` times what the smoke lets through. `beyond`: all receivers are reached by the end of the light's map.
+HWY_INLINE V shaded(D d, const FarLights& l, std::uint32_t i, bool beyond, const Way& way, const Receivers& r,
+                    std::size_t at, V w) {
+    const V surface = hn::Min(hn::Set(d, l.balls ? l.balls[i].radius : 0.0f), way.distance);  // where shadows begin
+    const V* const from = way.from_light;
     if (beyond) {
-        w = hn::Mul(w, end_transmittance(d, l.layout, l.end(i), wx, wy, wz));
+        w = hn::Mul(w, end_transmittance(d, l.layout, l.end(i), from[0], from[1], from[2]));
     } else if (l.shadow == FarLights::Shadow::Maps) {
-        w = hn::Mul(w, map_transmittance(d, l.layout, l.map(i), wx, wy, wz, hn::Sub(distance, surface)));
+        w = hn::Mul(
+            w, map_transmittance(d, l.layout, l.map(i), from[0], from[1], from[2], hn::Sub(way.distance, surface)));
     } else if (l.shadow == FarLights::Shadow::Exact) {
-        V t = exact_transmittance(d, l, p, to_light, distance, surface);
+        V t = exact_transmittance(d, l, l.position[i], way.to_light, way.distance, surface);
         if (l.bottom && !l.balls)
-            t = ball_transmittance(d, l.ball, distance, t, radius_depth(d, l, r, at));
+            t = ball_transmittance(d, l.ball, way.distance, t, radius_depth(d, l, r, at));
         w = hn::Mul(w, t);
     }
     if (l.balls && l.shadow != FarLights::Shadow::None)
-        w = hn::Mul(w, hn::IfThenElse(hn::Lt(distance, hn::Set(d, l.balls[i].radius)), hn::Set(d, l.balls[i].inside),
-                                      hn::Set(d, l.balls[i].escape)));
+        w = hn::Mul(w, hn::IfThenElse(hn::Lt(way.distance, hn::Set(d, l.balls[i].radius)),
+                                      hn::Set(d, l.balls[i].inside), hn::Set(d, l.balls[i].escape)));
+    return w;
+}
+
+// Intensity of a light in one channel toward the receivers. `by_cosine`: of its normal, times what that counts for.
+HWY_INLINE V intensity_of(D d, const FarLights& l, std::uint32_t i, int channel, const BasisLanes<D>& basis,
+                          V by_cosine) {
+    const float share = l.lobes ? l.lobes[i].share : 0.0f;
+    V intensity = hn::Set(d, l.intensity[i][channel]);
+    if (l.directional && share < 1.0f)
+        for (int m = 0; m < kShMoments; ++m)
+            intensity = hn::MulAdd(hn::Set(d, l.directional[i * 24 + 3 * m + channel]), basis.y[m], intensity);
+    if (l.lobes)
+        intensity =
+            hn::MulAdd(by_cosine, hn::Set(d, l.intensity[i][channel]), hn::Mul(hn::Set(d, 1.0f - share), intensity));
+    return intensity;
+}
+
+// One light, one group of receivers.
+HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, bool beyond, const Receivers& r, std::size_t at,
+                            const FarOutput& out) {
+    const Way way = way_between(d, l.position[i], r, at);
+    const V b = level_blend(d, l.radius, !l.bottom, !l.top, way.distance);
+    if (hn::AllTrue(d, hn::Eq(b, hn::Zero(d))))
+        return;
+    const Cosines ends = cosines_at_ends(d, l, i, way, r, at, out);
+    const Arriving arrives = arriving(d, l, i, way, ends, r, at, out.kind);
+    const V w = shaded(d, l, i, beyond, way, r, at, hn::Mul(arrives.inverse_square, b));
 
     const bool moments = out.moments || (l.directional && !(l.lobes && l.lobes[i].share == 1.0f));
-    const auto basis = moments ? basis_lanes(d, wx, wy, wz) : BasisLanes<D>{};
+    const auto basis =
+        moments ? basis_lanes(d, way.from_light[0], way.from_light[1], way.from_light[2]) : BasisLanes<D>{};
     V phase = hn::Zero(d);
     if (out.scattered)
-        phase = surface_receives ? hn::Mul(cosine_here, hn::Set(d, 1.0f / kPi))
-                                 : henyey_greenstein_lanes(d, out.mean_cosine, turns);
+        phase = out.kind == ReceiverKind::Surface ? hn::Mul(arrives.cosine_here, hn::Set(d, 1.0f / kPi))
+                                                  : henyey_greenstein_lanes(d, out.mean_cosine, ends.turns);
     // Lambert's intensity is four times its mean along the normal.
-    const V by_cosine = hn::Mul(hn::Set(d, 4.0f * lobe.share), cosine_there);
+    const V by_cosine = hn::Mul(hn::Set(d, l.lobes ? 4.0f * l.lobes[i].share : 0.0f), arrives.cosine_there);
     for (int c = 0; c < 3; ++c) {
-        V intensity = hn::Set(d, l.intensity[i][c]);
-        if (l.directional && lobe.share < 1.0f)
-            for (int m = 0; m < kShMoments; ++m)
-                intensity = hn::MulAdd(hn::Set(d, l.directional[i * 24 + 3 * m + c]), basis.y[m], intensity);
-        if (l.lobes)
-            intensity =
-                hn::MulAdd(by_cosine, hn::Set(d, l.intensity[i][c]), hn::Mul(hn::Set(d, 1.0f - lobe.share), intensity));
-        const V arriving = hn::Mul(intensity, w);
-        accumulate(d, out.fluence + c * out.plane + at, arriving);
+        const V light = hn::Mul(intensity_of(d, l, i, c, basis, by_cosine), w);
+        accumulate(d, out.fluence + c * out.plane + at, light);
         if (out.scattered)
-            accumulate(d, out.scattered + c * out.plane + at, hn::Mul(arriving, phase));
+            accumulate(d, out.scattered + c * out.plane + at, hn::Mul(light, phase));
         if (out.moments)
             for (int m = 0; m < kShMoments; ++m)
-                accumulate(d, out.moments + (3 * m + c) * out.plane + at, hn::Mul(arriving, basis.y[m]));
+                accumulate(d, out.moments + (3 * m + c) * out.plane + at, hn::Mul(light, basis.y[m]));
     }
 }
 

@@ -39,6 +39,7 @@ struct FarLights {
     Box medium;
     const PackedExtinction* extinction;  // level 0, for exact shadows
     mat3 index_from_local;
+    mat3 edges;        // of a voxel of this level [m], for surfaces beside the bottom one
     float step_nodes;  // of exact shadows
 
     bool has_map(std::uint32_t light) const { return !map_of || map_of[light] != kNoMap; }

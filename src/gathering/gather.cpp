@@ -249,7 +249,7 @@ LevelCost gather_near_field(const LightField& field, const LatticeRequest& reque
     const NearField near(medium.local_from_index, field.alpha * medium.spacing,
                          field.settings.shadows != ShadowMethod::None);
     near.gather({&medium.lattice, &medium.extinction, field.intensity, field.directional, request.eye,
-                 medium.reference_node, request.mean_cosine, request.needed},
+                 medium.reference_node, request.mean_cosine, request.needed, field.occluders},
                 out);
     LevelCost bottom;
     bottom.lights =

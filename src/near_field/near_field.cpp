@@ -7,6 +7,7 @@
 #include "medium/lattice/brick_masks.h"
 #include "medium/phase.h"
 #include "medium/sh.h"
+#include "near_field/lines_of_sight.h"
 #include "near_field/near_kernels.h"
 #include "near_field/separation_depth.h"
 
@@ -174,10 +175,20 @@ void NearField::gather(const Input& in, Gathered& out) const {
         return std::span<const float>(reinterpret_cast<const float*>(v.data()), v.size() * 3);
     };
     const FlatStencil stencil = flatten(*this, wide);
+    std::optional<LinesOfSight> lines;
+    std::optional<LinesOfSight::Stencil> looks;
+    if (in.occluders) {
+        std::vector<ivec3> separations;
+        for (const Separation& s : stencil_)
+            separations.push_back(s.node);
+        lines.emplace(*in.occluders, local_from_index_, in.reference_node);
+        looks.emplace(separations, margin_);
+    }
     parallel_for(lattice.brick_count(), [&](std::size_t b) {
         if (in.needed && !any_in_brick(*in.needed, b))
             return;
         thread_local std::vector<float> extinction, intensity, directional;
+        thread_local std::vector<std::uint8_t> seen;
         std::vector<vec3> toward_camera;
         const ivec3 low = lattice.first_node(b) - margin_;
         intensity.resize(plane * 3);
@@ -202,6 +213,7 @@ void NearField::gather(const Input& in, Gathered& out) const {
             toward_camera.push_back(direction_toward(*in.eye, local_from_index_ * vec3(node)));
         }
         brick.toward_camera = in.eye ? toward_camera.data() : nullptr;
+        brick.seen = lines && lines->look(*looks, lattice.first_node(b), seen) ? seen.data() : nullptr;
         brick.mean_cosine = in.mean_cosine;
         brick.out_plane = nodes;
         brick.fluence = out.fluence.data() + b * BrickLattice::kNodes;

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "medium/lattice/brick_lattice.h"
+#include "medium/lattice/occluders.h"
 #include "receivers/receivers.h"
 
 namespace brisance {
@@ -38,6 +39,7 @@ public:
         ivec3 reference_node{0};                // at the origin of local space
         float mean_cosine = 0.0f;
         const std::vector<std::uint8_t>* needed = nullptr;  // per node; bricks without a needed node are skipped
+        const Occluders* occluders = nullptr;               // surfaces between nodes (lines_of_sight.h); null: none
     };
 
     // Adds to `out`, whose arrays are planar over the lattice's nodes.

@@ -33,13 +33,13 @@ HWY_INLINE bool row_is_dark(D d, const NearBrick& b, const float* light) {
     return hn::AllTrue(d, hn::Eq(sum, hn::Zero(d)));
 }
 
-// One separation's contribution to one row of receivers starting at box index `at`.
+// One separation's contribution to one row of receivers starting at box index `at`. `seen`: a bit for each.
 HWY_INLINE void add_separation(D d, const FlatStencil& stencil, const FlatSeparation& s, const NearBrick& b, int at,
-                               const V camera[3], Sums& sums) {
+                               std::uint8_t seen, const V camera[3], Sums& sums) {
     const float* light = b.intensity + at + s.offset;
-    if (row_is_dark(d, b, light))
+    if (seen == 0 || row_is_dark(d, b, light))
         return;
-    V w = hn::Set(d, s.kernel);
+    V w = hn::IfThenElseZero(hn::LoadMaskBits(d, &seen), hn::Set(d, s.kernel));
     if (s.first_tap != s.last_tap) {
         V depth = hn::Zero(d);
         for (int t = s.first_tap; t < s.last_tap; ++t)
@@ -157,8 +157,11 @@ void near_brick(const NearField& field, const FlatStencil& stencil, const NearBr
                 Sums sums;
                 for (int c = 0; c < 3; ++c)
                     sums.fluence[c] = sums.scattered[c] = hn::Zero(d);
-                for (const FlatSeparation& s : stencil.separations)
-                    add_separation(d, stencil, s, b, row + z, camera, sums);
+                for (std::size_t i = 0; i < stencil.separations.size(); ++i) {
+                    const auto bits = b.seen ? b.seen[std::size_t(x * 8 + y) * stencil.separations.size() + i] : 0xffu;
+                    add_separation(d, stencil, stencil.separations[i], b, row + z, std::uint8_t(bits >> z), camera,
+                                   sums);
+                }
                 for (int c = 0; c < 3; ++c) {
                     float* to = b.fluence + c * b.out_plane + node;
                     hn::StoreU(hn::Add(hn::LoadU(d, to), sums.fluence[c]), d, to);

@@ -1,6 +1,7 @@
 // The vector kernel of the near field processes rows of eight nodes for all separations.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "near_field/near_field.h"
@@ -34,6 +35,7 @@ struct NearBrick {
     const float* intensity;     // 3 planes
     const float* directional;   // 24 planes or null
     const vec3* toward_camera;  // of the brick's 512 nodes, or null
+    const std::uint8_t* seen;   // of each row and separation, the nodes that see so far (LinesOfSight); null: all
     float mean_cosine;
     std::size_t out_plane;
     float* fluence;

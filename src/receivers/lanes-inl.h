@@ -36,6 +36,11 @@ HWY_INLINE V dot(V ax, V ay, V az, V bx, V by, V bz) {
     return hn::MulAdd(ax, bx, hn::MulAdd(ay, by, hn::Mul(az, bz)));
 }
 
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V dot(D d, V x, V y, V z, const vec3& v) {
+    return dot(x, y, z, hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z));
+}
+
 // What a level of the hierarchy has of a light at this distance (gathering/gather.h): where it rises, over [radius / 2,
 // radius], and where it falls, over [radius, 2 radius].
 template <class D, class V = hn::Vec<D>>

@@ -71,20 +71,19 @@ float share_of_smoke_in_haze(const Medium& medium) {
 // Per node: how far it needs lights for receivers outside; empty: nowhere.
 std::vector<float> thinness(const Medium& medium, const PointDepths& depths, const std::vector<std::uint8_t>& needed,
                             const vec3& eye, float error, LitBy lit_by) {
-    std::vector<float> thin = unresolved_lights(medium);
+    UnresolvedLights lights = unresolved_lights(medium);
     for (std::size_t i = 0; i < needed.size(); ++i)
-        thin[i] *= float(needed[i] != 0);
-    float share = seen_share(medium, depths, thin, eye);
-    if (share > 0.0f && lit_by == LitBy::Skies)
-        share *= share_of_smoke_in_haze(medium);
-    // Without these lights, light from smoke is about half as bright in haze: the picture is wrong by half of its
-    // share.
-    const float counts = glm::smoothstep(error, 2.0f * error, share);
+        if (!needed[i])
+            lights.weight[i] = lights.lost[i] = 0.0f;
+    float lost = seen_share(medium, depths, lights.lost, eye);
+    if (lost > 0.0f && lit_by == LitBy::Skies)
+        lost *= share_of_smoke_in_haze(medium);
+    const float counts = glm::smoothstep(0.5f * error, error, lost);
     if (counts == 0.0f)
         return {};
-    for (float& t : thin)
-        t *= counts;
-    return thin;
+    for (float& weight : lights.weight)
+        weight *= counts;
+    return std::move(lights.weight);
 }
 
 bool glows(const Medium& medium, std::size_t node) {

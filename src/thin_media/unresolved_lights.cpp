@@ -15,6 +15,13 @@ namespace {
 constexpr float kResolved = 2.5f, kUnresolved = 7.5f;
 // Beyond this depth smoke is opaque, and no worse represented for being denser: it does not make its surroundings thin.
 constexpr float kOpaque = 100.0f;
+// Of the extinction that is seen, that nearby below which a node lies in haze, and above which it does not; and how
+// many times depth counts in haze.
+constexpr float kHaze = 0.05f, kNoHaze = 0.2f, kInHaze = 5.0f;
+// Nearby is a quarter of the distance, in levels, but no nearer than the finest.
+constexpr std::size_t kNearer = 2;
+// Optical depth at which what is seen sends 1 / e of its light by its own lights, as measured.
+constexpr float kLost = 5.0f;
 
 // Means of the extinction and of its square on ever coarser lattices. Nodes of the level kBrickLevel are the corners of
 // the medium's bricks.
@@ -66,14 +73,21 @@ std::array<float, 2> at_corner(const Means& level, int up, const ivec3& corner) 
     return sum;
 }
 
-// Optical depths of what is seen at the distance of a level, at the eight corners of a brick.
+// What is seen at the distance of a level, at the eight corners of a brick.
 using Corners = std::array<float, 8>;
+struct SeenAtCorners {
+    Corners depth{};       // optical
+    Corners extinction{};  // that light meets there, over the medium's largest
+};
 
-Corners seen_depths(const Means& level, int up, const ivec3& brick, float length) {
-    Corners out{};
+SeenAtCorners seen_at_corners(const Means& level, int up, const ivec3& brick, float length) {
+    SeenAtCorners out;
     for (int k = 0; k < 8; ++k) {
         const auto [mean, square] = at_corner(level, up, brick + ivec3(k >> 2, k >> 1 & 1, k & 1));
-        out[k] = mean > 0.0f ? length * std::cbrt(square * (square / mean)) : 0.0f;
+        if (!(mean > 0.0f))
+            continue;
+        out.depth[k] = length * std::cbrt(square * (square / mean));
+        out.extinction[k] = square / mean;
     }
     return out;
 }
@@ -87,35 +101,61 @@ float between(const Corners& corners, const vec3& part) {
     return sum;
 }
 
+// Extinctions that light meets nearby, and where it is seen.
+float times_in_haze(float near, float far) {
+    return glm::mix(kInHaze, 1.0f, glm::smoothstep(kHaze * far, kNoHaze * far, near));
+}
+
 }  // namespace
 
-std::vector<float> depth_of_seen_lights(const Medium& medium) {
+namespace {
+
+// Per node: D, and D as it counts.
+struct Depths {
+    std::vector<float> seen, counted;
+};
+
+Depths depths_of(const Medium& medium) {
     const std::vector<Means> levels = mean_levels(medium);
-    std::vector<float> depth(medium.extinction.size(), 0.0f);
+    Depths depths{std::vector<float>(medium.extinction.size()), std::vector<float>(medium.extinction.size())};
     parallel_for(
         medium.lattice.brick_count(),
         [&](std::size_t b) {
+            std::vector<SeenAtCorners> corners;
             for (std::size_t l = 0; l < levels.size(); ++l) {
                 const float distance = medium.spacing * float(1 << (kBrickLevel + int(l)));
-                const Corners corners =
-                    seen_depths(levels[l], int(l), medium.lattice.brick(b), distance * medium.max_extinction);
+                corners.push_back(
+                    seen_at_corners(levels[l], int(l), medium.lattice.brick(b), distance * medium.max_extinction));
                 for (int n = 0; n < BrickLattice::kNodes; ++n) {
                     const std::size_t i = b * BrickLattice::kNodes + n;
                     const vec3 part = vec3(BrickLattice::node_in_brick(n)) / float(BrickLattice::kSize);
-                    const float seen =
-                        std::min(between(corners, part), kOpaque) * std::exp(-medium.extinction[i] * distance);
-                    depth[i] = std::max(depth[i], seen);
+                    const float own = medium.extinction[i],
+                                seen = std::min(between(corners[l].depth, part), kOpaque) * std::exp(-own * distance);
+                    depths.seen[i] = std::max(depths.seen[i], seen);
+                    const std::size_t near = l > kNearer ? l - kNearer : 0;
+                    const float times =
+                        times_in_haze(between(corners[near].extinction, part), between(corners[l].extinction, part));
+                    depths.counted[i] = std::max(depths.counted[i], times * seen);
                 }
             }
         },
         8);
-    return depth;
+    return depths;
 }
 
-std::vector<float> unresolved_lights(const Medium& medium) {
-    std::vector<float> out = depth_of_seen_lights(medium);
-    for (float& d : out)
-        d = glm::smoothstep(kResolved, kUnresolved, d);
+}  // namespace
+
+std::vector<float> depth_of_seen_lights(const Medium& medium) {
+    return depths_of(medium).seen;
+}
+
+UnresolvedLights unresolved_lights(const Medium& medium) {
+    Depths depths = depths_of(medium);
+    UnresolvedLights out{std::move(depths.counted), std::move(depths.seen)};
+    for (std::size_t i = 0; i < out.weight.size(); ++i) {
+        out.weight[i] = glm::smoothstep(kResolved, kUnresolved, out.weight[i]);
+        out.lost[i] = out.weight[i] * (1.0f - std::exp(-out.lost[i] / kLost));
+    }
     return out;
 }
 

@@ -6,8 +6,8 @@
 
 #include "core/parallel.h"
 #include "diffusion/diffusion.h"
+#include "fixtures/plane_occluder.h"
 #include "fixtures/tracing_fixture.h"
-#include "fixtures/wall.h"
 #include "medium/sh.h"
 
 namespace brisance {
@@ -233,7 +233,7 @@ TEST(Diffusion, SaysWhenItHasNotConverged) {
 
 TEST(Diffusion, WallsStopLight) {
     Lit lit(make_medium(even_cube(1.0f, 0.9f, 0.0f, 16)));
-    const Wall wall(-0.4f);
+    const PlaneOccluder wall = plane_across(0, -0.4f);
     lit.pyramid.set_occluders(&wall);
     Diffusion diffusion(lit.pyramid, {});
     const Gathered light = diffusion.solve(point_light(lit), {});

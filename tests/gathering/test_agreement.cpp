@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "core/parallel.h"
-#include "fixtures/wall.h"
+#include "fixtures/plane_occluder.h"
 #include "gather_fixture.h"
 
 namespace brisance {
@@ -85,7 +85,7 @@ TEST(Agreement, FarLightBetweenNodesIsThatOfTheNodes) {
 TEST(Agreement, FarLightBetweenNodesStaysOnItsSideOfAWall) {
     Recipe r = large_fireball();
     r.flame = [all = r.flame](const ivec3& n) { return n.x < 0 ? all(n) : 0.0f; };
-    const Wall wall(0.03f);
+    const PlaneOccluder wall = plane_across(0, 0.03f);
     const Lit lit(make_medium(r));
     const BetweenNodes b = between_nodes(lit, &wall);
     const Difference all = difference(b.interpolated.fluence, b.at_every_node.fluence);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fixtures/wall.h"
+#include "fixtures/plane_occluder.h"
 #include "gather_fixture.h"
 #include "gathering/light_between.h"
 #include "gathering/near_depth.h"
@@ -116,7 +116,7 @@ TEST(LightBetween, StaysOnItsSideOfAWall) {
     Recipe r = lumpy_fire(3.0f);
     r.flame = [all = r.flame](const ivec3& n) { return n.x < 0 ? all(n) : 0.0f; };
     const Lit lit(make_medium(r));
-    const Wall wall(0.03f);
+    const PlaneOccluder wall = plane_across(0, 0.03f);
     const Gathered between = gathered(lit, 0.0f, &wall), own = gathered(lit, 1.0f, &wall);
     EXPECT_LT(std::abs(of_collisions(lit.medium, between.fluence, own.fluence).mean), 0.005);
     double beside = 0.0, beside_own = 0.0, square = 0.0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "fixtures/plane_occluder.h"
 #include "gather_fixture.h"
 
 namespace brisance {
@@ -105,6 +106,28 @@ TEST(UniformFire, SurfacesInItSeeThePartInFrontOfThem) {
     std::printf("means are off by %.4f at most, points by %.4f\n", worst_mean, worst);
     EXPECT_LT(worst_mean, 0.06);
     EXPECT_LT(worst, 0.08);
+}
+
+// In front of a plane, x mean free paths away, fluence is 4 pi (1 - E2(x) / 2): what is missing is what lies behind it.
+TEST(UniformFire, AWallHidesWhatIsBehindIt) {
+    for (const double tau : {1.0, 2.0}) {
+        const Lit lit = uniform_fire(tau, 12);
+        const float first = lit.medium.local_of_node(ivec3(0)).x, width = 0.1f;
+        const PlaneOccluder wall = plane_across(0, first - 0.5f * width);
+        LightField field = field_of(lit, lighting(ShadowMethod::Maps));
+        field.occluders = &wall;
+        const std::vector<std::uint8_t> needed(lit.medium.lattice.node_count(), 1);
+        std::vector<LevelCost> costs;
+        Progress silent;
+        const Gathered g = gather_at_nodes(field, {&needed, std::nullopt, false, 0.0f}, costs, silent);
+        for (const int x : {-3, -2, -1, 0, 1, 2}) {
+            const double depth = tau * (x < 0 ? -x - 0.5 : x + 0.5),
+                         e2 = std::exp(-depth) + depth * std::expint(-depth), truth = 1.0 - 0.5 * e2,
+                         found = at_node(lit, g, {x, 0, 0}) / (4.0 * kPiExact);
+            std::printf("optical thickness %.0f, %+d: %.3f, truth %.3f\n", tau, x, found, truth);
+            EXPECT_NEAR(found / truth, 1.0, 0.05) << "node " << x;
+        }
+    }
 }
 
 TEST(UniformFire, TheFaceSeesHalfOfIt) {

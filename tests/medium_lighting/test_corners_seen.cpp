@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "fixtures/media.h"
+#include "fixtures/plane_occluder.h"
 #include "medium_lighting/levels/coarse_lighting.h"
 
 namespace brisance {
@@ -22,26 +23,10 @@ Medium even_smoke() {
     return make_medium(r);
 }
 
-// A floor: nothing below a height is seen from above it, nor the other way round.
-class Floor : public Occluders {
-public:
-    explicit Floor(float height) : height_(height) {}
-    float first_hit(const vec3& from, const vec3& direction, float far) const override {
-        if (direction.z == 0.0f)
-            return far;
-        const float t = (height_ - from.z) / direction.z;
-        return t > 0.0f && t < far ? t : far;
-    }
-    bool any_within(const vec3& centre, float radius) const override { return std::abs(centre.z - height_) <= radius; }
-
-private:
-    float height_;
-};
-
 // Light above a floor is not dimmed by the dark below it, and none of it gets there.
 TEST(CornersSeen, KeepLightOnItsSideOfAFloor) {
     const Medium fine = even_smoke();
-    const Floor floor(fine.local_of_node({0, 0, 3}).z + 0.3f * fine.spacing);
+    const PlaneOccluder floor = plane_across(2, fine.local_of_node({0, 0, 3}).z + 0.3f * fine.spacing);
     for (const int level : {1, 2}) {
         const Medium coarse = medium_to_light(fine, level);
         std::vector<Rgb> light(coarse.lattice.node_count());
@@ -69,7 +54,8 @@ TEST(CornersSeen, KeepLightOnItsSideOfAFloor) {
 TEST(CornersSeen, CountWhatVoxelsPutBehindAFloor) {
     const Medium fine = even_smoke();
     const auto part = [&](float node, int level) {
-        return part_beyond_surfaces(fine, level, Floor(fine.local_of_node({0, 0, 0}).z + node * fine.spacing));
+        return part_beyond_surfaces(fine, level,
+                                    plane_across(2, fine.local_of_node({0, 0, 0}).z + node * fine.spacing));
     };
     EXPECT_NEAR(part(0.5f, 1), 0.5 / 32.0, 1e-3);
     EXPECT_NEAR(part(1.5f, 1), 0.5 / 32.0, 1e-3);

@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "fixtures/wall.h"
+#include "fixtures/plane_occluder.h"
 #include "gathering/gather_fixture.h"
 #include "gathering/node_receivers.h"
 #include "medium/coarse_medium.h"
@@ -170,7 +170,7 @@ TEST(FirstLevel, EverySecondNodeGetsWhatItGetsAmongAll) {
 // Light of the level must not pass a surface: whatever receives it without maps is too far from one.
 TEST(FirstLevel, NodesThatASurfaceMayShadeAreKnown) {
     const Lit lit(make_medium(skewed_fire()));
-    const Wall wall(0.1f);
+    const PlaneOccluder wall = plane_across(0, 0.1f);
     const std::vector<std::uint8_t> needed(lit.medium.lattice.node_count(), 1);
     const LatticeRequest request{&needed, std::nullopt, false, 0.0f};
     const NodeReceivers nodes = node_receivers(lit.medium, request);
@@ -180,7 +180,7 @@ TEST(FirstLevel, NodesThatASurfaceMayShadeAreKnown) {
     for (std::size_t i = 0; i < needed.size(); ++i) {
         ASSERT_EQ(parts.in_the_open.needed[i] + parts.beside.needed[i], 1);
         open += parts.in_the_open.needed[i];
-        const float distance = std::abs(lit.medium.local_of_node(node_at(lit.medium, i)).x - wall.wall);
+        const float distance = std::abs(wall.side(lit.medium.local_of_node(node_at(lit.medium, i))));
         ASSERT_TRUE(distance >= reach || parts.beside.needed[i]);
     }
     EXPECT_GT(open, needed.size() / 8);

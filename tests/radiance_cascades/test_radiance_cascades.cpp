@@ -9,7 +9,7 @@
 #include "core/parallel.h"
 #include "fixtures/estimate.h"
 #include "fixtures/media.h"
-#include "fixtures/wall.h"
+#include "fixtures/plane_occluder.h"
 #include "radiance_cascades/radiance_cascades.h"
 #include "scattering/balance.h"
 
@@ -245,7 +245,7 @@ TEST(RadianceCascades, WallsStopLight) {
     Lit lit(make_medium(glowing_ball(10, 1.0f)));
     const auto source = source_of(lit.medium, [](const ivec3& n) { return Rgb(ball(n, dvec3(6, 0, 0), 2.0)); });
     const Gathered open = by_cascades(lit, source);
-    const Wall wall(0.05f);
+    const PlaneOccluder wall = plane_across(0, 0.05f);
     lit.pyramid.set_occluders(&wall);
     RadianceCascades cascades(lit.pyramid, smoke_nodes(lit.medium), {});
     const Gathered closed = cascades.gather(source, 3);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <string>
 
 #include "fixtures/media.h"
 #include "fixtures/sets.h"
@@ -55,9 +56,9 @@ RenderedFrame picture(const Medium& medium, const Surroundings& set, RenderMetho
     return render_medium(shot, medium, silent, &set);
 }
 
-// MS, the mean over the lower right, behind the wall.
-double behind_wall(const Image& image) {
-    const Layer& layer = image.layer("MS");
+// A cell's mean over the lower right, behind the wall.
+double behind_wall(const Image& image, const std::string& cell) {
+    const Layer& layer = image.layer(cell);
     double sum = 0.0;
     for (int y = kHeight / 2; y < kHeight; ++y)
         for (int x = kWidth / 2; x < kWidth; ++x)
@@ -65,17 +66,23 @@ double behind_wall(const Image& image) {
     return sum / (kHeight / 2.0 * kWidth / 2.0);
 }
 
-TEST(ThinWalls, KeepLightOfSurfacesOnItsSide) {
+// By the grid, and by paths with the standard error of their two halves.
+void expect_right(const std::string& cell, const Image& grid, const RenderedFrame& paths, double tolerance) {
+    const double a = behind_wall(paths.halves[0], cell), b = behind_wall(paths.halves[1], cell), truth = 0.5 * (a + b);
+    const double ours = behind_wall(grid, cell), error = 0.5 * std::abs(a - b);
+    std::printf("%s behind the wall: %.4g, paths %.4g +- %.1f %% (%+.1f %%)\n", cell.c_str(), ours, truth,
+                100.0 * error / truth, 100.0 * (ours / truth - 1.0));
+    EXPECT_NEAR(ours, truth, tolerance * truth + 2.0 * error) << cell;
+    EXPECT_LT(error, 0.1 * truth) << cell << " is not sampled enough";
+}
+
+TEST(ThinWalls, KeepLightOnItsSide) {
     const Medium medium = burst_at_the_left();
     const Surroundings set = floor_and_wall();
     const RenderedFrame grid = picture(medium, set, RenderMethod::LightingGrid);
     const RenderedFrame paths = picture(medium, set, RenderMethod::Path);
-    const double a = behind_wall(paths.halves[0]), b = behind_wall(paths.halves[1]), truth = 0.5 * (a + b);
-    const double ours = behind_wall(grid.image), error = 0.5 * std::abs(a - b);
-    std::printf("MS behind the wall: %.4g, paths %.4g +- %.1f %% (%+.1f %%)\n", ours, truth, 100.0 * error / truth,
-                100.0 * (ours / truth - 1.0));
-    EXPECT_NEAR(ours, truth, 0.1 * truth + 2.0 * error);
-    EXPECT_LT(error, 0.1 * truth) << "not sampled enough";
+    for (const std::string cell : {"MS", "MM", "MV"})
+        expect_right(cell, grid.image, paths, 0.1);
 }
 
 }  // namespace

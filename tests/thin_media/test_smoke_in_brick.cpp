@@ -2,27 +2,13 @@
 #include <gtest/gtest.h>
 
 #include "fixtures/media.h"
+#include "fixtures/plane_occluder.h"
 #include "thin_media/smoke_in_brick.h"
 
 namespace brisance {
 namespace {
 
 using namespace testing;
-
-// An endless wall at right angles to an axis.
-class Wall : public Occluders {
-public:
-    Wall(int axis, float at) : axis_(axis), at_(at) {}
-    float first_hit(const vec3& from, const vec3& direction, float far) const override {
-        const float distance = (at_ - from[axis_]) / direction[axis_];
-        return distance >= 0.0f && distance < far ? distance : far;
-    }
-    bool any_within(const vec3& centre, float radius) const override { return std::abs(centre[axis_] - at_) < radius; }
-
-private:
-    int axis_;
-    float at_;
-};
 
 constexpr float kSpacing = 0.05f;
 
@@ -42,7 +28,7 @@ protected:
     // A wall `nodes` from the brick's first node.
     std::optional<BrickPart> with_wall(int axis, float nodes) const {
         const vec3 first = medium_.local_of_node(medium_.lattice.first_node(brick_));
-        return unparted_smoke(Wall(axis, first[axis] + nodes * kSpacing), medium_, brick_);
+        return unparted_smoke(plane_across(axis, first[axis] + nodes * kSpacing), medium_, brick_);
     }
     Medium medium_ = smoke();
     std::size_t brick_ = std::size_t(medium_.lattice.find_node(medium_.reference_node) / BrickLattice::kNodes);

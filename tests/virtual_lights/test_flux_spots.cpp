@@ -50,7 +50,7 @@ double mean_distance(const Room& room, const VirtualLights& lights, bool by_spot
             add(light.position, luminance(light.base_flux));
         else
             for (const FluxSpot& spot : lights.spots().of(i))
-                add(spot.position, luminance(spot.part * light.base_flux));
+                add(position_of(spot, light), luminance(spot.part * light.base_flux));
     }
     return sum / power;
 }
@@ -78,7 +78,7 @@ TEST(FluxSpots, AreAllOfTheirLight) {
         Rgb sum(0.0f);
         for (const FluxSpot& spot : lights.spots().of(i)) {
             sum += spot.part;
-            const dvec3 across = light.frame.local_from_world(spot.position - light.position);
+            const dvec3 across = light.frame.local_from_world(position_of(spot, light) - light.position);
             EXPECT_NEAR(across.z, 0.0, 1e-9) << "on its plane";
             EXPECT_LT(glm::length(across), 1.001 * std::sqrt(2.0) * light.radius);
         }

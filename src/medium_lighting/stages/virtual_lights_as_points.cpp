@@ -43,7 +43,8 @@ PointsOfSides points_of_virtual_lights(const VirtualLights& lights, float share,
         if (spots.empty())
             add_point(light.position + above * light.frame.normal, vec3(light.frame.normal), flux, out);
         for (const FluxSpot& spot : spots)
-            add_point(spot.position + above * light.frame.normal, vec3(light.frame.normal), spot.part * flux, out);
+            add_point(position_of(spot, light) + above * light.frame.normal, vec3(light.frame.normal), spot.part * flux,
+                      out);
     }
     return sides;
 }

@@ -41,16 +41,29 @@ void FluxSpots::add_light(std::span<const FluxSpot> spots) {
     first_.push_back(spots_.size());
 }
 
-SpotAccounts::SpotAccounts(std::span<const VirtualLight> lights, const Medium& medium, double power)
+dvec3 position_of(const FluxSpot& spot, const VirtualLight& light) {
+    const glm::dvec2 across = (2.0 * glm::dvec2(spot.place) - 1.0) * light.radius;
+    return light.position + light.frame.world_from_local(dvec3(across, 0.0));
+}
+
+SpotAccounts::SpotAccounts(std::span<const VirtualLight> lights, const Medium& medium, std::size_t most, double power)
     : lights_(lights), sums_(0, power) {
     const LocalBounds smoke = local_bounds(medium);
+    for (const VirtualLight& light : lights)
+        maps_.push_back({0, spots_aside(light, smoke, medium.spacing)});
+    while (place_records() > 2 * most)
+        for (Map& map : maps_)
+            map.aside = std::max(map.aside / 2, 1);
+    sums_ = FixedSums(place_records(), power);
+}
+
+std::size_t SpotAccounts::place_records() {
     std::size_t records = 0;
-    for (const VirtualLight& light : lights) {
-        const int aside = spots_aside(light, smoke, medium.spacing);
-        maps_.push_back({records, aside});
-        records += aside > 1 ? 2 * std::size_t(aside) * std::size_t(aside) : 0;
+    for (Map& map : maps_) {
+        map.first = records;
+        records += map.aside > 1 ? 2 * std::size_t(map.aside) * std::size_t(map.aside) : 0;
     }
-    sums_ = FixedSums(records, power);
+    return records;
 }
 
 void SpotAccounts::add(std::size_t light, const dvec3& position, const Rgb& power) {
@@ -65,7 +78,6 @@ void SpotAccounts::add(std::size_t light, const dvec3& position, const Rgb& powe
 }
 
 std::vector<FluxSpot> SpotAccounts::spots_of(std::size_t light, int aside) const {
-    const VirtualLight& l = lights_[light];
     const auto [first, all_aside] = maps_[light];
     if (aside == 1)
         return {};
@@ -89,9 +101,7 @@ std::vector<FluxSpot> SpotAccounts::spots_of(std::size_t light, int aside) const
         const double y = luminance(Rgb(sum.power));
         if (!(y > 0.0))
             continue;
-        const glm::dvec2 p = (2.0 * glm::clamp(glm::dvec2(sum.place) / y, 0.0, 1.0) - 1.0) * l.radius;
-        const dvec3 across = l.frame.world_from_local(dvec3(p, 0.0));
-        out.push_back({l.position + across, Rgb(sum.power / glm::max(whole, 1e-300))});
+        out.push_back({glm::clamp(glm::dvec2(sum.place) / y, 0.0, 1.0), Rgb(sum.power / glm::max(whole, 1e-300))});
     }
     return out;
 }

@@ -19,9 +19,11 @@ namespace brisance {
 // A part of a light. `part`: of the power that it receives, by channel; all parts of a light add up to 1, but for
 // channels without power.
 struct FluxSpot {
-    dvec3 position;  // local [m], in the light's plane
+    glm::vec2 place;  // in the square around the light, 0..1
     Rgb part;
 };
+// Local [m], in the light's plane.
+dvec3 position_of(const FluxSpot& spot, const VirtualLight& light);
 
 class FluxSpots {
 public:
@@ -43,8 +45,9 @@ private:
 // What photons bring to the spots of lights. Sums are integers, the same in any order.
 class SpotAccounts {
 public:
-    // Keeps a reference to the lights, whose spread and radius are known. `power`: of everything emitted [W].
-    SpotAccounts(std::span<const VirtualLight> lights, const Medium& medium, double power);
+    // Keeps a reference to the lights, whose spread and radius are known. `most`: spots in all, about. `power`: of
+    // everything emitted [W].
+    SpotAccounts(std::span<const VirtualLight> lights, const Medium& medium, std::size_t most, double power);
 
     // From any thread: what a photon at `position` brings to a light.
     void add(std::size_t light, const dvec3& position, const Rgb& power);
@@ -70,6 +73,7 @@ private:
         int aside;          // spots along a side, a power of two; 1: the light has none
     };
     std::vector<FluxSpot> spots_of(std::size_t light, int aside) const;
+    std::size_t place_records();  // one map's after the other; how many there are
 
     std::span<const VirtualLight> lights_;
     std::vector<Map> maps_;

@@ -108,11 +108,11 @@ void GatheredFlux::build(LightSet& set, const Placement&, const LightSources& so
     const BoundingBall ball = ball_around(set.scene());
     const double power = emitted_power(set.scene(), ball);
     LightAccounts accounts(set.lights, set.settings().profile_resolution, power);
-    std::optional<SpotAccounts> spots;
-    if (set.settings().light_smoke)
-        spots.emplace(set.lights, set.scene().field().medium(), power);
     const std::size_t photons =
         photons_needed(set.scene(), ball, set.partition, set.settings(), set.lights.size(), sources.camera.samples);
+    std::optional<SpotAccounts> spots;
+    if (set.settings().light_smoke)
+        spots.emplace(set.lights, set.scene().field().medium(), std::size_t(double(photons) / kPhotonsOfSpot), power);
     report.photons = trace_photons(set.scene(), ball, set.partition, photons, set.settings().seed, accounts,
                                    spots ? &*spots : nullptr);
     report.photon_bytes = accounts.bytes() + (spots ? spots->bytes() : 0);
