@@ -165,7 +165,7 @@ FarLights FarGather::far_lights(const GridLevel& level, bool top, const ShadowMa
     lights.medium = medium_;
     lights.extinction = &fine_;
     lights.index_from_local = field_.pyramid->medium().index_from_local;
-    lights.edges = float(1 << level.level) * glm::inverse(lights.index_from_local);
+    lights.edges = float(1 << level.level) * field_.pyramid->medium().local_from_index;
     lights.step_nodes = 0.5f;
     return lights;
 }

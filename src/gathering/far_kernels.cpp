@@ -131,7 +131,7 @@ struct Arriving {
 };
 
 HWY_INLINE Arriving arriving(D d, const FarLights& l, std::uint32_t i, const Way& way, const Cosines& ends,
-                             const Receivers& r, std::size_t at, ReceiverKind kind) {
+                             const Receivers& r, std::size_t at, bool surface_receives) {
     Arriving out{hn::Mul(way.inverse, way.inverse), hn::Max(ends.leaves, hn::Zero(d)),
                  hn::Max(hn::Neg(ends.turns), hn::Zero(d))};
     if (!l.bottom)
@@ -139,7 +139,7 @@ HWY_INLINE Arriving arriving(D d, const FarLights& l, std::uint32_t i, const Way
     if (l.lobes) {
         const auto disc = disc_of_light(d, l, way.square, way.distance, ends.leaves);
         out.inverse_square = disc.inverse_square, out.cosine_there = disc.cosine;
-    } else if (kind == ReceiverKind::Surface && !l.balls) {
+    } else if (surface_receives && !l.balls) {
         const V width = width_of_voxel(d, l.edges, hn::LoadU(d, &r.out_x[at]), hn::LoadU(d, &r.out_y[at]),
                                        hn::LoadU(d, &r.out_z[at]));
         const auto disc = voxel_from_surface(d, l, way.square, way.distance, hn::Neg(ends.turns), width);
@@ -194,7 +194,8 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, bool beyon
     if (hn::AllTrue(d, hn::Eq(b, hn::Zero(d))))
         return;
     const Cosines ends = cosines_at_ends(d, l, i, way, r, at, out);
-    const Arriving arrives = arriving(d, l, i, way, ends, r, at, out.kind);
+    const bool surface_receives = out.scattered && out.kind == ReceiverKind::Surface;
+    const Arriving arrives = arriving(d, l, i, way, ends, r, at, surface_receives);
     const V w = shaded(d, l, i, beyond, way, r, at, hn::Mul(arrives.inverse_square, b));
 
     const bool moments = out.moments || (l.directional && !(l.lobes && l.lobes[i].share == 1.0f));
@@ -202,8 +203,8 @@ HWY_INLINE void light_group(D d, const FarLights& l, std::uint32_t i, bool beyon
         moments ? basis_lanes(d, way.from_light[0], way.from_light[1], way.from_light[2]) : BasisLanes<D>{};
     V phase = hn::Zero(d);
     if (out.scattered)
-        phase = out.kind == ReceiverKind::Surface ? hn::Mul(arrives.cosine_here, hn::Set(d, 1.0f / kPi))
-                                                  : henyey_greenstein_lanes(d, out.mean_cosine, ends.turns);
+        phase = surface_receives ? hn::Mul(arrives.cosine_here, hn::Set(d, 1.0f / kPi))
+                                 : henyey_greenstein_lanes(d, out.mean_cosine, ends.turns);
     // Lambert's intensity is four times its mean along the normal.
     const V by_cosine = hn::Mul(hn::Set(d, l.lobes ? 4.0f * l.lobes[i].share : 0.0f), arrives.cosine_there);
     for (int c = 0; c < 3; ++c) {

@@ -246,10 +246,10 @@ namespace {
 LevelCost gather_near_field(const LightField& field, const LatticeRequest& request, Gathered& out) {
     const Medium& medium = field.pyramid->medium();
     const Stopwatch watch;
-    const NearField near(medium.local_from_index, field.alpha * medium.spacing,
-                         field.settings.shadows != ShadowMethod::None);
+    const bool shadows = field.settings.shadows != ShadowMethod::None;
+    const NearField near(medium.local_from_index, field.alpha * medium.spacing, shadows);
     near.gather({&medium.lattice, &medium.extinction, field.intensity, field.directional, request.eye,
-                 medium.reference_node, request.mean_cosine, request.needed, field.occluders},
+                 medium.reference_node, request.mean_cosine, request.needed, shadows ? field.occluders : nullptr},
                 out);
     LevelCost bottom;
     bottom.lights =

@@ -11,6 +11,8 @@
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
+#include <cmath>
+
 #include "gathering/far_kernels.h"
 #include "receivers/lanes-inl.h"
 
@@ -83,9 +85,8 @@ HWY_INLINE Disc<V> disc_of_light(D d, const FarLights& l, V square, V distance, 
     return out;
 }
 
-// A voxel as surfaces see it: the part of it that is in front of them, from its middle. Heights over a plane spread
-// within it as evenly over `width` as over its own width across the plane. What a light of several voxels stands for
-// lies on the side on which its centre is.
+// A voxel as surfaces see it: the part of it that is in front of them, from its middle. `width`: width_of_voxel(). What
+// a light of several voxels stands for lies on the side on which its centre is.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Disc<V> voxel_from_surface(D d, const FarLights& l, V square, V distance, V cosine, V width) {
     const V height = hn::Mul(distance, cosine), half = hn::Set(d, 0.5f);
@@ -98,8 +99,8 @@ HWY_INLINE Disc<V> voxel_from_surface(D d, const FarLights& l, V square, V dista
     return out;
 }
 
-// Width across planes with unit normals n of an even layer as spread out as a voxel: the root of the sum of squares of
-// the edges' parts along n. Of a cube it is the edge, however n lies.
+// Thickness of a uniform layer whose heights over planes of unit normal n vary as much as those within a voxel: the
+// root of the sum of squares of the edges' parts along n. Of a cube it is the edge, however n lies.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V width_of_voxel(D d, const mat3& edges, V nx, V ny, V nz) {
     V sum = hn::Set(d, 1e-30f);

@@ -166,6 +166,18 @@ NearField::SelfKernels NearField::self_kernels(float s) const {
     return {between(&SelfKernels::light) / (h * h * one), between(&SelfKernels::flux) / (h * one * one)};
 }
 
+struct NearField::Sight {
+    LinesOfSight lines;
+    LinesOfSight::Stencil stencil;
+};
+
+NearField::Sight NearField::sight_past(const Input& in) const {
+    std::vector<ivec3> separations;
+    for (const Separation& s : stencil_)
+        separations.push_back(s.node);
+    return {LinesOfSight(*in.occluders, local_from_index_, in.reference_node), LinesOfSight::Stencil(separations)};
+}
+
 void NearField::gather(const Input& in, Gathered& out) const {
     const BrickLattice& lattice = *in.lattice;
     const int wide = BrickLattice::kSize + 2 * margin_;
@@ -175,15 +187,7 @@ void NearField::gather(const Input& in, Gathered& out) const {
         return std::span<const float>(reinterpret_cast<const float*>(v.data()), v.size() * 3);
     };
     const FlatStencil stencil = flatten(*this, wide);
-    std::optional<LinesOfSight> lines;
-    std::optional<LinesOfSight::Stencil> looks;
-    if (in.occluders) {
-        std::vector<ivec3> separations;
-        for (const Separation& s : stencil_)
-            separations.push_back(s.node);
-        lines.emplace(*in.occluders, local_from_index_, in.reference_node);
-        looks.emplace(separations, margin_);
-    }
+    const std::optional<Sight> sight = in.occluders ? std::optional<Sight>(sight_past(in)) : std::nullopt;
     parallel_for(lattice.brick_count(), [&](std::size_t b) {
         if (in.needed && !any_in_brick(*in.needed, b))
             return;
@@ -213,7 +217,8 @@ void NearField::gather(const Input& in, Gathered& out) const {
             toward_camera.push_back(direction_toward(*in.eye, local_from_index_ * vec3(node)));
         }
         brick.toward_camera = in.eye ? toward_camera.data() : nullptr;
-        brick.seen = lines && lines->look(*looks, lattice.first_node(b), seen) ? seen.data() : nullptr;
+        const bool parted = sight && sight->lines.look(sight->stencil, lattice.first_node(b), seen);
+        brick.seen = parted ? seen.data() : nullptr;
         brick.mean_cosine = in.mean_cosine;
         brick.out_plane = nodes;
         brick.fluence = out.fluence.data() + b * BrickLattice::kNodes;

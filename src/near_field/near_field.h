@@ -12,6 +12,8 @@
 //    the node arrives with a flux of its own, -kappa_1 grad I, for which the sum leaves out
 //      kappa_1(s) = (1/3V) integral exp(-s r) / r dV - (1/3) sum over o != 0 of exp(-s |o|) / |o|;
 //    This flux matters for phase functions that are not isotropic.
+//  - Surfaces may come between nodes (lines_of_sight.h). Light then changes across a node by what the nodes beside it
+//    have that it sees.
 #pragma once
 
 #include <cstdint>
@@ -69,6 +71,8 @@ public:
     bool shadows() const { return shadows_; }
 
 private:
+    struct Sight;
+    Sight sight_past(const Input& input) const;
     void tabulate_self_kernel();
 
     mat3 local_from_index_, index_from_local_;

@@ -33,13 +33,19 @@ HWY_INLINE bool row_is_dark(D d, const NearBrick& b, const float* light) {
     return hn::AllTrue(d, hn::Eq(sum, hn::Zero(d)));
 }
 
+constexpr std::uint8_t kAllOfRow = 0xff;
+
 // One separation's contribution to one row of receivers starting at box index `at`. `seen`: a bit for each.
 HWY_INLINE void add_separation(D d, const FlatStencil& stencil, const FlatSeparation& s, const NearBrick& b, int at,
                                std::uint8_t seen, const V camera[3], Sums& sums) {
     const float* light = b.intensity + at + s.offset;
     if (seen == 0 || row_is_dark(d, b, light))
         return;
-    V w = hn::IfThenElseZero(hn::LoadMaskBits(d, &seen), hn::Set(d, s.kernel));
+    V w = hn::Set(d, s.kernel);
+    if (seen != kAllOfRow) {
+        alignas(8) const std::uint8_t bits[8] = {seen};  // as many as may be read
+        w = hn::IfThenElseZero(hn::LoadMaskBits(d, bits), w);
+    }
     if (s.first_tap != s.last_tap) {
         V depth = hn::Zero(d);
         for (int t = s.first_tap; t < s.last_tap; ++t)
@@ -81,10 +87,36 @@ float extinction_around(const NearBrick& b, int at) {
     return sigma;
 }
 
-// Derivative of a plane of the brick's box at a node, by central differences [1/m].
-vec3 gradient(const NearField& field, const NearBrick& b, const float* plane, int at) {
-    const auto half = [&](int stride) { return 0.5f * (plane[at + stride] - plane[at - stride]); };
-    return vec3(half(b.wide * b.wide), half(b.wide), half(1)) * field.index_from_local();
+// Whether a node sees those beside it, in the order of FlatStencil::beside.
+using SeenBeside = std::array<bool, 6>;
+
+SeenBeside seen_beside(const FlatStencil& stencil, const NearBrick& b, int node) {
+    SeenBeside out;
+    out.fill(true);
+    for (std::size_t k = 0; b.seen && k < out.size(); ++k)
+        if (stencil.beside[k] >= 0) {
+            const std::size_t row = std::size_t(node / 8) * stencil.separations.size();
+            out[k] = (b.seen[row + std::size_t(stencil.beside[k])] >> (node % 8) & 1) != 0;
+        }
+    return out;
+}
+
+// A node, by its index in the brick's box and what it sees beside it.
+struct SelfNode {
+    int at;
+    SeenBeside sees;
+};
+
+// Derivative of a plane of the brick's box at a node, by differences of the nodes beside it that it sees [1/m].
+vec3 gradient(const NearField& field, const NearBrick& b, const float* plane, const SelfNode& n) {
+    const int stride[3] = {b.wide * b.wide, b.wide, 1};
+    vec3 change;
+    for (int a = 0; a < 3; ++a) {
+        const bool down = n.sees[std::size_t(2 * a)], up = n.sees[std::size_t(2 * a + 1)];
+        const float difference = plane[n.at + (up ? stride[a] : 0)] - plane[n.at - (down ? stride[a] : 0)];
+        change[a] = up && down ? 0.5f * difference : difference;
+    }
+    return change * field.index_from_local();
 }
 
 // Indices of x, y and z in sh_basis.
@@ -98,11 +130,13 @@ struct SelfLight {
     float degree2[kShMoments - 3];
 };
 
-SelfLight self_light(const NearField& field, const NearField::SelfKernels& kernels, const NearBrick& b, int at, int c) {
+SelfLight self_light(const NearField& field, const NearField::SelfKernels& kernels, const NearBrick& b,
+                     const SelfNode& n, int c) {
+    const int at = n.at;
     SelfLight self{b.intensity[c * b.plane + at] * kernels.light, vec3(0.0f), {}};
     if (!b.scattered && !b.moments)
         return self;
-    self.flux = -kernels.flux * gradient(field, b, b.intensity + c * b.plane, at);
+    self.flux = -kernels.flux * gradient(field, b, b.intensity + c * b.plane, n);
     // The flux cannot exceed the fluence. At the edge of a fire a difference of nodes is no derivative.
     self.flux *= std::min(1.0f, self.fluence / std::max(glm::length(self.flux), 1e-37f));
     if (!b.directional)
@@ -111,18 +145,19 @@ SelfLight self_light(const NearField& field, const NearField::SelfKernels& kerne
         // The mean of cos^2 over the sphere is a third.
         const float* slope = b.directional + (3 * kAxisMoment[a] + c) * b.plane;
         self.flux[a] += kernels.light * kSh1 / 3.0f * slope[at];
-        self.fluence -= kernels.flux * kSh1 * gradient(field, b, slope, at)[a];
+        self.fluence -= kernels.flux * kSh1 * gradient(field, b, slope, n)[a];
     }
     for (int m = 3; m < kShMoments; ++m)
         self.degree2[m - 3] = kernels.light / (4.0f * kPi) * b.directional[(3 * m + c) * b.plane + at];
     return self;
 }
 
-void add_self(const NearField& field, const NearBrick& b, int at, int node) {
+void add_self(const NearField& field, const FlatStencil& stencil, const NearBrick& b, int at, int node) {
     const NearField::SelfKernels kernels = field.self_kernels(extinction_around(b, at));
+    const SelfNode n{at, seen_beside(stencil, b, node)};
     const float g = b.mean_cosine;
     for (int c = 0; c < 3; ++c) {
-        const SelfLight self = self_light(field, kernels, b, at, c);
+        const SelfLight self = self_light(field, kernels, b, n, c);
         b.fluence[c * b.out_plane + node] += self.fluence;
         if (b.scattered) {
             const vec3& out = b.toward_camera[node];
@@ -157,10 +192,11 @@ void near_brick(const NearField& field, const FlatStencil& stencil, const NearBr
                 Sums sums;
                 for (int c = 0; c < 3; ++c)
                     sums.fluence[c] = sums.scattered[c] = hn::Zero(d);
+                const std::size_t first = std::size_t(x * 8 + y) * stencil.separations.size();
                 for (std::size_t i = 0; i < stencil.separations.size(); ++i) {
-                    const auto bits = b.seen ? b.seen[std::size_t(x * 8 + y) * stencil.separations.size() + i] : 0xffu;
-                    add_separation(d, stencil, stencil.separations[i], b, row + z, std::uint8_t(bits >> z), camera,
-                                   sums);
+                    const std::uint8_t seen =
+                        b.seen && b.seen[first + i] != kAllOfRow ? std::uint8_t(b.seen[first + i] >> z) : kAllOfRow;
+                    add_separation(d, stencil, stencil.separations[i], b, row + z, seen, camera, sums);
                 }
                 for (int c = 0; c < 3; ++c) {
                     float* to = b.fluence + c * b.out_plane + node;
@@ -176,7 +212,7 @@ void near_brick(const NearField& field, const FlatStencil& stencil, const NearBr
                 }
             }
             for (int z = 0; z < 8; ++z)
-                add_self(field, b, row + z, x * 64 + y * 8 + z);
+                add_self(field, stencil, b, row + z, x * 64 + y * 8 + z);
         }
 }
 
@@ -201,6 +237,14 @@ FlatStencil flatten(const NearField& field, int wide) {
         f.last_tap = static_cast<int>(stencil.taps.size());
         stencil.separations.push_back(f);
     }
+    stencil.beside.fill(-1);
+    for (std::size_t i = 0; i < field.stencil().size(); ++i)
+        for (int k = 0; k < 6; ++k) {
+            ivec3 step(0);
+            step[k / 2] = k % 2 == 0 ? -1 : 1;
+            if (field.stencil()[i].node == step)
+                stencil.beside[std::size_t(k)] = int(i);
+        }
     return stencil;
 }
 

@@ -1,6 +1,7 @@
 // The vector kernel of the near field processes rows of eight nodes for all separations.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct FlatTap {
 struct FlatStencil {
     std::vector<FlatSeparation> separations;
     std::vector<FlatTap> taps;
+    std::array<int, 6> beside;  // the separations one node down and up each axis; -1: it has none
 };
 
 // One brick and `margin` nodes all round, planar, z fastest.
@@ -35,7 +37,9 @@ struct NearBrick {
     const float* intensity;     // 3 planes
     const float* directional;   // 24 planes or null
     const vec3* toward_camera;  // of the brick's 512 nodes, or null
-    const std::uint8_t* seen;   // of each row and separation, the nodes that see so far (LinesOfSight); null: all
+    // Of each row and separation a byte: bit k tells whether the row's node k sees the node at that separation
+    // (LinesOfSight). Null: all do.
+    const std::uint8_t* seen;
     float mean_cosine;
     std::size_t out_plane;
     float* fluence;

@@ -18,9 +18,7 @@ constexpr float kOpaque = 100.0f;
 // Of the extinction that is seen, that nearby below which a node lies in haze, and above which it does not; and how
 // many times depth counts in haze.
 constexpr float kHaze = 0.05f, kNoHaze = 0.2f, kInHaze = 5.0f;
-// Nearby is a quarter of the distance, in levels, but no nearer than the finest.
-constexpr std::size_t kNearer = 2;
-// Optical depth at which what is seen sends 1 / e of its light by its own lights, as measured.
+// Optical depth of what is seen at which the smoke's own lights bring 1 / e of its light, as measured.
 constexpr float kLost = 5.0f;
 
 // Means of the extinction and of its square on ever coarser lattices. Nodes of the level kBrickLevel are the corners of
@@ -37,8 +35,14 @@ Means coarser(const Means& fine) {
     return coarse;
 }
 
-// The levels from kBrickLevel on.
-std::vector<Means> mean_levels(const Medium& medium) {
+// `fine`: the levels below kBrickLevel that tell of what is nearby; `coarse`: those from there on.
+constexpr int kNearer = 2;  // nearby is a quarter of the distance, in levels
+struct Levels {
+    std::array<Means, kNearer> fine;
+    std::vector<Means> coarse;
+};
+
+Levels mean_levels(const Medium& medium) {
     Means means{medium.lattice, std::vector<float>(2 * medium.extinction.size())};
     // Relative to the largest, so that no square overflows.
     const float scale = medium.max_extinction > 0.0f ? 1.0f / medium.max_extinction : 0.0f;
@@ -47,14 +51,15 @@ std::vector<Means> mean_levels(const Medium& medium) {
         means.values[2 * i] = e;
         means.values[2 * i + 1] = e * e;
     }
-    for (int l = 0; l < kBrickLevel; ++l)
-        means = coarser(means);
+    Levels levels;
+    static_assert(kBrickLevel == kNearer + 1);
+    levels.fine[0] = coarser(means);
+    levels.fine[1] = coarser(levels.fine[0]);
+    levels.coarse.push_back(coarser(levels.fine[1]));
     const ivec3 extent = medium.lattice.brick_extent();
     const int bricks = std::max({extent.x, extent.y, extent.z});
-    std::vector<Means> levels;
-    levels.push_back(std::move(means));
     for (int wide = 1; wide < bricks; wide *= 2)
-        levels.push_back(coarser(levels.back()));
+        levels.coarse.push_back(coarser(levels.coarse.back()));
     return levels;
 }
 
@@ -106,56 +111,86 @@ float times_in_haze(float near, float far) {
     return glm::mix(kInHaze, 1.0f, glm::smoothstep(kHaze * far, kNoHaze * far, near));
 }
 
-}  // namespace
+using OfBrick = std::array<float, BrickLattice::kNodes>;
 
-namespace {
+// The extinction that light meets around the nodes of a brick, by a level `down` below it.
+void interpolate(const Means& level, int down, const ivec3& brick, OfBrick& out) {
+    const int step = BrickLattice::kSize >> down, side = (1 << down) + 1;
+    std::vector<float> box(std::size_t(2 * side * side * side));
+    copy_box(level.lattice, level.values, 2, brick * (1 << down), ivec3(side), box);
+    const std::size_t plane = box.size() / 2;
+    for (std::size_t i = 0; i < plane; ++i)
+        box[i] = box[i] > 0.0f ? box[plane + i] / box[i] : 0.0f;
+    for (int n = 0; n < BrickLattice::kNodes; ++n) {
+        const ivec3 node = BrickLattice::node_in_brick(n), low = node / step;
+        const vec3 part = vec3(node - low * step) / float(step);
+        float sum = 0.0f;
+        for (int k = 0; k < 8; ++k) {
+            const ivec3 d(k >> 2, k >> 1 & 1, k & 1), p = low + d;
+            const vec3 w = glm::mix(1.0f - part, part, vec3(d));
+            sum += w.x * w.y * w.z * box[std::size_t((p.x * side + p.y) * side + p.z)];
+        }
+        out[std::size_t(n)] = sum;
+    }
+}
 
-// Per node: D, and D as it counts.
-struct Depths {
-    std::vector<float> seen, counted;
-};
+vec3 place_in_brick(int node) {
+    return vec3(BrickLattice::node_in_brick(node)) / float(BrickLattice::kSize);
+}
 
-Depths depths_of(const Medium& medium) {
-    const std::vector<Means> levels = mean_levels(medium);
-    Depths depths{std::vector<float>(medium.extinction.size()), std::vector<float>(medium.extinction.size())};
-    parallel_for(
-        medium.lattice.brick_count(),
-        [&](std::size_t b) {
-            std::vector<SeenAtCorners> corners;
-            for (std::size_t l = 0; l < levels.size(); ++l) {
-                const float distance = medium.spacing * float(1 << (kBrickLevel + int(l)));
-                corners.push_back(
-                    seen_at_corners(levels[l], int(l), medium.lattice.brick(b), distance * medium.max_extinction));
-                for (int n = 0; n < BrickLattice::kNodes; ++n) {
-                    const std::size_t i = b * BrickLattice::kNodes + n;
-                    const vec3 part = vec3(BrickLattice::node_in_brick(n)) / float(BrickLattice::kSize);
-                    const float own = medium.extinction[i],
-                                seen = std::min(between(corners[l].depth, part), kOpaque) * std::exp(-own * distance);
-                    depths.seen[i] = std::max(depths.seen[i], seen);
-                    const std::size_t near = l > kNearer ? l - kNearer : 0;
-                    const float times =
-                        times_in_haze(between(corners[near].extinction, part), between(corners[l].extinction, part));
-                    depths.counted[i] = std::max(depths.counted[i], times * seen);
-                }
-            }
-        },
-        8);
-    return depths;
+// What the nodes of a brick see at each distance. `f`: called with a node, the depth, and how many times that counts.
+template <class F>
+void see_from_brick(const Medium& medium, const Levels& levels, std::size_t b, const F& f) {
+    const ivec3 brick = medium.lattice.brick(b);
+    std::vector<SeenAtCorners> corners(levels.coarse.size());
+    OfBrick near;
+    for (std::size_t l = 0; l < corners.size(); ++l) {
+        const float distance = medium.spacing * float(1 << (kBrickLevel + int(l)));
+        corners[l] = seen_at_corners(levels.coarse[l], int(l), brick, distance * medium.max_extinction);
+        if (!(std::ranges::max(corners[l].depth) > 0.0f))
+            continue;
+        if (l < kNearer)
+            interpolate(levels.fine[l], kNearer - int(l), brick, near);
+        for (int n = 0; n < BrickLattice::kNodes; ++n) {
+            const std::size_t i = b * BrickLattice::kNodes + std::size_t(n);
+            const vec3 place = place_in_brick(n);
+            const float nearby = l < kNearer ? near[std::size_t(n)] : between(corners[l - kNearer].extinction, place);
+            const float through = std::exp(-medium.extinction[i] * distance);
+            const float seen = std::min(between(corners[l].depth, place), kOpaque) * through;
+            if (seen > 0.0f)
+                f(i, seen, times_in_haze(nearby, between(corners[l].extinction, place)));
+        }
+    }
 }
 
 }  // namespace
 
 std::vector<float> depth_of_seen_lights(const Medium& medium) {
-    return depths_of(medium).seen;
+    const Levels levels = mean_levels(medium);
+    std::vector<float> depth(medium.extinction.size(), 0.0f);
+    parallel_for(
+        medium.lattice.brick_count(),
+        [&](std::size_t b) {
+            see_from_brick(medium, levels, b,
+                           [&](std::size_t i, float seen, float) { depth[i] = std::max(depth[i], seen); });
+        },
+        8);
+    return depth;
 }
 
 UnresolvedLights unresolved_lights(const Medium& medium) {
-    Depths depths = depths_of(medium);
-    UnresolvedLights out{std::move(depths.counted), std::move(depths.seen)};
-    for (std::size_t i = 0; i < out.weight.size(); ++i) {
-        out.weight[i] = glm::smoothstep(kResolved, kUnresolved, out.weight[i]);
-        out.lost[i] = out.weight[i] * (1.0f - std::exp(-out.lost[i] / kLost));
-    }
+    const Levels levels = mean_levels(medium);
+    UnresolvedLights out{std::vector<float>(medium.extinction.size()), std::vector<float>(medium.extinction.size())};
+    parallel_for(
+        medium.lattice.brick_count(),
+        [&](std::size_t b) {
+            see_from_brick(medium, levels, b, [&](std::size_t i, float seen, float times) {
+                const float weight = glm::smoothstep(kResolved, kUnresolved, times * seen);
+                out.weight[i] = std::max(out.weight[i], weight);
+                out.lost[i] = std::max(out.lost[i], weight * (1.0f - std::exp(-seen / kLost)));
+            });
+        },
+        8);
     return out;
 }
 

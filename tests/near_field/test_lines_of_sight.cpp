@@ -1,6 +1,9 @@
 // Nodes of a lattice that see each other past surfaces.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <map>
 #include <random>
 
 #include "fixtures/plane_occluder.h"
@@ -28,7 +31,7 @@ constexpr int kReach = 4;
 template <class F>
 void for_each_line(const Occluders& occluders, const mat3& lattice, const ivec3& first, const F& f) {
     const std::vector<ivec3> separations = separations_within(kReach);
-    const LinesOfSight::Stencil stencil(separations, kReach);
+    const LinesOfSight::Stencil stencil(separations);
     std::vector<std::uint8_t> seen;
     const bool cut = LinesOfSight(occluders, lattice, ivec3(3)).look(stencil, first, seen);
     for (int row = 0; row < 64; ++row)
@@ -82,13 +85,40 @@ TEST(LinesOfSight, LeadAroundTheRimsOfWalls) {
     EXPECT_LT(around, over);
 }
 
+// From whichever brick a pair of nodes is seen, and from whichever end.
+TEST(LinesOfSight, AreTheSameFromBothEnds) {
+    const PlaneOccluder wall({0.8f, 0.5f, 0.3f}, 3.7f, 1.2f);
+    const std::vector<ivec3> separations = separations_within(kReach);
+    const LinesOfSight::Stencil stencil(separations);
+    std::map<std::array<int, 6>, bool> sees;
+    for (const ivec3& first : {ivec3(0), ivec3(8, 0, 0), ivec3(0, 8, 0), ivec3(3, 5, -2)})
+        for_each_line(wall, mat3(1.0f), first, [&](const ivec3& a, const ivec3& o, bool is) {
+            const ivec3 b = a + o;
+            for (const auto& key : {std::array{a.x, a.y, a.z, b.x, b.y, b.z}, std::array{b.x, b.y, b.z, a.x, a.y, a.z}})
+                ASSERT_EQ(sees.try_emplace(key, is).first->second, is);
+        });
+    EXPECT_GT(std::ranges::count_if(sees, [](const auto& s) { return !s.second; }), 1000);
+}
+
 TEST(LinesOfSight, CostNothingInTheOpen) {
     const std::vector<ivec3> separations = separations_within(kReach);
-    const LinesOfSight::Stencil stencil(separations, kReach);
+    const LinesOfSight::Stencil stencil(separations);
     const mat3 lattice(1.0f);
+    struct Counted : PlaneOccluder {
+        using PlaneOccluder::PlaneOccluder;
+        float first_hit(const vec3& from, const vec3& direction, float far) const override {
+            ++lines;
+            return PlaneOccluder::first_hit(from, direction, far);
+        }
+        mutable int lines = 0;
+    };
     std::vector<std::uint8_t> seen;
-    EXPECT_FALSE(LinesOfSight(PlaneOccluder({0, 0, 1}, 40.0f), lattice, ivec3(0)).look(stencil, ivec3(0), seen));
+    const Counted far({0, 0, 1}, 40.0f), near({0, 0, 1}, 3.5f);
+    EXPECT_FALSE(LinesOfSight(far, lattice, ivec3(0)).look(stencil, ivec3(0), seen));
     EXPECT_TRUE(seen.empty());
+    EXPECT_EQ(far.lines, 0);
+    EXPECT_TRUE(LinesOfSight(near, lattice, ivec3(0)).look(stencil, ivec3(0), seen));
+    EXPECT_LT(near.lines, 16 * 16 * 16 * 3 / 2) << "edges far from the plane";
 }
 
 }  // namespace

@@ -1,6 +1,9 @@
 // The lattice's own near field: lines through voxels, and the light of a node on itself.
 #include <gtest/gtest.h>
 
+#include <random>
+
+#include "fixtures/plane_occluder.h"
 #include "gathering/gather_fixture.h"
 #include "near_field/near_field.h"
 
@@ -113,6 +116,79 @@ TEST(NearField, TheStencilReachesAsFarAsTheBlendAndNoFarther) {
             EXPECT_TRUE(s.taps.empty());
         }
     }
+}
+
+// A lattice of 24 nodes along each axis that shines on one side of a plane.
+struct LitOnOneSide {
+    LitOnOneSide(const mat3& linear, const PlaneOccluder& plane, bool directional) {
+        Recipe r;
+        r.box = cube(-12, 11);
+        r.world_from_index = dmat4(dmat3(linear));
+        r.density = [](const ivec3&) { return 1.0f; };
+        medium = make_medium(r);
+        std::mt19937 random(5);
+        std::uniform_real_distribution<float> number(0.5f, 1.5f);
+        intensity.resize(medium.lattice.node_count(), Rgb(0.0f));
+        light.resize(directional ? 24 * intensity.size() : 0, 0.0f);
+        for (std::size_t i = 0; i < intensity.size(); ++i) {
+            lit.push_back(plane.side(medium.local_of_node(medium.lattice.node(i))) > 0.0f);
+            if (!lit.back())
+                continue;
+            intensity[i] = Rgb(number(random));
+            for (std::size_t k = 0; directional && k < 24; ++k)
+                light[24 * i + k] = 0.3f * (number(random) - 1.0f);
+        }
+    }
+    Gathered gather(const NearField& field, const Occluders* occluders) const {
+        Gathered out;
+        out.resize(intensity.size(), false, !light.empty());
+        field.gather({&medium.lattice, &medium.extinction, &intensity, light.empty() ? nullptr : &light, std::nullopt,
+                      medium.reference_node, 0.0f, nullptr, occluders},
+                     out);
+        return out;
+    }
+    Medium medium;
+    std::vector<Rgb> intensity;
+    std::vector<float> light;  // directional
+    std::vector<bool> lit;
+};
+
+// What a plane takes away is the sum over the separations that cross it, however it and the lattice lie.
+TEST(NearField, PlanesTakeAwayWhatIsBehindThem) {
+    for (const mat3& linear : {mat3(0.1f), mat3(some_linear_map())})
+        for (const vec3& normal : {vec3(1, 0, 0), vec3(0, -1, 0), vec3(0, 0, 1), vec3(0.3f, -0.5f, 0.7f)}) {
+            const PlaneOccluder plane(normal, 0.37f * std::cbrt(std::abs(glm::determinant(linear))));
+            const LitOnOneSide scene(linear, plane, false);
+            const NearField field(scene.medium.local_from_index, 2.0f * scene.medium.spacing, false);
+            const Gathered parted = scene.gather(field, &plane), whole = scene.gather(field, nullptr);
+            const BrickLattice& lattice = scene.medium.lattice;
+            std::size_t dark = 0;
+            for (std::size_t i = 0; i < lattice.node_count(); ++i) {
+                double behind = 0.0;
+                for (const NearField::Separation& s : field.stencil())
+                    if (const std::int64_t k = lattice.find_node(lattice.node(i) + s.node); k >= 0)
+                        behind += scene.lit[i] != scene.lit[std::size_t(k)]
+                                      ? double(s.kernel) * scene.intensity[std::size_t(k)].x
+                                      : 0.0;
+                ASSERT_NEAR(whole.fluence[i] - parted.fluence[i], behind, 1e-4 * whole.fluence[i] + 1e-6);
+                dark += behind > 0.0;
+            }
+            EXPECT_GT(dark, std::size_t{500});
+        }
+}
+
+// Nor does the light that a node has from the change of light across it know the other side.
+TEST(NearField, NothingChangesAcrossAPlane) {
+    const PlaneOccluder plane({0.3f, -0.5f, 0.7f}, 0.037f);
+    const LitOnOneSide scene(mat3(0.1f), plane, true);
+    const NearField field(scene.medium.local_from_index, 2.0f * scene.medium.spacing, true);
+    const Gathered parted = scene.gather(field, &plane);
+    for (std::size_t i = 0; i < scene.lit.size(); ++i)
+        if (!scene.lit[i]) {
+            ASSERT_EQ(parted.fluence[i], 0.0f);
+            for (std::size_t k = 0; k < 24; ++k)
+                ASSERT_EQ(parted.moments[k * scene.lit.size() + i], 0.0f);
+        }
 }
 
 }  // namespace

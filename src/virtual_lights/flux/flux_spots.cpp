@@ -51,19 +51,30 @@ SpotAccounts::SpotAccounts(std::span<const VirtualLight> lights, const Medium& m
     const LocalBounds smoke = local_bounds(medium);
     for (const VirtualLight& light : lights)
         maps_.push_back({0, spots_aside(light, smoke, medium.spacing)});
-    while (place_records() > 2 * most)
+    while (record_count() > 2 * most)
         for (Map& map : maps_)
             map.aside = std::max(map.aside / 2, 1);
-    sums_ = FixedSums(place_records(), power);
+    place_records();
+    sums_ = FixedSums(record_count(), power);
 }
 
-std::size_t SpotAccounts::place_records() {
+std::size_t SpotAccounts::records_of(const Map& map) {
+    return map.aside > 1 ? 2 * std::size_t(map.aside) * std::size_t(map.aside) : 0;
+}
+
+std::size_t SpotAccounts::record_count() const {
+    std::size_t records = 0;
+    for (const Map& map : maps_)
+        records += records_of(map);
+    return records;
+}
+
+void SpotAccounts::place_records() {
     std::size_t records = 0;
     for (Map& map : maps_) {
         map.first = records;
-        records += map.aside > 1 ? 2 * std::size_t(map.aside) * std::size_t(map.aside) : 0;
+        records += records_of(map);
     }
-    return records;
 }
 
 void SpotAccounts::add(std::size_t light, const dvec3& position, const Rgb& power) {

@@ -45,8 +45,8 @@ private:
 // What photons bring to the spots of lights. Sums are integers, the same in any order.
 class SpotAccounts {
 public:
-    // Keeps a reference to the lights, whose spread and radius are known. `most`: spots in all, about. `power`: of
-    // everything emitted [W].
+    // Keeps a reference to the lights, whose spread and radius are known. `most`: spots in all. `power`: of everything
+    // emitted [W].
     SpotAccounts(std::span<const VirtualLight> lights, const Medium& medium, std::size_t most, double power);
 
     // From any thread: what a photon at `position` brings to a light.
@@ -73,7 +73,9 @@ private:
         int aside;          // spots along a side, a power of two; 1: the light has none
     };
     std::vector<FluxSpot> spots_of(std::size_t light, int aside) const;
-    std::size_t place_records();  // one map's after the other; how many there are
+    static std::size_t records_of(const Map& map);
+    std::size_t record_count() const;
+    void place_records();  // one map's after the other
 
     std::span<const VirtualLight> lights_;
     std::vector<Map> maps_;

@@ -112,7 +112,7 @@ void GatheredFlux::build(LightSet& set, const Placement&, const LightSources& so
         photons_needed(set.scene(), ball, set.partition, set.settings(), set.lights.size(), sources.camera.samples);
     std::optional<SpotAccounts> spots;
     if (set.settings().light_smoke)
-        spots.emplace(set.lights, set.scene().field().medium(), std::size_t(double(photons) / kPhotonsOfSpot), power);
+        spots.emplace(set.lights, set.scene().field().medium(), photons, power);
     report.photons = trace_photons(set.scene(), ball, set.partition, photons, set.settings().seed, accounts,
                                    spots ? &*spots : nullptr);
     report.photon_bytes = accounts.bytes() + (spots ? spots->bytes() : 0);
