@@ -82,8 +82,8 @@ TEST(SurfacesInSmoke, AWallThroughItHoldsTheFiresLightUp) {
         std::printf("%s lit %.5f, paths %.5f, halves apart %.5f; dark %.5f, paths %.5f, halves apart %.5f\n", cell,
                     lit[0], lit[1], lit[2], dark[0], dark[1], dark[2]);
         EXPECT_NEAR(lit[0], lit[1], 0.03 * lit[1] + lit[2]) << cell;
-        // Nodes closer than two voxels to each other see no surfaces between them; for MM these are coarser voxels.
-        const double leak = cell == std::string("MV") ? 0.01 : 0.03;
+        // Lights of several voxels may lie on both sides.
+        const double leak = cell == std::string("MV") ? 0.003 : 0.015;
         EXPECT_NEAR(dark[0], dark[1], leak * lit[1] + dark[2]) << cell << ": what comes through";
     }
 }
