@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "medium/lattice/extinction_pyramid.h"
+#include "thin_media/brick_points.h"
 
 namespace brisance {
 
@@ -97,45 +98,28 @@ SeenAtCorners seen_at_corners(const Means& level, int up, const ivec3& brick, fl
     return out;
 }
 
-float between(const Corners& corners, const vec3& part) {
-    float sum = 0.0f;
-    for (int k = 0; k < 8; ++k) {
-        const vec3 w = glm::mix(1.0f - part, part, vec3(k >> 2, k >> 1 & 1, k & 1));
-        sum += w.x * w.y * w.z * corners[k];
-    }
-    return sum;
-}
-
 // Extinctions that light meets nearby, and where it is seen.
 float times_in_haze(float near, float far) {
     return glm::mix(kInHaze, 1.0f, glm::smoothstep(kHaze * far, kNoHaze * far, near));
 }
 
-using OfBrick = std::array<float, BrickLattice::kNodes>;
+// Values at the corners, in the order of Corners.
+using BrickCorners = BrickPoints<1>;
 
-// The extinction that light meets around the nodes of a brick, by a level `down` below it.
-void interpolate(const Means& level, int down, const ivec3& brick, OfBrick& out) {
-    const int step = BrickLattice::kSize >> down, side = (1 << down) + 1;
-    std::vector<float> box(std::size_t(2 * side * side * side));
-    copy_box(level.lattice, level.values, 2, brick * (1 << down), ivec3(side), box);
-    const std::size_t plane = box.size() / 2;
-    for (std::size_t i = 0; i < plane; ++i)
-        box[i] = box[i] > 0.0f ? box[plane + i] / box[i] : 0.0f;
-    for (int n = 0; n < BrickLattice::kNodes; ++n) {
-        const ivec3 node = BrickLattice::node_in_brick(n), low = node / step;
-        const vec3 part = vec3(node - low * step) / float(step);
-        float sum = 0.0f;
-        for (int k = 0; k < 8; ++k) {
-            const ivec3 d(k >> 2, k >> 1 & 1, k & 1), p = low + d;
-            const vec3 w = glm::mix(1.0f - part, part, vec3(d));
-            sum += w.x * w.y * w.z * box[std::size_t((p.x * side + p.y) * side + p.z)];
-        }
-        out[std::size_t(n)] = sum;
-    }
-}
+template <int kIntervals>
+using Around = std::array<float, BrickPoints<kIntervals>::kCount>;
 
-vec3 place_in_brick(int node) {
-    return vec3(BrickLattice::node_in_brick(node)) / float(BrickLattice::kSize);
+// The extinction that light meets at points of a brick, by the level whose nodes they are.
+
+template <int kIntervals>
+Around<kIntervals> extinction_around(const Means& level, const ivec3& brick) {
+    using Points = BrickPoints<kIntervals>;
+    std::array<float, 2 * Points::kCount> box;
+    copy_box(level.lattice, level.values, 2, brick * kIntervals, ivec3(Points::kSide), box);
+    Around<kIntervals> out;
+    for (std::size_t i = 0; i < out.size(); ++i)
+        out[i] = box[i] > 0.0f ? box[out.size() + i] / box[i] : 0.0f;
+    return out;
 }
 
 // What the nodes of a brick see at each distance. `f`: called with a node, the depth, and how many times that counts.
@@ -143,22 +127,26 @@ template <class F>
 void see_from_brick(const Medium& medium, const Levels& levels, std::size_t b, const F& f) {
     const ivec3 brick = medium.lattice.brick(b);
     std::vector<SeenAtCorners> corners(levels.coarse.size());
-    OfBrick near;
+    const Around<4> nearest = extinction_around<4>(levels.fine[0], brick);
+    const Around<2> next = extinction_around<2>(levels.fine[1], brick);
+    const auto nearby = [&](std::size_t l, int n) {
+        return l == 0   ? BrickPoints<4>::at(nearest.data(), n)
+               : l == 1 ? BrickPoints<2>::at(next.data(), n)
+                        : BrickCorners::at(corners[l - kNearer].extinction.data(), n);
+    };
     for (std::size_t l = 0; l < corners.size(); ++l) {
         const float distance = medium.spacing * float(1 << (kBrickLevel + int(l)));
         corners[l] = seen_at_corners(levels.coarse[l], int(l), brick, distance * medium.max_extinction);
         if (!(std::ranges::max(corners[l].depth) > 0.0f))
             continue;
-        if (l < kNearer)
-            interpolate(levels.fine[l], kNearer - int(l), brick, near);
         for (int n = 0; n < BrickLattice::kNodes; ++n) {
             const std::size_t i = b * BrickLattice::kNodes + std::size_t(n);
-            const vec3 place = place_in_brick(n);
-            const float nearby = l < kNearer ? near[std::size_t(n)] : between(corners[l - kNearer].extinction, place);
             const float through = std::exp(-medium.extinction[i] * distance);
-            const float seen = std::min(between(corners[l].depth, place), kOpaque) * through;
-            if (seen > 0.0f)
-                f(i, seen, times_in_haze(nearby, between(corners[l].extinction, place)));
+            const float seen = std::min(BrickCorners::at(corners[l].depth.data(), n), kOpaque) * through;
+            const bool may_count = kInHaze * seen > kResolved && seen < kUnresolved;  // else it makes no difference
+            const float times =
+                may_count ? times_in_haze(nearby(l, n), BrickCorners::at(corners[l].extinction.data(), n)) : 1.0f;
+            f(i, seen, times);
         }
     }
 }
